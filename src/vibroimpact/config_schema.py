@@ -1,0 +1,145 @@
+"""The only declaration of the configuration's keys, units, ranges and defaults (the structure's are in config_structure)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from vibroimpact.config_structure import Damping, ModalDamping, Structure, Support
+from vibroimpact.config_types import (Axis, Band_Hz, Duration_s, Force_N, Fraction_of_gap, Frequency_Hz, Gap_m, Name, Overlap, Section, Start_up_s,
+                           Stiffness_range, Stress_Pa, Study_name, Vector, choice, count, one_or_list)
+
+F16_DATA = "../shared/data/f16_ground_vibration"
+
+
+class BandLimited(Section):
+    """A Gaussian force with a flat one-sided PSD in a band, at one point along one direction."""
+
+    kind: Literal["band_limited"]
+    point: Name
+    direction: Vector
+    band_Hz: Band_Hz
+
+
+class Measured(Section):
+    """A measured force record (netCDF, CSV or MAT) at one point along one direction, scaled to the load of the case."""
+
+    kind: Literal["measured"]
+    point: Name
+    direction: Vector
+    file: str
+    variable: str
+    sampling_frequency_Hz: Frequency_Hz | None = None
+
+
+Excitation = choice(BandLimited, Measured)
+
+
+class Basis(Section):
+    """What spans the reduced model."""
+
+    free_modes_to_Hz: Frequency_Hz = 7500.0
+    constrained_modes_to_Hz: Frequency_Hz = 2000.0
+    attachment_shapes: bool = True
+
+
+class Integration(Section):
+    """Step, start-up before the record, and the seeded initial offset as a fraction of the gap."""
+
+    steps_per_second: count(100, 10**8, "the paper's 2e-5 s is 50000 steps per second") = 51200
+    start_up_s: Start_up_s = 6.0
+    imperfection: Fraction_of_gap = 1.0e-6
+
+
+class LogSpaced(Section):
+    """`count` values from `first` to `last`, evenly spaced in logarithm."""
+
+    first: Force_N
+    last: Force_N
+    count: count(1, 10**4, "the number of loads")
+
+
+class Grid(Section):
+    """The cases of the study: every load with every gap and every seed."""
+
+    load_rms_N: one_or_list(LogSpaced, Annotated[tuple[Force_N, ...], Field(min_length=1)])
+    gap_m: Annotated[tuple[Gap_m, ...], Field(min_length=1)]
+    seeds: count(1, 10**4, "the number of seeds: 4 give a scatter") = 4
+
+
+class Sensors(Section):
+    """Named points and directions whose displacement and acceleration are kept."""
+
+    points: Annotated[tuple[Name, ...], Field(min_length=1)]
+    directions: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("x", "y")
+
+
+class ShapeLine(Section):
+    """Points evenly spaced in arc length from end to end (ends excluded), for the deflection shape."""
+
+    points: count(3, 2000, "25 points or more draw the shape") = 27
+    direction: Axis = "y"
+
+
+class RecordKeys(Section):
+    """What a case keeps, and how it is sampled."""
+
+    duration_s: Duration_s = 49.0
+    sampling_frequency_Hz: Frequency_Hz = 2048
+    sensors: Sensors
+    shape_line: ShapeLine = ShapeLine()
+    stress_limit_Pa: Stress_Pa = 240.0e6
+    keep_time_series: bool = False
+
+
+class Spectra(Section):
+    """Welch's averages: buffer, overlap, window."""
+
+    segment_s: Duration_s = 10.0
+    overlap: Overlap = 0.65
+    window: Literal["hann", "boxcar"] = "hann"
+
+
+class Lscf(Section):
+    """Band, highest polynomial order and reference points of the output-only LSCF."""
+
+    band_Hz: Band_Hz = (8.0, 60.0)
+    max_order: count(2, 200, "24 is enough for a band with a handful of modes") = 24
+    references: Annotated[tuple[Name, ...], Field(min_length=1)]
+
+
+class Broadband(Section):
+    """Response point and band of the correlation of spectra."""
+
+    point: Name
+    band_Hz: Band_Hz = (6.0, 99.0)
+
+
+class Identification(Section):
+    """Where the three identifications look."""
+
+    response_point: Name
+    peak_search_Hz: Band_Hz = (8.0, 45.0)
+    lscf: Lscf
+    broadband: Broadband
+    stiffness_range_N_per_m: Stiffness_range = (1.0e3, 1.0e8)
+
+
+class Config(Section):
+    """A whole study. Results go to results/<study>/; seed is the entropy of every random stream."""
+
+    study: Study_name
+    seed: count(0, 2**63, "any whole number") = 2012
+    structure: Structure
+    damping: Damping = ModalDamping(kind="modal", first_ratios=(0.015, 0.015), other_ratio=0.002)
+    supports: tuple[Support, ...] = ()
+    points: dict[Name, Vector]
+    excitation: Excitation
+    basis: Basis = Basis()
+    integration: Integration = Integration()
+    grid: Grid
+    record: RecordKeys
+    spectra: Spectra = Spectra()
+    identification: Identification
+    f16_data: str = F16_DATA

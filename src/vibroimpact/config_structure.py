@@ -1,0 +1,137 @@
+"""What a configuration says about the structure: centreline, section, material, ends, damping, supports."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from vibroimpact.config_types import (Angle_deg, Coefficient, Damping_ratio, Density, Diameter_m, Height_m, Length_m, Name, Pair, Poisson_ratio,
+                           Positive_factor, Rotation_stiffness, Section, Shear_coefficient, Stiffness, Vector, Wall_m,
+                           Youngs_modulus_Pa, choice, count, one_or_list)
+
+
+class TubeSection(Section):
+    """Cross-section of the tube; shear_coefficient is Cowper's, used by the Timoshenko theory only."""
+
+    outer_diameter_m: Diameter_m
+    wall_thickness_m: Wall_m
+    shear_coefficient: Shear_coefficient = 0.53
+
+
+class Material(Section):
+    """Linear elastic material."""
+
+    young_modulus_Pa: Youngs_modulus_Pa
+    poisson_ratio: Poisson_ratio
+    density_kg_per_m3: Density
+
+
+class Mesh(Section):
+    """Number of elements of a span (stretch of a straight segment between ends and support edges) and of a bend."""
+
+    elements_per_span: count(1, 2000, "20 elements per span is the stated mesh") = 20
+    elements_per_bend: count(1, 2000, "80 elements per bend is the stated mesh") = 80
+
+
+class Clamped(Section):
+    """An end that neither moves nor turns."""
+
+    kind: Literal["clamped"]
+
+
+class Pinned(Section):
+    """An end that does not move and does not twist, but bends freely."""
+
+    kind: Literal["pinned"]
+
+
+class Free(Section):
+    """An end that is not held."""
+
+    kind: Literal["free"]
+
+
+class Springs(Section):
+    """An end on springs, the same in all three directions."""
+
+    kind: Literal["springs"]
+    translation_N_per_m: Stiffness
+    rotation_N_m_per_rad: Rotation_stiffness
+
+
+class UTube(Section):
+    """A U-tube: legs along z at x = -+bend_radius_m from z = 0, apex on the z axis; out of plane is y."""
+
+    kind: Literal["u_tube"]
+    theory: Literal["timoshenko", "euler_bernoulli"] = "timoshenko"
+    section: TubeSection
+    material: Material
+    leg_length_m: Length_m
+    bend_radius_m: Length_m
+    mesh: Mesh = Mesh()
+    root: choice(Clamped, Pinned, Springs) = Clamped(kind="clamped")
+
+
+class Straight(Section):
+    """A straight stretch of a path."""
+
+    kind: Literal["straight"]
+    length_m: Length_m
+
+
+class Bend(Section):
+    """A circular arc of a path, turning towards the direction `toward`."""
+
+    kind: Literal["bend"]
+    radius_m: Length_m
+    angle_deg: Angle_deg
+    toward: Vector
+
+
+class Path(Section):
+    """A centreline of straight and bend segments, tangent to each other."""
+
+    kind: Literal["path"]
+    theory: Literal["timoshenko", "euler_bernoulli"] = "timoshenko"
+    section: TubeSection
+    material: Material
+    start_m: Vector
+    start_direction: Vector
+    segments: Annotated[tuple[choice(Straight, Bend), ...], Field(min_length=1)]
+    mesh: Mesh = Mesh()
+    start: choice(Clamped, Pinned, Springs, Free) = Clamped(kind="clamped")
+    end: choice(Clamped, Pinned, Springs, Free) = Clamped(kind="clamped")
+
+
+Structure = choice(UTube, Path)
+
+
+class ModalDamping(Section):
+    """Damping ratios of the free modes: the first ones one by one, then all others."""
+
+    kind: Literal["modal"]
+    first_ratios: tuple[Damping_ratio, ...] = ()
+    other_ratio: Damping_ratio
+
+
+class RayleighDamping(Section):
+    """C = mass_coefficient M + stiffness_coefficient K."""
+
+    kind: Literal["rayleigh"]
+    mass_coefficient_per_s: Coefficient
+    stiffness_coefficient_s: Coefficient
+
+
+Damping = choice(ModalDamping, RayleighDamping)
+
+class Support(Section):
+    """A gap support: contact points evenly spaced over its height, both edges included (one point: its middle)."""
+
+    name: Name
+    at_m: Vector
+    height_m: Height_m
+    points: count(1, 200, "five points follow the contact layer over the whole range of stiffness") = 5
+    stiffness_N_per_m: one_or_list(Stiffness, tuple[Stiffness, ...])
+    gap_factor: one_or_list(Positive_factor, tuple[Positive_factor, ...]) = 1.0
+    centre_offset_m: one_or_list(Pair, tuple[Pair, ...], depth=2) = (0.0, 0.0)

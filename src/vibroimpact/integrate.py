@@ -1,0 +1,234 @@
+"""Marching a batch of cases through time: checks before, the kernel, statistics and energies after."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import kernels
+from .antialias import OutputFilter, output_filter
+from .kernels import LANES, RATIO
+from .layout import ModalLayout
+from .model import ModalModel
+
+CHUNK_TICKS = 5000  # steps between visits to Python, in units of RATIO: half a second at 51200 Hz
+CONTRACTION_LIMIT = 0.5
+
+
+class IntegrationError(Exception):
+    """A run that can not be done or that diverged; the message names the place and the remedy."""
+
+
+@dataclass
+class Lanes:
+    """What a batch of up to LANES cases leaves behind; the last axis of every sum is the case.
+
+    displacement (case, channel, sample) m: sensors, then the shape line; acceleration (case, sensor, sample) m/s²;
+    force (case, channel, sample) N: two resultants per support (on the structure), then the drive forces.
+    tally: sums over the recorded steps (see kernels.Tally); steps: how many; energy (case, term, chunk) J at
+    energy_time (chunk,) s; terms ENERGY_TERMS, all accumulated from the start of the simulation.
+    fixed_point_residual (case,): largest relative change of the contact forces in the last pass of a step; times
+    contraction it bounds the error left. contact_rows (contact_point, 2): row of each contact direction in the tally.
+    """
+
+    displacement: np.ndarray
+    acceleration: np.ndarray
+    force: np.ndarray
+    tally: dict[str, np.ndarray]
+    steps: int
+    energy: np.ndarray
+    energy_time: np.ndarray
+    fixed_point_residual: np.ndarray
+    contraction: float
+    contact_rows: np.ndarray
+
+
+ENERGY_TERMS = ("input_work", "dissipated", "contact_work", "kinetic", "elastic", "contact_potential")
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Rates [Hz] and durations [s] of a run, and the output filter between the two rates."""
+
+    steps_per_second: float
+    sampling_frequency: float
+    start_up: float
+    duration: float
+    filter: OutputFilter = field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "filter", output_filter(self.steps_per_second, self.sampling_frequency))
+
+    @property
+    def samples(self) -> int:
+        """Samples of the record."""
+        return round(self.duration * self.sampling_frequency)
+
+    @property
+    def start_ticks(self) -> int:
+        """Ticks before the first one whose output the record's second filter stage needs.
+
+        Negative where the filter reaches back before the start of the run, when the structure was at rest.
+        """
+        return round(self.start_up * self.steps_per_second / RATIO) - self.filter.delay + 1
+
+    @property
+    def steps(self) -> int:
+        """Steps of the whole run; the drive force needs two values more (its value 0 is one step before time 0)."""
+        ticks = self.start_ticks + self.filter.second.size + (self.samples - 1) * self.filter.step
+        return ticks * RATIO
+
+
+def contact_contraction(model: ModalModel, dt: float) -> float:
+    """Upper bound of the factor by which one pass of the contact fixed point shrinks its error.
+
+    The largest eigenvalue of stiffness times the compliance of one step, all points in contact at once.
+    """
+    modal = ModalLayout(model).modal(dt)
+    largest, row = 0.0, 0
+    stiffness = np.zeros(modal.row_force_channel.size)
+    for direction in range(2):
+        stiffness[ModalLayout(model).contact_rows()[:, direction]] = model.contact_stiffness
+    for g in range(modal.row_start.size - 1):
+        row, end = modal.row_start[g], modal.force_row_start[g]
+        count = end - row
+        if count == 0:
+            continue
+        start = modal.compliance_start[g]
+        compliance = modal.compliance[start : start + count * count].reshape(count, count)
+        weight = np.sqrt(stiffness[row:end])
+        largest = max(largest, np.linalg.eigvalsh(weight[:, None] * compliance * weight)[-1])
+    return float(largest)
+
+
+def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive) -> Lanes:
+    """Integrate up to LANES cases side by side.
+
+    gap (case,) m; imperfection (contact_point, 2, case) m, added to the obstacles' centres; drive: function
+    (first, count) -> (count, force_channel, case) force in N at steps first, first + 1, ... (0 to schedule.steps + 1).
+    Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the run diverged.
+    """
+    cases = np.size(gap)
+    contraction = contact_contraction(model, 1.0 / schedule.steps_per_second)
+    if contraction > CONTRACTION_LIMIT:
+        raise IntegrationError(
+            f"contact stiffness {model.contact_stiffness.max():.3g} N/m is too stiff for a step of {1 / schedule.steps_per_second:.3g} s: "
+            f"the contact iteration contracts by {contraction:.2g} only (limit {CONTRACTION_LIMIT}): raise integration.steps_per_second "
+            f"to at least {schedule.steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
+        )
+    return _Run(model, schedule, _to_lanes(gap, 1.0), _to_lanes(imperfection, 0.0), drive, cases).finish(contraction)
+
+
+def _to_lanes(values, padding):
+    """values (..., case) padded to LANES along the last axis."""
+    values = np.asarray(values, float)
+    out = np.full((*values.shape[:-1], LANES), padding)
+    out[..., : values.shape[-1]] = values
+    return out
+
+
+class _Run:
+    """One batch on its way: the kernel's arrays and the sums carried from chunk to chunk."""
+
+    def __init__(self, model, schedule, gap, imperfection, drive, cases):
+        self.model, self.schedule, self.drive, self.cases = model, schedule, drive, cases
+        self.layout = ModalLayout(model)
+        self.dt = 1.0 / schedule.steps_per_second
+        self.modal = self.layout.modal(self.dt)
+        self.contact = self.layout.contact(gap, imperfection)
+        self.state, self.tally, self.work = self.layout.state(), self.layout.tally(), self.layout.work()
+        tail = schedule.filter.second.size - schedule.filter.step
+        self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
+        self.output = self.layout.output(schedule.filter.phase_weights(), tail + self.chunk)
+        self.tail = tail
+        self.done = 0
+        self.totals = {name: np.zeros(LANES) for name in ("input_work", "dissipated", "contact_work")}
+        self.sums = None
+        self.residual = np.zeros(LANES)
+        self.energies, self.times = [], []
+        self.omega = self.layout.per_mode(model.omega)[:, None]
+
+    def finish(self, contraction) -> Lanes:
+        """Start-up, filling of the filter, record."""
+        schedule, layout_output = self.schedule, self.output
+        for ticks in _chunks(schedule.start_ticks, self.chunk):
+            self.advance(ticks, 0, recorded=False)
+        at_rest = max(-schedule.start_ticks, 0)
+        layout_output.values[:, :at_rest] = 0.0
+        self.advance(self.tail - at_rest, at_rest, recorded=False)
+        sensors = self.model.sensor_shapes.shape[1]
+        samples, shapes = schedule.samples, layout_output.stress_start
+        outputs = np.empty((self.cases, layout_output.values.shape[0], samples), np.float32)
+        acceleration = np.empty((self.cases, sensors, samples), np.float32)
+        first, buffer = 0, np.zeros(LANES)
+        for ticks in _chunks(samples * schedule.filter.step, self.chunk):
+            self.advance(ticks, self.tail, recorded=True)
+            values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
+            kernels.decimate(values, schedule.filter.second, outputs, first, schedule.filter.step, buffer)
+            kernels.decimate(values[:sensors], schedule.filter.second_derivative, acceleration, first, schedule.filter.step, buffer)
+            layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
+            first += ticks // schedule.filter.step
+        return Lanes(
+            displacement=outputs[:, :shapes],
+            acceleration=acceleration,
+            force=outputs[:, shapes:],
+            tally={name: value[..., : self.cases] for name, value in self.sums.items()},
+            steps=samples * schedule.filter.step * RATIO,
+            energy=np.array(self.energies).transpose(2, 1, 0)[: self.cases],
+            energy_time=np.array(self.times),
+            fixed_point_residual=self.residual[: self.cases],
+            contraction=contraction,
+            contact_rows=self.layout.contact_rows(),
+        )
+
+    def advance(self, ticks, column, recorded):
+        """March ``ticks`` ticks, their outputs to ``column`` on; keep the sums when recorded."""
+        force = np.zeros((ticks * RATIO + 2, self.model.drive_shapes.shape[1], LANES))
+        force[..., : self.cases] = self.drive(self.done, ticks * RATIO + 2)
+        for array in self.tally:
+            array[...] = 0.0
+        steps = kernels.march(self.modal, self.contact, self.state, self.tally, self.output._replace(column=column), self.work, force)
+        if steps < ticks * RATIO:
+            self.fail(steps)
+        self.done += steps
+        self.account(recorded)
+
+    def account(self, recorded):
+        """Add the chunk's tally to the totals and take the energies."""
+        tally = self.tally
+        self.totals["input_work"] += tally.input_work[0]
+        self.totals["contact_work"] += tally.contact_work[0]
+        self.totals["dissipated"] += tally.dissipated[0]
+        self.residual = np.maximum(self.residual, tally.residual[0])
+        rows = np.stack([self.contact.row_1, self.contact.row_2])
+        square_force = (self.state.row_force[rows] ** 2).sum(axis=0)
+        stored = {
+            "kinetic": 0.5 * (self.state.velocity**2).sum(axis=0),
+            "elastic": 0.5 * ((self.omega * self.state.displacement[-1]) ** 2).sum(axis=0),
+            "contact_potential": 0.5 * (square_force / self.contact.stiffness).sum(axis=0),
+        }
+        terms = self.totals | stored
+        self.energies.append(np.array([terms[name] for name in ENERGY_TERMS]))
+        self.times.append((self.done - 1) * self.dt - self.schedule.start_up)
+        if recorded:
+            if self.sums is None:
+                self.sums = {name: np.zeros_like(array) for name, array in tally._asdict().items()}
+            for name, array in tally._asdict().items():
+                largest = name.startswith(("peak", "impact_velocity_peak", "residual"))
+                self.sums[name] = np.maximum(self.sums[name], array) if largest else self.sums[name] + array
+
+    def fail(self, steps):
+        """Say where the run diverged."""
+        displacement = np.abs(self.state.row_displacement)
+        displacement[~np.isfinite(displacement)] = np.inf
+        row, lane = np.unravel_index(np.argmax(displacement), displacement.shape)
+        points = np.flatnonzero((self.contact.row_1 == row) | (self.contact.row_2 == row))
+        raise IntegrationError(
+            f"diverged at t = {(self.done + steps - 1) * self.dt - self.schedule.start_up:.4f} s of the record, case {lane} of the batch, "
+            f"contact point {points[0] if points.size else row}: raise integration.steps_per_second (now {self.schedule.steps_per_second:g}, "
+            f"highest mode kept {self.model.omega.max() / (2 * np.pi):.0f} Hz) or check the contact stiffness and the force"
+        )
+
+
+def _chunks(total, size):
+    """total cut into pieces of at most size; none when it is not positive."""
+    return [min(size, total - start) for start in range(0, total, size)]

@@ -1,0 +1,851 @@
+"""Every compiled function of vibroimpact, and the vector primitives they are written with.
+
+One file on purpose: a cached numba function does not see an edit in a compiled function that it imports
+from another file and would silently return the old physics.
+
+Layout. A *lane* is one case (load, gap, seed); ``LANES`` of them are integrated side by side, one per
+element of a hardware vector, so every state array ends in an axis of ``LANES`` and lanes never mix: the
+result of a case does not depend on its neighbours, bit for bit. A *panel* is ``PANEL`` consecutive modes,
+each a vector of lanes, held in registers. Modes are padded with zeros to whole panels.
+The vector types are plain LLVM vectors: a machine without 512-bit registers runs the same code on
+narrower ones.
+"""
+
+import operator
+from typing import NamedTuple
+
+import numpy as np
+from llvmlite import ir
+from numba import njit, types
+from numba.core import cgutils
+from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
+
+LANES = 8
+PANEL = 8
+RATIO = 5  # decimation of each of the two stages of the output filter: 51200 -> 10240 -> 2048 Hz
+SLOTS = 4  # outputs of the first stage that one input sample contributes to
+CHANNEL_BLOCK = 4  # output channels projected at a time
+
+# Without the run-time's reference counts (_nrt): counting each array of a group at each use costs five times the
+# arithmetic. Nothing is allocated in here; work space is handed in.
+COMPILED = {"cache": True, "_nrt": False}
+INLINE = {"forceinline": True, "_nrt": False}
+
+# ----------------------------------------------------------------------------------------------------
+# Vector primitives: lane vectors and panels of them
+# ----------------------------------------------------------------------------------------------------
+_DOUBLE = ir.DoubleType()
+_INT32 = ir.IntType(32)
+_VECTOR = ir.VectorType(_DOUBLE, LANES)
+
+
+class LaneVector(types.Type):
+    """The numba type of one float64 per lane."""
+
+    def __init__(self):
+        super().__init__(name="LaneVector")
+
+
+lane_vector = LaneVector()
+panel_type = types.UniTuple(lane_vector, PANEL)
+
+
+@register_model(LaneVector)
+class _LaneVectorModel(models.PrimitiveModel):
+    def __init__(self, manager, numba_type):
+        super().__init__(manager, numba_type, _VECTOR)
+
+
+@infer_global(operator.add)
+@infer_global(operator.sub)
+@infer_global(operator.mul)
+@infer_global(operator.truediv)
+class _LaneArithmetic(ConcreteTemplate):
+    cases = [signature(lane_vector, lane_vector, lane_vector)]
+
+
+def _lower_arithmetic(python_operator, instruction):
+    @lower_builtin(python_operator, lane_vector, lane_vector)
+    def _lower(context, builder, sig, args):
+        return getattr(builder, instruction)(*args)
+
+
+for _operator, _instruction in (
+    (operator.add, "fadd"),
+    (operator.sub, "fsub"),
+    (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
+):
+    _lower_arithmetic(_operator, _instruction)
+
+
+def _address(context, builder, array_type, array, index):
+    return builder.gep(context.make_array(array_type)(context, builder, array).data, [index])
+
+
+def _offset(builder, index, step):
+    return builder.add(index, ir.Constant(index.type, step))
+
+
+def _lane_address(context, builder, array_type, array, vector_index):
+    index = builder.mul(vector_index, ir.Constant(vector_index.type, LANES))
+    return builder.bitcast(_address(context, builder, array_type, array, index), _VECTOR.as_pointer())
+
+
+def _load_lanes(context, builder, array_type, array, vector_index):
+    value = builder.load(_lane_address(context, builder, array_type, array, vector_index))
+    value.align = 8
+    return value
+
+
+def _store_lanes(context, builder, array_type, array, vector_index, value):
+    builder.store(value, _lane_address(context, builder, array_type, array, vector_index)).align = 8
+
+
+def _spread(builder, scalar):
+    undefined = ir.Constant(_VECTOR, ir.Undefined)
+    one = builder.insert_element(undefined, scalar, ir.Constant(_INT32, 0))
+    return builder.shuffle_vector(one, undefined, ir.Constant(ir.VectorType(_INT32, LANES), [0] * LANES))
+
+
+def _spread_from(context, builder, array_type, array, index):
+    return _spread(builder, builder.load(_address(context, builder, array_type, array, index)))
+
+
+def _call(builder, name, args):
+    kind = ir.FunctionType(_VECTOR, [_VECTOR] * len(args))
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64"), args)
+
+
+@intrinsic
+def spread(typing_context, scalar):
+    """The scalar in every lane."""
+    return lane_vector(types.float64), lambda context, builder, sig, args: _spread(builder, args[0])
+
+
+@intrinsic
+def load(typing_context, array, i):
+    """Vector i of a contiguous array whose last axis is the lanes."""
+
+    def code(context, builder, sig, args):
+        return _load_lanes(context, builder, sig.args[0], args[0], args[1])
+
+    return lane_vector(array, types.intp), code
+
+
+@intrinsic
+def store(typing_context, array, i, value):
+    """Write vector i of a contiguous array whose last axis is the lanes."""
+
+    def code(context, builder, sig, args):
+        _store_lanes(context, builder, sig.args[0], *args)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, lane_vector), code
+
+
+@intrinsic
+def fma(typing_context, a, b, c):
+    """a * b + c, rounded once."""
+    sig = lane_vector(lane_vector, lane_vector, lane_vector)
+    return sig, lambda context, builder, sig, args: _call(builder, "fma", args)
+
+
+@intrinsic
+def root(typing_context, a):
+    """Square root of each lane."""
+    return lane_vector(lane_vector), lambda context, builder, sig, args: _call(builder, "sqrt", args)
+
+
+_SINGLE = ir.VectorType(ir.FloatType(), LANES)
+
+
+@intrinsic
+def inverse_root_estimate(typing_context, a):
+    """1 / sqrt(a) to single precision, for a >= 1e-37."""
+
+    def code(context, builder, sig, args):
+        single = builder.fptrunc(args[0], _SINGLE)
+        kind = ir.FunctionType(_SINGLE, [_SINGLE])
+        square_root = cgutils.get_or_insert_function(builder.module, kind, f"llvm.sqrt.v{LANES}f32")
+        ones = ir.Constant(_SINGLE, [1.0] * LANES)
+        return builder.fpext(builder.fdiv(ones, builder.call(square_root, [single])), _VECTOR)
+
+    return lane_vector(lane_vector), code
+
+
+@intrinsic
+def magnitude(typing_context, a):
+    """Absolute value of each lane."""
+    return lane_vector(lane_vector), lambda context, builder, sig, args: _call(builder, "fabs", args)
+
+
+@intrinsic
+def select_greater(typing_context, a, b, yes, no):
+    """Lane by lane: yes where a > b, else no."""
+
+    def code(context, builder, sig, args):
+        return builder.select(builder.fcmp_ordered(">", args[0], args[1]), args[2], args[3])
+
+    return lane_vector(*[lane_vector] * 4), code
+
+
+@intrinsic
+def any_greater(typing_context, a, b):
+    """True when a > b in at least one lane (False for NaN)."""
+
+    def code(context, builder, sig, args):
+        mask = builder.bitcast(builder.fcmp_ordered(">", args[0], args[1]), ir.IntType(LANES))
+        return builder.icmp_unsigned("!=", mask, ir.Constant(ir.IntType(LANES), 0))
+
+    return types.boolean(lane_vector, lane_vector), code
+
+
+@intrinsic
+def load_panel(typing_context, array, i):
+    """The PANEL vectors from vector i on."""
+
+    def code(context, builder, sig, args):
+        vectors = [
+            _load_lanes(context, builder, sig.args[0], args[0], _offset(builder, args[1], m)) for m in range(PANEL)
+        ]
+        return context.make_tuple(builder, sig.return_type, vectors)
+
+    return panel_type(array, types.intp), code
+
+
+@intrinsic
+def store_panel(typing_context, array, i, panel):
+    """Write the PANEL vectors from vector i on."""
+
+    def code(context, builder, sig, args):
+        for m, vector in enumerate(cgutils.unpack_tuple(builder, args[2], PANEL)):
+            _store_lanes(context, builder, sig.args[0], args[0], _offset(builder, args[1], m), vector)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, panel_type), code
+
+
+@intrinsic
+def panel_zero(typing_context):
+    """A panel of zeros."""
+
+    def code(context, builder, sig, args):
+        return context.make_tuple(builder, sig.return_type, [ir.Constant(_VECTOR, [0.0] * LANES)] * PANEL)
+
+    return panel_type(), code
+
+
+@intrinsic
+def panel_plus_vector(typing_context, coefficients, j, vector, panel):
+    """panel[m] + coefficients[j + m] * vector: one force row spread over PANEL modes."""
+
+    def code(context, builder, sig, args):
+        out = []
+        for m, vector in enumerate(cgutils.unpack_tuple(builder, args[3], PANEL)):
+            factor = _spread_from(context, builder, sig.args[0], args[0], _offset(builder, args[1], m))
+            out.append(_call(builder, "fma", [factor, args[2], vector]))
+        return context.make_tuple(builder, sig.return_type, out)
+
+    return panel_type(coefficients, types.intp, lane_vector, panel_type), code
+
+
+@intrinsic
+def panel_plus_scaled(typing_context, coefficients, j, a, panel):
+    """panel[m] + coefficients[j + m] * a[m]: one coefficient per mode."""
+
+    def code(context, builder, sig, args):
+        out = []
+        factors = cgutils.unpack_tuple(builder, args[2], PANEL)
+        for m, vector in enumerate(cgutils.unpack_tuple(builder, args[3], PANEL)):
+            factor = _spread_from(context, builder, sig.args[0], args[0], _offset(builder, args[1], m))
+            out.append(_call(builder, "fma", [factor, factors[m], vector]))
+        return context.make_tuple(builder, sig.return_type, out)
+
+    return panel_type(coefficients, types.intp, panel_type, panel_type), code
+
+
+@intrinsic
+def panel_product(typing_context, a, b):
+    """a[m] * b[m]."""
+
+    def code(context, builder, sig, args):
+        a, b = (cgutils.unpack_tuple(builder, arg, PANEL) for arg in args)
+        return context.make_tuple(builder, sig.return_type, [builder.fmul(a[m], b[m]) for m in range(PANEL)])
+
+    return panel_type(panel_type, panel_type), code
+
+
+@intrinsic
+def panel_plus_common(typing_context, vector, a, panel):
+    """panel[m] + vector * a[m]: one factor for all modes."""
+
+    def code(context, builder, sig, args):
+        a, c = (cgutils.unpack_tuple(builder, arg, PANEL) for arg in args[1:])
+        out = [_call(builder, "fma", [args[0], a[m], c[m]]) for m in range(PANEL)]
+        return context.make_tuple(builder, sig.return_type, out)
+
+    return panel_type(lane_vector, panel_type, panel_type), code
+
+
+@intrinsic
+def panel_sum(typing_context, a, b):
+    """a[m] + b[m]."""
+
+    def code(context, builder, sig, args):
+        a, b = (cgutils.unpack_tuple(builder, arg, PANEL) for arg in args)
+        return context.make_tuple(builder, sig.return_type, [builder.fadd(a[m], b[m]) for m in range(PANEL)])
+
+    return panel_type(panel_type, panel_type), code
+
+
+@intrinsic
+def vector_plus_dot(typing_context, coefficients, j, panel, vector):
+    """vector + sum over m of coefficients[j + m] * panel[m]: PANEL modes projected on one row."""
+
+    def code(context, builder, sig, args):
+        terms = cgutils.unpack_tuple(builder, args[2], PANEL)
+        factors = [
+            _spread_from(context, builder, sig.args[0], args[0], _offset(builder, args[1], m)) for m in range(PANEL)
+        ]
+        total, other = args[3], builder.fmul(factors[1], terms[1])  # two chains: half the latency
+        for m in range(0, PANEL, 2):
+            total = _call(builder, "fma", [factors[m], terms[m], total])
+            if m > 0:
+                other = _call(builder, "fma", [factors[m + 1], terms[m + 1], other])
+        return builder.fadd(total, other)
+
+    return lane_vector(coefficients, types.intp, panel_type, lane_vector), code
+
+
+# ----------------------------------------------------------------------------------------------------
+# What the kernel works on. Shapes in axis names; every (.., lane) array is contiguous.
+# ----------------------------------------------------------------------------------------------------
+class Modal(NamedTuple):
+    """The modes, in uncoupled groups (in plane, out of plane), each padded to whole panels.
+
+    A *row* is one scalar generalised displacement of a group: its contact directions first, then its force
+    channels. ``shapes`` holds for each group a (row, mode of the group) matrix, flat, from ``shape_start``.
+    """
+
+    dt: float
+    mode_start: np.ndarray  # (group + 1,) first mode of each group, multiples of PANEL
+    row_start: np.ndarray  # (group + 1,) first row of each group
+    force_row_start: np.ndarray  # (group,) first row of each group that is a force channel
+    row_force_channel: np.ndarray  # (row,) force channel of the row, -1 for a contact row
+    shapes: np.ndarray  # flat [kg^-1/2]
+    shape_start: np.ndarray  # (group,)
+    velocity_from_velocity: np.ndarray  # (mode,) the Newmark step, see integrate.newmark_coefficients
+    velocity_from_displacement: np.ndarray  # (mode,)
+    velocity_from_force: np.ndarray  # (mode,)
+    displacement_from_displacement: np.ndarray  # (mode,)
+    displacement_from_velocity: np.ndarray  # (mode,)
+    displacement_from_force: np.ndarray  # (mode,)
+    loss: np.ndarray  # (mode,) damping * dt / 4: energy lost in a step per (v0 + v1)²
+    compliance: np.ndarray  # flat (contact row, contact row) of each group [m/N]: end displacement per force sum
+    compliance_start: np.ndarray  # (group,)
+
+
+class Contact(NamedTuple):
+    """Local force laws at the contact points, one column per parameter, each (point, lane)."""
+
+    row_1: np.ndarray  # (point,) row of the first transverse direction
+    row_2: np.ndarray  # (point,) row of the second
+    support: np.ndarray  # (point,) support the point belongs to
+    stiffness: np.ndarray  # (point, lane) N/m
+    gap: np.ndarray  # (point, lane) m
+    offset_1: np.ndarray  # (point, lane) m
+    offset_2: np.ndarray  # (point, lane) m
+    tolerance: float  # relative change of the contact forces at which the fixed point stops
+    passes: int  # at most
+    limit: float  # m, a displacement beyond it means that the run has diverged
+
+
+class State(NamedTuple):
+    """What one step hands to the next."""
+
+    displacement: np.ndarray  # (RATIO, mode, lane) m kg^1/2, the last RATIO steps, the present one last between ticks
+    velocity: np.ndarray  # (mode, lane)
+    row_displacement: np.ndarray  # (row, lane) m, contact rows only
+    row_force: np.ndarray  # (row, lane) N, force on the structure at the end of the last step
+    row_force_before: np.ndarray  # (row, lane) N, one step earlier (starts the fixed point)
+    row_pull: np.ndarray  # (row, lane) m, compliance of a step times row_force
+    row_pull_before: np.ndarray  # (row, lane) m
+    touching: np.ndarray  # (support, lane) 1.0 while in contact
+    average: np.ndarray  # (slot, mode + extra channel, lane) first stage of the output filter
+    flag: np.ndarray  # (2,) int64: contact forces non-zero at the end of the last step; steps done
+
+
+class Tally(NamedTuple):
+    """Sums over the steps since they were last cleared, each (.., lane)."""
+
+    input_work: np.ndarray  # (lane,) J
+    contact_work: np.ndarray  # (lane,) J, trapezoidal sum of f du
+    dissipated: np.ndarray  # (lane,) J, by the modal damping
+    contact_steps: np.ndarray  # (support, lane)
+    impacts: np.ndarray  # (support, lane)
+    peak_force: np.ndarray  # (support, lane) N
+    square_force: np.ndarray  # (support, lane) N² sum
+    force_sum: np.ndarray  # (support, lane) N sum
+    impact_velocity_square: np.ndarray  # (support, lane) (m/s)² sum over impacts
+    impact_velocity_peak: np.ndarray  # (support, lane) m/s
+    sliding_work: np.ndarray  # (support, lane) J: normal force times sliding distance
+    force_displacement: np.ndarray  # (row, lane) N m sum of force times displacement
+    square_displacement: np.ndarray  # (row, lane) m² sum, every RATIO-th step
+    residual: np.ndarray  # (lane,) largest relative change in the last pass of the fixed point
+    square_stress: np.ndarray  # (section, lane) Pa² sum, every RATIO-th step
+    peak_square_stress: np.ndarray  # (section, lane) Pa²
+
+
+class Work(NamedTuple):
+    """Scratch space of a step."""
+
+    free: np.ndarray  # (row, lane) m
+    base: np.ndarray  # (row, lane) m
+    displacement: np.ndarray  # (row, lane) m
+    force: np.ndarray  # (row, lane) N
+    pull: np.ndarray  # (row, lane) m
+    force_sum: np.ndarray  # (row, lane) N
+    next_drive: np.ndarray  # (row, lane) N
+    channels: np.ndarray  # (displacement channel + 2 stress channels per section + 1, lane)
+
+
+class Output(NamedTuple):
+    """What is kept at the first decimated rate."""
+
+    weights: np.ndarray  # (RATIO, SLOTS) first-stage filter, by phase and slot
+    channel_start: np.ndarray  # (group + 1,) first entry of each group in channel
+    channel: np.ndarray  # (entry,) output channel that the entry adds to; displacements first, then stresses; the last
+    # channel takes the entries that fill a group's last block of CHANNEL_BLOCK
+    shapes: np.ndarray  # flat, for each entry the shape over the modes of its group
+    shape_start: np.ndarray  # (entry,)
+    stress_start: int  # first stress channel: two per section
+    extra_support: int  # number of supports: their force resultants follow, two per support, then the force channels
+    values: np.ndarray  # (displacement channel + extra channel, column, lane): displacement [m], forces [N]
+    columns: int  # columns of values
+    column: int  # the one that the first tick of this call is written to
+
+
+# ----------------------------------------------------------------------------------------------------
+# The step
+# ----------------------------------------------------------------------------------------------------
+@njit(**INLINE)
+def project_free(modal, g, i, drive, q, v, free):
+    """Add to ``free`` what one panel at (q, v) will displace the contact rows by in a step without contact force."""
+    width = modal.mode_start[g + 1] - modal.mode_start[g]
+    row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
+    at = modal.shape_start[g] + i - modal.mode_start[g]
+    f = panel_zero()
+    for r in range(row_f, row1):
+        f = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(drive, r), f)
+    ahead = panel_plus_scaled(modal.displacement_from_displacement, i, q, panel_zero())
+    ahead = panel_plus_scaled(modal.displacement_from_velocity, i, v, ahead)
+    ahead = panel_plus_scaled(modal.displacement_from_force, i, f, ahead)
+    for r in range(row0, row_f):
+        store(free, r, vector_plus_dot(modal.shapes, at + (r - row0) * width, ahead, load(free, r)))
+
+
+@njit(**INLINE)
+def clear(array):
+    """Every vector of an array to zero."""
+    for i in range(array.size // LANES):
+        store(array, i, spread(0.0))
+
+
+@njit(**INLINE)
+def predict(modal, state, drive, free):
+    """Contact-row displacements at the end of the first step of a call if no contact force acted: ``free`` (row, lane)."""
+    clear(free)
+    present = (RATIO - 1) * modal.mode_start[-1]
+    for g in range(modal.mode_start.size - 1):
+        for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
+            q, v = load_panel(state.displacement, present + i), load_panel(state.velocity, i)
+            project_free(modal, g, i, drive, q, v, free)
+
+
+@njit(**INLINE)
+def yield_to(modal, force, pull):
+    """pull = compliance @ force on the contact rows of every group, each (row, lane); two rows at a time."""
+    for g in range(modal.row_start.size - 1):
+        row0, row_f = modal.row_start[g], modal.force_row_start[g]
+        count = row_f - row0
+        for r in range(row0, row_f - 1, 2):
+            a, b = spread(0.0), spread(0.0)
+            at = modal.compliance_start[g] + (r - row0) * count
+            for s in range(count):
+                f = load(force, row0 + s)
+                a = fma(spread(modal.compliance[at + s]), f, a)
+                b = fma(spread(modal.compliance[at + count + s]), f, b)
+            store(pull, r, a)
+            store(pull, r + 1, b)
+        if count % 2 == 1:
+            a = spread(0.0)
+            at = modal.compliance_start[g] + (count - 1) * count
+            for s in range(count):
+                a = fma(spread(modal.compliance[at + s]), load(force, row0 + s), a)
+            store(pull, row_f - 1, a)
+
+
+@njit(**INLINE)
+def inverse_root(a):
+    """1 / sqrt(a) to double precision; a below 1e-36 counts as 1e-36.
+
+    A single-precision estimate and one step of third order cost a third of the double-precision root and division.
+    """
+    least = spread(1e-36)
+    a = select_greater(a, least, a, least)
+    y = inverse_root_estimate(a)
+    e = fma(spread(-1.0) * a * y, y, spread(1.0))
+    return fma(y * e, fma(spread(0.375), e, spread(0.5)), y)
+
+
+@njit(**INLINE)
+def reach(contact, p, u1, u2):
+    """Distance from the obstacle's centre less the gap is the penetration: (d1, d2, d², gap)."""
+    d1 = u1 - load(contact.offset_1, p)
+    d2 = u2 - load(contact.offset_2, p)
+    return d1, d2, fma(d1, d1, d2 * d2), load(contact.gap, p)
+
+
+@njit(**INLINE)
+def contact_forces(contact, p, u1, u2):
+    """Force on the structure at point p along its two directions: radial, unilateral, circular obstacle."""
+    zero = spread(0.0)
+    d1, d2, square, gap = reach(contact, p, u1, u2)
+    if not any_greater(square, gap * gap):
+        return zero, zero
+    # -k (r - gap) d / r = k (gap / r - 1) d, kept only where r > gap
+    k = load(contact.stiffness, p)
+    per_metre = select_greater(square, gap * gap, k * fma(gap, inverse_root(square), spread(-1.0)), zero)
+    return per_metre * d1, per_metre * d2
+
+
+@njit(**INLINE)
+def solve_contact(contact, modal, state, tally, free, base, u, force, pull):
+    """End-of-step contact forces and contact-row displacements, implicit; True if any lane may be in contact.
+
+    Solves u = free + G (f_before + f(u)), G the compliance of a step, by fixed point, lane by lane: a lane whose forces
+    have settled is frozen, so it does not see how many passes its neighbours need. The contraction factor is
+    checked before the run (integrate.contact_contraction). Products with G are kept from step to step (``pull``).
+    """
+    zero, one, half = spread(0.0), spread(1.0), spread(0.5)
+    opened = zero
+    for p in range(contact.row_1.size):
+        r1, r2 = contact.row_1[p], contact.row_2[p]
+        b1, b2 = load(free, r1) + load(state.row_pull, r1), load(free, r2) + load(state.row_pull, r2)
+        store(base, r1, b1)
+        store(base, r2, b2)
+        _, _, square, gap = reach(contact, p, b1, b2)
+        opened = select_greater(square, gap * gap, one, opened)
+    near = any_greater(opened, half)
+    for p in range(contact.row_1.size):
+        for r in (contact.row_1[p], contact.row_2[p]):
+            # start from the forces of the last two steps, extrapolated
+            f, move = load(state.row_force, r), load(state.row_pull, r)
+            f = select_greater(opened, half, f + f - load(state.row_force_before, r), zero)
+            move = select_greater(opened, half, move + move - load(state.row_pull_before, r), zero)
+            store(force, r, f)
+            store(pull, r, move)
+            store(u, r, load(base, r) + move)
+    if not near:
+        return False
+    change, size = zero, zero
+    tolerance = spread(contact.tolerance)
+    for _ in range(contact.passes):
+        moved, size = zero, zero
+        for p in range(contact.row_1.size):
+            r1, r2 = contact.row_1[p], contact.row_2[p]
+            f1, f2 = contact_forces(contact, p, load(u, r1), load(u, r2))
+            old1, old2 = load(force, r1), load(force, r2)
+            f1 = select_greater(opened, half, f1, old1)
+            f2 = select_greater(opened, half, f2, old2)
+            moved = moved + magnitude(f1 - old1) + magnitude(f2 - old2)
+            size = size + magnitude(f1) + magnitude(f2)
+            store(force, r1, f1)
+            store(force, r2, f2)
+        change = select_greater(opened, half, moved, change)
+        yield_to(modal, force, pull)
+        for p in range(contact.row_1.size):
+            for r in (contact.row_1[p], contact.row_2[p]):
+                store(u, r, load(base, r) + load(pull, r))
+        opened = select_greater(moved, tolerance * size, opened, zero)
+        if not any_greater(opened, half):
+            break
+    worst = load(tally.residual, 0)
+    relative = select_greater(size, zero, change / size, zero)
+    store(tally.residual, 0, select_greater(relative, worst, relative, worst))
+    return True
+
+
+@njit(**INLINE)
+def impact_speed(modal, contact, state, u, force, first, s):
+    """Largest outward speed over a step among the points of support s (from point ``first`` on) that bear a force."""
+    speed, zero = spread(0.0), spread(0.0)
+    p = first
+    while p < contact.row_1.size and contact.support[p] == s:
+        r1, r2 = contact.row_1[p], contact.row_2[p]
+        f1, f2 = load(force, r1), load(force, r2)
+        square = fma(f1, f1, f2 * f2)
+        du1, du2 = load(u, r1) - load(state.row_displacement, r1), load(u, r2) - load(state.row_displacement, r2)
+        # the force points inwards along the radius
+        outward = select_greater(square, zero, (zero - fma(f1, du1, f2 * du2)) / root(square), zero)
+        speed = select_greater(outward, speed, outward, speed)
+        p += 1
+    return speed * spread(1.0 / modal.dt)
+
+
+@njit(**INLINE)
+def tally_contact(modal, contact, state, tally, u, force):
+    """Contact work and statistics of one step; state.row_* still hold the start of the step. 1 if any lane touches."""
+    zero, one, half = spread(0.0), spread(1.0), spread(0.5)
+    work = load(tally.contact_work, 0)
+    touched = 0
+    p = 0
+    for s in range(tally.impacts.size // LANES):
+        first = p
+        sum1, sum2, borne = zero, zero, zero
+        sliding = load(tally.sliding_work, s)
+        while p < contact.row_1.size and contact.support[p] == s:
+            r1, r2 = contact.row_1[p], contact.row_2[p]
+            u1, u2, f1, f2 = load(u, r1), load(u, r2), load(force, r1), load(force, r2)
+            du1, du2 = u1 - load(state.row_displacement, r1), u2 - load(state.row_displacement, r2)
+            work = fma(half * (f1 + load(state.row_force, r1)), du1, work)
+            work = fma(half * (f2 + load(state.row_force, r2)), du2, work)
+            store(tally.force_displacement, r1, fma(f1, u1, load(tally.force_displacement, r1)))
+            store(tally.force_displacement, r2, fma(f2, u2, load(tally.force_displacement, r2)))
+            sliding = sliding + magnitude(fma(f1, du2, zero - f2 * du1))  # |f| times the slip across it
+            borne = borne + magnitude(f1) + magnitude(f2)
+            sum1, sum2 = sum1 + f1, sum2 + f2
+            p += 1
+        contact_now = select_greater(borne, zero, one, zero)
+        if any_greater(contact_now, half):
+            touched = 1
+            square = fma(sum1, sum1, sum2 * sum2)
+            resultant = root(square)
+            peak = load(tally.peak_force, s)
+            store(tally.peak_force, s, select_greater(resultant, peak, resultant, peak))
+            store(tally.square_force, s, load(tally.square_force, s) + square)
+            store(tally.force_sum, s, load(tally.force_sum, s) + resultant)
+            store(tally.contact_steps, s, load(tally.contact_steps, s) + contact_now)
+            store(tally.sliding_work, s, sliding)
+            onset = select_greater(contact_now, load(state.touching, s), one, zero)
+            if any_greater(onset, half):
+                speed = onset * impact_speed(modal, contact, state, u, force, first, s)
+                store(tally.impacts, s, load(tally.impacts, s) + onset)
+                store(tally.impact_velocity_square, s, fma(speed, speed, load(tally.impact_velocity_square, s)))
+                peak = load(tally.impact_velocity_peak, s)
+                store(tally.impact_velocity_peak, s, select_greater(speed, peak, speed, peak))
+        store(state.touching, s, contact_now)
+    store(tally.contact_work, 0, work)
+    return touched
+
+
+@njit(**INLINE)
+def update(modal, state, tally, force_sum, next_drive, in_contact, phase, free):
+    """Advance the modes by one step under the row forces and predict the next step's ``free``; sum the energies."""
+    half_dt = spread(0.5 * modal.dt)
+    zero, half = spread(0.0), spread(0.5)
+    modes = modal.mode_start[-1]
+    before, after = ((phase + RATIO - 1) % RATIO) * modes, phase * modes
+    work, lost = load(tally.input_work, 0), load(tally.dissipated, 0)
+    clear(free)
+    for g in range(modal.mode_start.size - 1):
+        first = modal.mode_start[g]
+        width = modal.mode_start[g + 1] - first
+        row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
+        begin = row0 if in_contact else row_f
+        for i in range(first, first + width, PANEL):
+            at = modal.shape_start[g] + i - first
+            f = panel_zero()
+            for r in range(begin, row1):
+                f = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(force_sum, r), f)
+            q0, v0 = load_panel(state.displacement, before + i), load_panel(state.velocity, i)
+            v = panel_plus_scaled(modal.velocity_from_velocity, i, v0, panel_zero())
+            v = panel_plus_scaled(modal.velocity_from_displacement, i, q0, v)
+            v = panel_plus_scaled(modal.velocity_from_force, i, f, v)
+            twice_mean = panel_sum(v0, v)
+            q = panel_plus_common(half_dt, twice_mean, q0)
+            store_panel(state.displacement, after + i, q)
+            store_panel(state.velocity, i, v)
+            lost = lost + vector_plus_dot(modal.loss, i, panel_product(twice_mean, twice_mean), zero)
+            for r in range(row_f, row1):
+                moved = vector_plus_dot(modal.shapes, at + (r - row0) * width, twice_mean, zero) * half_dt
+                work = fma(half * load(force_sum, r), moved, work)
+            project_free(modal, g, i, next_drive, q, v, free)
+    store(tally.input_work, 0, work)
+    store(tally.dissipated, 0, lost)
+
+
+@njit(**INLINE)
+def average_modes(modal, state, output, tick):
+    """Feed the modal displacements of the RATIO steps of a tick to the first stage of the output filter."""
+    modes = modal.mode_start[-1]
+    extras = state.average.size // (SLOTS * LANES)
+    for i in range(0, modes, PANEL):
+        for slot in range(SLOTS):
+            at = ((tick + slot) % SLOTS) * extras + i
+            total = load_panel(state.average, at)
+            for phase in range(RATIO):
+                weight = spread(output.weights[phase, slot])
+                total = panel_plus_common(weight, load_panel(state.displacement, phase * modes + i), total)
+            store_panel(state.average, at, total)
+
+
+@njit(**INLINE)
+def filter_forces(modal, contact, state, output, force, drive, end, forces, touched, phase, tick):
+    """Feed support force resultants and the drive forces (from vector ``end`` of drive) to the first filter stage."""
+    modes = modal.mode_start[-1]
+    extras = state.average.size // (SLOTS * LANES)
+    for slot in range(SLOTS):
+        weight = output.weights[phase, slot]
+        if weight == 0.0:
+            continue
+        a = ((tick + slot) % SLOTS) * extras + modes
+        w = spread(weight)
+        if touched != 0:
+            for p in range(contact.row_1.size):
+                at = a + 2 * contact.support[p]
+                store(state.average, at, fma(w, load(force, contact.row_1[p]), load(state.average, at)))
+                store(state.average, at + 1, fma(w, load(force, contact.row_2[p]), load(state.average, at + 1)))
+        at = a + 2 * output.extra_support
+        for c in range(forces):
+            store(state.average, at + c, fma(w, load(drive, end + c), load(state.average, at + c)))
+
+
+@njit(**INLINE)
+def project_channels(modal, g, output, average, channels):
+    """Add the modes of group g, averaged (from vector 0 of its slot at ``average[1]``), to the output channels."""
+    array, base = average
+    first = modal.mode_start[g]
+    width = modal.mode_start[g + 1] - first
+    for e in range(output.channel_start[g], output.channel_start[g + 1], CHANNEL_BLOCK):
+        a, b, c, d = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        at = output.shape_start[e]
+        for i in range(0, width, PANEL):
+            q = load_panel(array, base + first + i)
+            a = vector_plus_dot(output.shapes, at + i, q, a)
+            b = vector_plus_dot(output.shapes, at + width + i, q, b)
+            c = vector_plus_dot(output.shapes, at + 2 * width + i, q, c)
+            d = vector_plus_dot(output.shapes, at + 3 * width + i, q, d)
+        store(channels, output.channel[e], load(channels, output.channel[e]) + a)
+        store(channels, output.channel[e + 1], load(channels, output.channel[e + 1]) + b)
+        store(channels, output.channel[e + 2], load(channels, output.channel[e + 2]) + c)
+        store(channels, output.channel[e + 3], load(channels, output.channel[e + 3]) + d)
+
+
+@njit(**INLINE)
+def emit(modal, state, tally, output, tick, at_tick, channels):
+    """Finish the oldest output of the first stage: channels to output.values, stress to the tally; clear it."""
+    zero = spread(0.0)
+    modes = modal.mode_start[-1]
+    extras = state.average.size // (SLOTS * LANES)
+    base = (tick % SLOTS) * extras
+    column = output.column + at_tick
+    clear(channels)
+    for g in range(modal.mode_start.size - 1):
+        project_channels(modal, g, output, (state.average, base), channels)
+    for c in range(output.stress_start):
+        store(output.values, c * output.columns + column, load(channels, c))
+    for x in range(extras - modes):
+        store(output.values, (output.stress_start + x) * output.columns + column, load(state.average, base + modes + x))
+    for s in range(tally.peak_square_stress.size // LANES):
+        s1, s2 = load(channels, output.stress_start + 2 * s), load(channels, output.stress_start + 2 * s + 1)
+        square = fma(s1, s1, s2 * s2)
+        store(tally.square_stress, s, load(tally.square_stress, s) + square)
+        peak = load(tally.peak_square_stress, s)
+        store(tally.peak_square_stress, s, select_greater(square, peak, square, peak))
+    for x in range(extras):
+        store(state.average, base + x, zero)
+
+
+@njit(**INLINE)
+def sum_drive(modal, drive, n, forces, out):
+    """Sum of the drive forces at both ends of step n on their rows: ``out`` (row, lane)."""
+    for r in range(modal.row_force_channel.size):
+        c = modal.row_force_channel[r]
+        if c >= 0:
+            store(out, r, load(drive, n * forces + c) + load(drive, (n + 1) * forces + c))
+
+
+@njit(**COMPILED)
+def march(modal, contact, state, tally, output, work, drive):
+    """Integrate whole ticks of RATIO steps; ``drive`` (step + 2, force_channel, lane) N: the force at the
+    start of the first step, at the end of every step, and one more.
+
+    Newmark average acceleration on the modes, contact implicit. Fills output.values (one column per tick: the
+    filter output centred RATIO steps before the tick), adds to ``tally`` and advances ``state`` in place.
+    Returns the number of steps done; fewer than asked means that the run diverged there.
+    """
+    rows = state.row_force.size // LANES
+    forces = drive.shape[1]
+    steps = drive.shape[0] - 2
+    free, base, u, force, pull, force_sum, next_drive, channel_values = work
+    limit = spread(contact.limit)
+    zero, half, one = spread(0.0), spread(0.5), spread(1.0)
+    sum_drive(modal, drive, 0, forces, next_drive)
+    predict(modal, state, next_drive, free)
+    for at_tick in range(steps // RATIO):
+        tick = state.flag[1] // RATIO
+        for phase in range(RATIO):
+            n = at_tick * RATIO + phase
+            sum_drive(modal, drive, n, forces, force_sum)
+            sum_drive(modal, drive, n + 1, forces, next_drive)
+            pushed = state.flag[0] != 0
+            active = solve_contact(contact, modal, state, tally, free, base, u, force, pull)
+            touched = 0
+            if active or pushed:
+                touched = tally_contact(modal, contact, state, tally, u, force)
+                for g in range(modal.row_start.size - 1):
+                    for r in range(modal.row_start[g], modal.force_row_start[g]):
+                        store(force_sum, r, load(state.row_force, r) + load(force, r))
+            update(modal, state, tally, force_sum, next_drive, active or pushed, phase, free)
+            filter_forces(modal, contact, state, output, force, drive, (n + 1) * forces, forces, touched, phase, tick)
+            for g in range(modal.row_start.size - 1):
+                for r in range(modal.row_start[g], modal.force_row_start[g]):
+                    store(state.row_displacement, r, load(u, r))
+                    store(state.row_force_before, r, load(state.row_force, r))
+                    store(state.row_force, r, load(force, r))
+                    store(state.row_pull_before, r, load(state.row_pull, r))
+                    store(state.row_pull, r, load(pull, r))
+            state.flag[0] = touched
+            state.flag[1] += 1
+        for g in range(modal.row_start.size - 1):
+            for r in range(modal.row_start[g], modal.force_row_start[g]):
+                ur = load(u, r)
+                store(tally.square_displacement, r, fma(ur, ur, load(tally.square_displacement, r)))
+                lost = select_greater(limit, magnitude(ur), zero, one)  # a NaN is lost too
+                if any_greater(lost, half):
+                    return (at_tick + 1) * RATIO
+        average_modes(modal, state, output, tick)
+        emit(modal, state, tally, output, tick, at_tick, channel_values)
+    return steps
+
+
+@njit(**COMPILED)
+def decimate(values, taps, out, out_start, step, buffer):
+    """Second stage of the output filter, lane by lane.
+
+    ``values`` (channel, tick, lane) flat with ``taps.size - 1`` ticks of history in front; ``out`` (lane, channel,
+    sample) receives sample j = sum of taps times values from tick j * step on, at ``out_start + j``; buffer (lane,).
+    """
+    lanes, channels, _ = out.shape
+    ticks = values.size // (channels * LANES)
+    count = (ticks - taps.size) // step + 1
+    for c in range(channels):
+        for j in range(count):
+            at = c * ticks + j * step
+            a, b, d, e = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+            k = 0
+            while k + 3 < taps.size:  # four independent sums hide the latency of the multiply-add
+                a = fma(spread(taps[k]), load(values, at + k), a)
+                b = fma(spread(taps[k + 1]), load(values, at + k + 1), b)
+                d = fma(spread(taps[k + 2]), load(values, at + k + 2), d)
+                e = fma(spread(taps[k + 3]), load(values, at + k + 3), e)
+                k += 4
+            while k < taps.size:
+                a = fma(spread(taps[k]), load(values, at + k), a)
+                k += 1
+            store(buffer, 0, (a + b) + (d + e))
+            for lane in range(lanes):
+                out[lane, c, out_start + j] = buffer[lane]

@@ -1,0 +1,101 @@
+"""Where a result comes from: digests of the configuration and of the source, versions, and the library files that a script imports."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import platform
+from collections.abc import Iterable, Mapping
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+PACKAGE = "vibroimpact"
+VERSIONED = ("numpy", "scipy", "numba", "xarray", "netCDF4", "matplotlib")
+DIGEST_LENGTH = 16
+
+
+def config_digest(params: Mapping[str, Any]) -> str:
+    """Return 16 hexadecimal digits that stand for the keys and values of one stage (stages.stage_params), in any order."""
+    text = json.dumps(params, sort_keys=True, default=dict)
+    return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
+
+
+def source_digest(files: Iterable[Path | str]) -> str:
+    """Return 16 hexadecimal digits that stand for the names and contents of library files."""
+    digest = hashlib.sha256()
+    for file in sorted(map(Path, files), key=lambda file: file.name):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:DIGEST_LENGTH]
+
+
+def versions() -> dict[str, str]:
+    """Return {name: version} of Python and of the packages that results depend on."""
+    found = {"python": platform.python_version()}
+    for name in VERSIONED:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+def origin(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
+    """Return the attributes that every written file carries: digests of a stage's keys and sources, and versions."""
+    library = [file for file in files if Path(file).suffix == ".py"]
+    return {"config_digest": config_digest(params), "source_digest": source_digest(library),
+            "versions": " ".join(f"{name} {version}" for name, version in versions().items())}
+
+
+def imported_files(script: Path | str, source: Path | str) -> list[Path]:
+    """Return the library files that a script imports, directly or through others, sorted.
+
+    script: a Python file. source: the folder that holds the package (src). Imports inside functions count; so does the __init__.py of
+    every package on the way. Nothing is executed: imports made from computed names are not seen.
+    Raises SyntaxError when a file is not Python, FileNotFoundError when the script does not exist.
+    """
+    source = Path(source)
+    found: set[Path] = set()
+    waiting = [Path(script)]
+    while waiting:
+        file = waiting.pop()
+        for name in _imported_names(file, source):
+            for module in _files_of(name, source):
+                if module not in found:
+                    found.add(module)
+                    waiting.append(module)
+    return sorted(found)
+
+
+def _imported_names(file: Path, source: Path) -> set[str]:
+    """Return the dotted names that a file imports and that may be modules of the package, e.g. vibroimpact.cases."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), filename=str(file))):
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join(filter(None, [_package_above(file, source, node.level), node.module]))
+            names.add(base)
+            names.update(f"{base}.{alias.name}" for alias in node.names)
+    return {name for name in names if name.split(".")[0] == PACKAGE}
+
+
+def _package_above(file: Path, source: Path, level: int) -> str:
+    """Return the dotted package that `level` leading dots mean in a file; '' for an absolute import."""
+    if level == 0:
+        return ""
+    parts = file.resolve().relative_to(source.resolve()).parts[:-1]
+    return ".".join(parts[: len(parts) - level + 1])
+
+
+def _files_of(name: str, source: Path) -> list[Path]:
+    """Return the files that importing a dotted name executes: each package's __init__.py and the module itself."""
+    files, folder = [], source
+    for part in name.split("."):
+        if (folder / f"{part}.py").is_file():
+            return [*files, folder / f"{part}.py"]
+        folder = folder / part
+        if (folder / "__init__.py").is_file():
+            files.append(folder / "__init__.py")
+    return files

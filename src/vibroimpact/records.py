@@ -1,0 +1,172 @@
+"""All netCDF and table reading and writing: one place, one declaration of every variable of a record."""
+
+import csv
+import os
+from dataclasses import fields
+from datetime import UTC, datetime
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import xarray as xr
+
+from .model import ModalModel
+
+# name: (dimensions, dtype, units, long name)
+VARIABLES = {
+    "displacement": (("sensor", "time"), "f4", "m", "displacement"),
+    "acceleration": (("sensor", "time"), "f4", "m s-2", "acceleration"),
+    "line_displacement": (("line_point", "time"), "f4", "m", "displacement along the shape line"),
+    "support_force": (("support", "direction", "time"), "f4", "N", "force of the structure on the support"),
+    "force": (("time",), "f4", "N", "drive force"),
+    "stress_rms": (("section",), "f8", "Pa", "RMS of the outer-fibre bending stress (10240 Hz for 51200 steps per second)"),
+    "stress_peak": (("section",), "f8", "Pa", "largest outer-fibre bending stress"),
+    "stress_flag": ((), "i1", "1", "1 when the peak stress exceeds record.stress_limit_Pa"),
+    "contact_fraction": (("support",), "f8", "1", "fraction of time in contact"),
+    "impact_count": (("support",), "i4", "1", "number of contacts begun"),
+    "impact_rate": (("support",), "f8", "s-1", "contacts begun per unit time"),
+    "peak_force": (("support",), "f8", "N", "largest resultant support force"),
+    "rms_force": (("support",), "f8", "N", "RMS of the resultant support force"),
+    "mean_impulse": (("support",), "f8", "N s", "mean impulse of a contact"),
+    "impact_velocity_rms": (("support",), "f8", "m s-1", "RMS radial velocity at the begin of a contact"),
+    "impact_velocity_max": (("support",), "f8", "m s-1", "largest radial velocity at the begin of a contact"),
+    "wear_work_rate": (("support",), "f8", "W", "normal force times sliding speed, mean over time"),
+    "force_displacement": (("contact_point", "direction"), "f8", "N m", "mean of restoring force times displacement"),
+    "displacement_square": (("contact_point", "direction"), "f8", "m2", "mean square displacement"),
+    "energy": (("energy_term", "energy_time"), "f8", "J", "energies since the start of the simulation"),
+    "energy_residual": ((), "f8", "1", "energy identity of the scheme, relative to the input work"),
+    "potential_energy_residual": ((), "f8", "1", "energy balance with the contact's potential energy, relative to the input work"),
+    "fixed_point_residual": ((), "f8", "1", "bound of the relative error of the implicit contact forces, worst step"),
+}
+COORDINATES = {
+    "time": (("time",), "s"),
+    "sensor": (("sensor",), None),
+    "line_arc_length": (("line_point",), "m"),
+    "support": (("support",), None),
+    "section": (("section",), None),
+    "energy_term": (("energy_term",), None),
+    "energy_time": (("energy_time",), "s"),
+}
+
+
+class RecordError(Exception):
+    """A file that can not be read or written; the message names it."""
+
+
+def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
+    """A dataset of declared variables with their dimensions, units and names. Raises KeyError for an undeclared one."""
+    data = {}
+    for name, value in values.items():
+        dims, dtype, units, long_name = VARIABLES[name]
+        data[name] = (dims, np.asarray(value, dtype), {"units": units, "long_name": long_name})
+    coords = {name: (COORDINATES[name][0], value, {"units": COORDINATES[name][1]} if COORDINATES[name][1] else {})
+              for name, value in coordinates.items()}  # fmt: skip
+    return xr.Dataset(data, coords, attributes)
+
+
+def split_record(record: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
+    """(statistics and energies, time series) of a record; both keep the attributes."""
+    series = [name for name, variable in record.data_vars.items() if "time" in variable.dims]
+    return record.drop_vars(series).drop_dims("time", errors="ignore"), record[series]
+
+
+def write_record(dataset: xr.Dataset, path) -> None:
+    """Write a dataset as netCDF-4: to a temporary name in the same folder, then renamed, so no half-written file is left.
+
+    float32 time series are stored as they are: their noise does not compress, and deflating it costs more than the simulation.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    dataset = dataset.assign_attrs(
+        Conventions="CF-1.11",
+        title=dataset.attrs.get("title", "vibroimpact record"),
+        history=f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
+    )
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    encoding = {name: {"_FillValue": None} for name in [*dataset.data_vars, *dataset.coords]}
+    try:
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_record(path) -> xr.Dataset:
+    """The dataset of a file, loaded, file closed. Raises RecordError when there is no such file or it is not netCDF."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read as netCDF ({error}): delete it and run again") from error
+
+
+def read_variable(path) -> tuple[dict[str, np.ndarray], dict]:
+    """Every numeric variable of a netCDF file by name, and its global attributes (for files of any origin)."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            known = {name: np.ma.filled(variable[:], np.nan) for name, variable in file.variables.items()
+                     if variable.dtype != str and variable.dtype.kind in "fiu"}  # fmt: skip
+            return known, {name: file.getncattr(name) for name in file.ncattrs()}
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read as netCDF ({error})") from error
+
+
+def write_model(model: ModalModel, path, attributes: dict | None = None) -> None:
+    """Write a reduced model as netCDF: one variable per field, SI units as in ModalModel."""
+    data = {}
+    for item in fields(ModalModel):
+        value = getattr(model, item.name)
+        if item.name.endswith("_names"):
+            data[item.name] = ((f"{item.name[:-6]}",), np.array(value, dtype=object))
+        else:
+            data[item.name] = (tuple(f"{item.name}_{axis}" for axis in range(np.ndim(value))), np.asarray(value))
+    write_record(xr.Dataset(data, attrs={"title": "vibroimpact reduced model", **(attributes or {})}), path)
+
+
+def read_model(path) -> ModalModel:
+    """The reduced model of a file written by write_model. Raises RecordError, and ValueError when a field is missing."""
+    dataset = read_record(path)
+    values = {}
+    for item in fields(ModalModel):
+        if item.name not in dataset:
+            raise ValueError(f"{path}: has no '{item.name}': it was written by another version, delete it and run again")
+        value = dataset[item.name].values
+        values[item.name] = tuple(str(name) for name in value) if item.name.endswith("_names") else value
+    return ModalModel(**values)
+
+
+def write_table(rows: list[dict], path) -> None:
+    """Write rows (all with the same keys) as CSV: floats in full precision, NaN as 'nan'. Atomic like write_record."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with open(temporary, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else [])
+            writer.writeheader()
+            writer.writerows({key: _plain(value) for key, value in row.items()} for row in rows)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_table(path) -> list[dict]:
+    """Rows of a CSV table; what reads as a number is one. Raises RecordError when there is no such file."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return [{key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read ({error.strerror})") from error
+
+
+def _plain(value):
+    return repr(float(value)) if isinstance(value, (float, np.floating)) else value
+
+
+def _number(text):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

@@ -1,0 +1,147 @@
+"""Simulating the cases of a study: forces in, one record dataset per case out."""
+
+import numpy as np
+import xarray as xr
+
+from .cases import Case, random_stream
+from .excitation import unit_force
+from .integrate import ENERGY_TERMS, Lanes, Schedule, march_lanes
+from .kernels import LANES, RATIO
+from .model import ModalModel
+from .records import describe
+
+
+def simulate_cases(config, model: ModalModel, cases: list[Case]):
+    """Yield (case, record dataset) for every case, integrating LANES of them at a time.
+
+    The record's variables, dimensions and units are those of records.VARIABLES. A case's record does not depend on
+    the other cases of the list. Raises IntegrationError, ForceError.
+    """
+    schedule = Schedule(
+        config.integration.steps_per_second,
+        config.record.sampling_frequency_Hz,
+        config.integration.start_up_s,
+        config.record.duration_s,
+    )
+    forces = {seed: seed_force(config, schedule, seed) for seed in sorted({case.seed for case in cases})}
+    for first in range(0, len(cases), LANES):
+        batch = cases[first : first + LANES]
+        lanes = march_lanes(
+            model,
+            schedule,
+            gap=np.array([case.gap_m for case in batch]),
+            imperfection=np.stack([imperfection(config, model, case) for case in batch], axis=-1),
+            drive=_drive(batch, forces),
+        )
+        for lane, case in enumerate(batch):
+            yield case, record_dataset(config, model, schedule, lanes, lane, case)
+
+
+def seed_force(config, schedule: Schedule, seed: int) -> np.ndarray:
+    """The seed's force record (sample,) at every step of the run, RMS exactly 1 over the recorded window.
+
+    Loads scale it, gaps share it, so scaling load and gap by a power of two scales a record bit for bit.
+    """
+    rate = schedule.steps_per_second
+    first = round(schedule.start_up * rate) + 1
+    recorded = slice(first, first + round(schedule.duration * rate))
+    generator = random_stream(config.seed, seed, "force")
+    return unit_force(config.excitation, generator, schedule.steps + 2, rate, recorded)
+
+
+def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
+    """Offsets (contact_point, 2) m of the obstacles' centres, drawn once per seed as a fraction of the gap.
+
+    Without them a perfectly out-of-plane force leaves the in-plane motion to round-off.
+    """
+    draw = random_stream(config.seed, case.seed, "imperfection").uniform(-1.0, 1.0, (model.support_of_point.size, 2))
+    return draw * (config.integration.imperfection * case.gap_m)
+
+
+def _drive(batch, forces):
+    loads = np.array([case.load_rms_N for case in batch])
+
+    def drive(first, count):
+        return np.stack([forces[case.seed][first : first + count] for case in batch], axis=-1)[:, None, :] * loads
+
+    return drive
+
+
+def record_dataset(config, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case) -> xr.Dataset:
+    """The record of one lane of a batch."""
+    sensors, supports = model.sensor_shapes.shape[1], len(model.support_names)
+    force = lanes.force[lane]
+    series = {
+        "displacement": lanes.displacement[lane, :sensors],
+        "acceleration": lanes.acceleration[lane],
+        "line_displacement": lanes.displacement[lane, sensors:],
+        "support_force": -force[: 2 * supports].reshape(supports, 2, -1),
+        "force": force[2 * supports],
+    }
+    coordinates = {
+        "time": np.arange(schedule.samples) / schedule.sampling_frequency,
+        "sensor": list(model.sensor_names),
+        "line_arc_length": model.line_arc_length,
+        "support": list(model.support_names),
+        "section": list(model.section_names),
+        "energy_term": list(ENERGY_TERMS),
+        "energy_time": lanes.energy_time,
+    }
+    values = series | statistics(lanes, lane, schedule) | energy_balance(lanes, lane)
+    values["stress_flag"] = np.int8(values["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa)
+    attributes = {
+        "study": config.study,
+        "case": case.id,
+        "load_rms_N": case.load_rms_N,
+        "gap_m": case.gap_m,
+        "seed": case.seed,
+        "sampling_frequency": float(schedule.sampling_frequency),
+        "steps_per_second": float(schedule.steps_per_second),
+        "start_up_s": float(schedule.start_up),
+    }
+    return describe(values, coordinates, attributes)
+
+
+def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:
+    """Contact, wear and stress statistics of one lane over the recorded steps, by variable name."""
+    tally = {name: np.asarray(value[..., lane]) for name, value in lanes.tally.items()}
+    steps, dt = lanes.steps, 1.0 / schedule.steps_per_second
+    impacts = tally["impacts"]
+    per_impact = np.divide(1.0, impacts, out=np.full(impacts.shape, np.nan), where=impacts > 0)
+    rows = lanes.contact_rows
+    return {
+        "stress_rms": np.sqrt(tally["square_stress"] * RATIO / steps),
+        "stress_peak": np.sqrt(tally["peak_square_stress"]),
+        "contact_fraction": tally["contact_steps"] / steps,
+        "impact_count": impacts.astype(np.int32),
+        "impact_rate": impacts / (steps * dt),
+        "peak_force": tally["peak_force"],
+        "rms_force": np.sqrt(tally["square_force"] / steps),
+        "mean_impulse": tally["force_sum"] * dt * per_impact,
+        "impact_velocity_rms": np.sqrt(tally["impact_velocity_square"] * per_impact),
+        "impact_velocity_max": tally["impact_velocity_peak"],
+        "wear_work_rate": tally["sliding_work"] / (steps * dt),
+        "force_displacement": -tally["force_displacement"][rows] / steps,
+        "displacement_square": tally["square_displacement"][rows] * RATIO / steps,
+    }
+
+
+def energy_balance(lanes: Lanes, lane: int) -> dict[str, np.ndarray]:
+    """Energies of one lane and the two residuals, relative to the input work at the end of the run.
+
+    energy_residual: with the contact work as the trapezoidal sum of f du, the identity of the scheme (round-off only);
+    potential_energy_residual: with the contact's potential energy in its place, which measures the step.
+    """
+    energy = lanes.energy[lane]
+    terms = dict(zip(ENERGY_TERMS, energy, strict=True))
+    mechanical = terms["kinetic"] + terms["elastic"]
+    supplied = terms["input_work"] - terms["dissipated"]
+    scale = abs(terms["input_work"][-1])
+    exact = mechanical - supplied - terms["contact_work"]
+    potential = mechanical + terms["contact_potential"] - supplied
+    return {
+        "energy": energy,
+        "energy_residual": np.max(np.abs(exact)) / scale,
+        "potential_energy_residual": np.max(np.abs(potential)) / scale,
+        "fixed_point_residual": lanes.fixed_point_residual[lane] * lanes.contraction,
+    }

@@ -1,0 +1,82 @@
+"""A simulated case: exact load, independence of the batch, published orders of magnitude, the stress flag."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.cases import Case
+from vibroimpact.settings import Settings
+from vibroimpact.simulate import simulate_cases
+
+GAP = 2.8886e-4
+
+
+@pytest.fixture(scope="module")
+def short_config(study_config):
+    """The study with 0.5 s of start-up and 3 s of record."""
+    values = study_config.model_dump(mode="json")
+    values["integration"]["start_up_s"] = 0.5
+    values["record"]["duration_s"] = 3.0
+    values["record"]["stress_limit_Pa"] = 60.0e6
+    return Settings(values)
+
+
+@pytest.fixture(scope="module")
+def cases():
+    return [Case(load, gap, seed) for load in (0.5, 20.0) for gap in (GAP, 2 * GAP) for seed in (0, 1, 2)]
+
+
+@pytest.fixture(scope="module")
+def records(short_config, study_model, cases):
+    return dict(simulate_cases(short_config, study_model, cases))
+
+
+def test_force_record_has_the_load_of_the_case(records):
+    for case, record in records.items():
+        # over the record the full-rate force has exactly this RMS; the filtered samples come close to it
+        assert float(np.sqrt((record.force**2).mean())) == pytest.approx(case.load_rms_N, rel=5e-3)
+
+
+def test_a_case_does_not_depend_on_the_list_it_was_in(short_config, study_model, records, cases):
+    picked = cases[7]
+    ((_, alone),) = simulate_cases(short_config, study_model, [picked])
+    assert alone.equals(records[picked])
+
+
+def test_scaling_load_and_gap_scales_the_record_bit_for_bit(short_config, study_model, records):
+    ((_, doubled),) = simulate_cases(short_config, study_model, [Case(40.0, 2 * GAP, 1)])
+    single = records[Case(20.0, GAP, 1)]
+    for name in ("displacement", "acceleration", "line_displacement", "support_force"):
+        assert np.array_equal(doubled[name], 2 * single[name]), name
+    assert np.array_equal(doubled.contact_fraction, single.contact_fraction)
+
+
+def test_below_contact_nothing_moves_in_plane(records):
+    record = records[Case(0.5, GAP, 0)]
+    assert int(record.impact_count.sum()) == 0
+    assert float(np.abs(record.displacement.sel(sensor=["apex.x", "left_leg.x"])).max()) == 0.0
+    assert np.isnan(record.impact_velocity_rms).all()
+    assert float(record.wear_work_rate.max()) == 0.0
+
+
+def test_stress_at_20_newton_is_that_of_the_testbed(records):
+    """testbed.md: about 34 MPa RMS and 144 MPa peak over 49 s at the plate; a short record has less of a peak."""
+    chosen = [records[Case(20.0, GAP, seed)] for seed in (0, 1, 2)]
+    plate = np.mean([[record.stress_rms.sel(section=name) for name in ("left_middle", "right_middle")] for record in chosen])
+    assert plate == pytest.approx(34e6, rel=0.2)
+    assert all(int(record.stress_flag) == int(record.stress_peak.max() > 60e6) for record in records.values())
+    assert any(int(record.stress_flag) for record in chosen)
+    assert not int(records[Case(0.5, GAP, 0)].stress_flag)
+
+
+def test_records_balance_their_energy(records):
+    for record in records.values():
+        assert float(record.energy_residual) < 1e-9
+        assert float(record.potential_energy_residual) < 3e-3
+        assert float(record.fixed_point_residual) < 1e-6
+
+
+def test_secant_stiffness_lies_between_zero_and_the_contact_s(records):
+    record = records[Case(20.0, GAP, 0)]
+    secant = record.force_displacement / record.displacement_square
+    assert float(secant.min()) > 0.0
+    assert float(secant.max()) < 8e5

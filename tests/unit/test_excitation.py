@@ -1,0 +1,110 @@
+"""Forces: band, RMS, Gaussian amplitude, independence of seeds; measured records come back at another rate."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.io import savemat
+
+from vibroimpact.cases import random_stream
+from vibroimpact.excitation import ForceError, band_limited_noise, resample_measured, unit_force
+from vibroimpact.force_files import ForceFileError, read_force
+
+BAND = (5.0, 200.0)
+
+
+def test_noise_stays_in_its_band_and_is_flat():
+    rate = 2048.0
+    values = band_limited_noise(np.random.default_rng(1), 2**16, rate, BAND)
+    frequency = np.fft.rfftfreq(values.size, 1 / rate)
+    power = np.abs(np.fft.rfft(values)) ** 2
+    inside = (frequency > 5.5) & (frequency < 199.5)
+    assert power[(frequency < 4.5) | (frequency > 200.5)].max() < 1e-12 * power[inside].mean()
+    blocks = np.array([part.mean() for part in np.array_split(power[inside], 20)])
+    assert np.all(np.abs(blocks / blocks.mean() - 1) < 6 / np.sqrt(inside.sum() / 20))
+
+
+def test_noise_is_gaussian_with_unit_rms():
+    values = band_limited_noise(np.random.default_rng(2), 2**18, 2048.0, BAND)
+    assert values.std() == pytest.approx(1.0, abs=0.02)
+    assert np.mean(values**4) / np.mean(values**2) ** 2 == pytest.approx(3.0, abs=0.1)
+
+
+def test_seeds_are_independent_and_reproducible():
+    one, other, again = (
+        band_limited_noise(random_stream(2012, seed, "force"), 2**17, 2048.0, BAND) for seed in (0, 1, 0)
+    )
+    assert np.array_equal(one, again)
+    assert abs(np.corrcoef(one, other)[0, 1]) < 5 / np.sqrt(2 * 195 * 64)
+
+
+def test_rms_over_the_record_is_exact():
+    section = SimpleNamespace(kind="band_limited", band_Hz=BAND)
+    values = unit_force(section, np.random.default_rng(3), 60000, 51200.0, slice(10000, 50000))
+    assert np.sqrt(np.mean(values[10000:50000] ** 2)) == pytest.approx(1.0, rel=1e-14)
+
+
+def test_empty_band_is_refused():
+    with pytest.raises(ForceError, match="5.2-5.3 Hz holds no line"):
+        band_limited_noise(np.random.default_rng(0), 1000, 1000.0, (5.2, 5.3))
+
+
+@pytest.mark.parametrize(("rate", "to_rate"), [(2048.0, 51200.0), (400.0, 51200.0), (1000.0, 51200.0)])
+def test_resampling_keeps_a_band_limited_wave(rate, to_rate):
+    def wave(t):
+        return np.cos(2 * np.pi * 17.3 * t) + 0.5 * np.sin(2 * np.pi * 71.0 * t + 0.3)
+
+    got = resample_measured(wave(np.arange(round(4 * rate)) / rate), rate, to_rate)
+    expected = wave(np.arange(got.size) / to_rate)
+    assert got.size == round(4 * to_rate)
+    inner = slice(round(0.2 * to_rate), round(3.8 * to_rate))
+    assert np.max(np.abs(got[inner] - expected[inner])) < 2e-3
+
+
+def measured_files(folder, values, rate):
+    """The same record as netCDF, CSV and MATLAB file."""
+    time = np.arange(values.size) / rate
+    xr.Dataset({"force": ("time", values)}, {"time": time}).to_netcdf(folder / "force.nc")
+    np.savetxt(folder / "force.csv", np.column_stack([time, values]), delimiter=",", header="time,force", comments="", fmt="%.17g")
+    savemat(folder / "force.mat", {"force": values[None, :], "Fs": rate})
+    return [folder / f"force.{kind}" for kind in ("nc", "csv", "mat")]
+
+
+def test_the_three_kinds_of_file_hold_the_same_record(tmp_path):
+    values = np.random.default_rng(4).standard_normal(500)
+    for path in measured_files(tmp_path, values, 400.0):
+        read, rate = read_force(path, "force", None)
+        assert np.array_equal(read, values)
+        assert rate == pytest.approx(400.0, rel=1e-9)
+
+
+def test_a_measured_force_drives_a_case(tmp_path):
+    values = np.random.default_rng(5).standard_normal(4000)
+    path = measured_files(tmp_path, values, 400.0)[0]
+    section = SimpleNamespace(kind="measured", file=str(path), variable="force", sampling_frequency_Hz=None)
+    force = unit_force(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
+    assert np.sqrt(np.mean(force[51200 : 4 * 51200] ** 2)) == pytest.approx(1.0, rel=1e-14)
+    assert np.corrcoef(force[::128], values[:2000])[0, 1] > 0.999
+    with pytest.raises(ForceError, match="lasts 10.000 s, but start-up and record need 12.000 s"):
+        unit_force(section, None, 12 * 51200, 51200.0, slice(0, 51200))
+
+
+def test_what_is_wrong_with_a_file_is_said(tmp_path):
+    values = np.ones(100)
+    netcdf, table, _ = measured_files(tmp_path, values, 400.0)
+    with pytest.raises(ForceFileError, match="no variable 'Force': it has force, time"):
+        read_force(netcdf, "Force", None)
+    with pytest.raises(ForceFileError, match="sampled at 400 Hz, but excitation.sampling_frequency_Hz = 500"):
+        read_force(netcdf, "force", 500.0)
+    with pytest.raises(ForceFileError, match="no such file"):
+        read_force(tmp_path / "none.nc", "force", None)
+    with pytest.raises(ForceFileError, match="unknown kind '.txt'"):
+        read_force(tmp_path / "force.txt", "force", None)
+    values[7] = np.nan
+    table.write_text("force\n" + "\n".join(map(str, values)))
+    with pytest.raises(ForceFileError, match=r"force\[7\] is not finite"):
+        read_force(table, "force", 400.0)
+    table.write_text("force\n" + "\n".join(["1.0"] * 10))
+    with pytest.raises(ForceFileError, match="says no sampling frequency"):
+        read_force(table, "force", None)

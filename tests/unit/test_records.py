@@ -1,0 +1,56 @@
+"""Files come back as they were written, and a failed write leaves nothing behind."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from vibroimpact import records
+
+
+def test_the_model_comes_back_bit_for_bit(study_model, tmp_path):
+    records.write_model(study_model, tmp_path / "model.nc")
+    again = records.read_model(tmp_path / "model.nc")
+    for name in study_model.__dataclass_fields__:
+        assert np.array_equal(getattr(again, name), getattr(study_model, name)), name
+
+
+def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
+    values = {"displacement": np.ones((2, 5)), "impact_count": [3], "energy_residual": 1e-12}
+    coordinates = {"sensor": ["apex.x", "apex.y"], "time": np.arange(5.0), "support": ["left"]}
+    record = records.describe(values, coordinates, {"case": "one"})
+    statistics, series = records.split_record(record)
+    assert set(series.data_vars) == {"displacement"}
+    assert set(statistics.data_vars) == {"impact_count", "energy_residual"}
+    assert "time" not in statistics.sizes
+    records.write_record(series, tmp_path / "series.nc")
+    again = records.read_record(tmp_path / "series.nc")
+    assert again["displacement"].attrs["units"] == "m"
+    assert again["displacement"].dtype == np.float32
+    assert again.attrs["case"] == "one"
+    assert again.attrs["Conventions"].startswith("CF-")
+
+
+def test_an_undeclared_variable_is_refused():
+    with pytest.raises(KeyError, match="nonsense"):
+        records.describe({"nonsense": 1.0}, {}, {})
+
+
+def test_a_failed_write_leaves_no_file(tmp_path):
+    dataset = xr.Dataset({"bad": ("x", np.array([object()], dtype=object))})
+    with pytest.raises((ValueError, TypeError)):
+        records.write_record(dataset, tmp_path / "bad.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_broken_file_is_named(tmp_path):
+    (tmp_path / "broken.nc").write_bytes(b"not netCDF")
+    with pytest.raises(records.RecordError, match="broken.nc: can not be read as netCDF"):
+        records.read_record(tmp_path / "broken.nc")
+
+
+def test_tables_keep_numbers_and_nan(tmp_path):
+    rows = [{"name": "a", "k": 0.1 + 0.2, "n": 3}, {"name": "b", "k": float("nan"), "n": 4}]
+    records.write_table(rows, tmp_path / "table.csv")
+    again = records.read_table(tmp_path / "table.csv")
+    assert again[0] == rows[0]
+    assert np.isnan(again[1]["k"])
