@@ -62,6 +62,12 @@ def load_values(grid) -> list[float]:
     return [float(f"{load:.{SIGNIFICANT_DIGITS}g}") for load in spaced]
 
 
+def nearest_loads(grid, wanted) -> list[float]:
+    """Return the loads of config.grid nearest (in logarithm) to the wanted ones (load,) in N RMS, ascending, each once."""
+    loads = np.array(load_values(grid))
+    return sorted({float(loads[np.argmin(np.abs(np.log(loads / load)))]) for load in wanted})
+
+
 def all_cases(grid) -> list[Case]:
     """Return every Case of config.grid, ordered by load, then gap, then seed as the configuration lists them."""
     return [Case(load, float(gap), seed) for load, gap, seed in product(load_values(grid), grid.gap_m, range(grid.seeds))]

@@ -180,6 +180,13 @@ def _force(excitation):
         yield "excitation.file", excitation.file, "is not a file: give its path from the folder where the study is run"
 
 
+def _overlay(overlay, grid):
+    if overlay.campaign is not None and not Path(overlay.campaign).is_file():
+        yield "overlay.campaign", overlay.campaign, "is not a file: give its path from the folder where the study is run, or null"
+    if overlay.seed < grid.seeds:
+        yield "overlay.seed", overlay.seed, f"is a seed of the study, which has 0 to {grid.seeds - 1}: give a larger one"
+
+
 def _bands_in_order(excitation, identification):
     bands = {"identification.peak_search_Hz": identification.peak_search_Hz, "identification.lscf.band_Hz": identification.lscf.band_Hz,
              "identification.broadband.band_Hz": identification.broadband.band_Hz,
@@ -271,6 +278,6 @@ def _whole_samples(record, integration):
 
 
 CHECKS = (_wall, _path_directions, _points_on_the_tube, _supports_on_the_tube, _support_lists, _names_twice, _gaps, _offsets,
-          _repeated_values, _known_points, _sensors, _driven_direction_is_recorded, _force, _bands_in_order, _bands_below_nyquist,
+          _repeated_values, _known_points, _sensors, _driven_direction_is_recorded, _force, _overlay, _bands_in_order, _bands_below_nyquist,
           _broadband_is_excited, _main_peak_is_excited, _segments, _bands_resolved, _step_and_force, _step_and_modes,
           _step_and_samples, _whole_samples)

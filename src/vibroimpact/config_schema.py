@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from vibroimpact.config_structure import Damping, ModalDamping, Structure, Support
-from vibroimpact.config_types import (Axis, Band_Hz, Duration_s, Force_N, Fraction_of_gap, Frequency_Hz, Gap_m, Name, Overlap, Section, Start_up_s,
-                           Stiffness_range, Stress_Pa, Study_name, Vector, choice, count, one_or_list)
+from vibroimpact.config_types import (Axis, Band_Hz, Duration_s, Force_N, Fraction_of_gap, Frequency_Hz, Gap_m, Name, Number, Overlap,
+                           Positive_factor, Section, Start_up_s, Stiffness_range, Stress_Pa, Study_name, Vector, choice, count, one_or_list, within)
 
 F16_DATA = "../shared/data/f16_ground_vibration"
 
@@ -126,6 +126,16 @@ class Identification(Section):
     stiffness_range_N_per_m: Stiffness_range = (1.0e3, 1.0e8)
 
 
+class Overlay(Section):
+    """The campaign laid over the simulation in figure 5: a measured file, or a synthetic one made with these loads, gap and noise."""
+
+    campaign: str | None = None
+    load_rms_N: Annotated[tuple[Force_N, ...], Field(min_length=1)] = (0.5, 2.0, 5.0, 20.0)
+    gap_ratio: Positive_factor = 1.05
+    noise: Annotated[Number, within("a fraction of the channel's RMS: 1 % is 0.01", at_least=0, at_most=1)] = 0.01
+    seed: count(0, 10**6, "a seed that no case of the study has, such as 1000") = 1000
+
+
 class Config(Section):
     """A whole study. Results go to results/<study>/; seed is the entropy of every random stream."""
 
@@ -142,4 +152,5 @@ class Config(Section):
     record: RecordKeys
     spectra: Spectra = Spectra()
     identification: Identification
+    overlay: Overlay = Overlay()
     f16_data: str = F16_DATA

@@ -10,19 +10,22 @@ from typing import Any
 
 from vibroimpact.config_schema import Config
 
-FIGURE_KEYS = tuple(name for name in Config.model_fields if name not in ("seed", "f16_data"))
-
 STAGE_KEYS: dict[str, tuple[str, ...]] = {
-    "targets": ("study", "grid", "record.keep_time_series"),
+    "targets": ("study", "grid", "record.keep_time_series", "overlay.load_rms_N", "overlay.campaign"),
     "basis": ("structure", "damping", "supports", "points", "excitation.point", "excitation.direction", "basis", "record.sensors",
               "record.shape_line"),
     "simulate": ("study", "seed", "excitation", "integration", "grid.gap_m", "grid.seeds", "record.duration_s",
                  "record.sampling_frequency_Hz", "record.stress_limit_Pa"),
     "spectra": ("study", "excitation.direction", "record.sampling_frequency_Hz", "spectra", "identification.lscf",
                 "identification.broadband"),
-    "identify": ("study", "excitation", "record", "spectra", "identification"),
+    "identify": ("excitation.kind", "excitation.band_Hz", "identification"),
     "consistency": ("study", "grid", "identification"),
-    "figures": FIGURE_KEYS,
+    "synthetic_campaign": ("study", "seed", "points", "excitation", "integration", "grid.gap_m", "record.duration_s",
+                           "record.sampling_frequency_Hz", "record.stress_limit_Pa", "overlay.gap_ratio", "overlay.noise", "overlay.seed"),
+    "figures_model": ("structure", "damping", "supports", "points", "excitation", "basis", "grid.gap_m", "record.sensors", "record.shape_line"),
+    "figures_response": ("structure.section", "excitation", "grid.gap_m", "spectra", "identification"),
+    "figures_identification": ("structure.section", "excitation", "grid.gap_m", "record.shape_line", "spectra", "identification"),
+    "figures_checks": ("structure.section", "record.stress_limit_Pa", "identification.stiffness_range_N_per_m"),
     "f16": ("f16_data",),
 }
 

@@ -1,0 +1,29 @@
+# The study, end to end: `snakemake -j2`, another configuration with `--configfile config/smoke.yaml`.
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+if not workflow.configfiles:
+
+    configfile: "config/study.yaml"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/model.smk"
+include: "workflow/rules/simulate.smk"
+include: "workflow/rules/identify.smk"
+include: "workflow/rules/campaign.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/f16.smk"
+
+
+localrules:
+    all,
+
+
+rule all:
+    default_target: True
+    input:
+        targets(),
+    message:
+        "Study '{STUDY.study}' is complete: tables and figures in {RESULTS}"

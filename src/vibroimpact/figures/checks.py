@@ -1,0 +1,124 @@
+"""What a user wants to see before believing the rest: energy balance of every case, contact statistics and stress against load."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.figures.scatter import over_seeds
+from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.style import BLACK, BLUE, GAP_COLOURS, GAP_MARKERS, GREEN, GREY, ORANGE, PINK, RED, gap_label
+
+RESIDUALS = {
+    # variable of a record -> (name, accepted at most, colour, marker)
+    "potential_energy_residual": ("with the contact's potential energy", 3.0e-3, ORANGE, "s"),
+    "energy_residual": ("discrete identity of the scheme", 1.0e-9, BLUE, "o"),
+    "fixed_point_residual": ("contact iteration (bound)", None, GREY, "x"),
+}
+TERMS = {"input_work": ("work of the drive", BLACK, "-"), "dissipated": ("dissipated by damping", RED, "--"), "kinetic": ("kinetic", BLUE, "-"),
+         "elastic": ("elastic, tube", GREEN, "-"), "contact_potential": ("elastic, contacts", PINK, "-")}
+FLOOR = 1.0e-18  # exact zeros (no contact) are drawn here: a logarithmic axis has no zero
+
+
+def energy_balance(config, records):
+    """Return the Sheet of the residuals of all cases and of the energies of one case.
+
+    records: {Case: Dataset} of statistics.
+    """
+    case = max(records, key=lambda case: (case.load_rms_N, case.gap_m, -case.seed))
+    caption = (
+        "Left: energy balance of every case against load, relative to the work of the drive: the discrete identity of the integration "
+        "scheme (its limit is round-off), the balance with the potential energy of the contacts in place of their discrete work (it "
+        "measures the time step), and the bound of the error left in the implicit contact forces; dashed: the accepted limits. Exact "
+        f"zeros, where nothing touches, are drawn at {FLOOR:g}. Right: energies during the case of the largest load ({case.load_rms_N:g} "
+        f"N, gap {gap_label(case.gap_m, config.structure.section.outer_diameter_m)}, seed {case.seed}); negative times are the start-up "
+        "before the record.")
+    sheet = Sheet("energy_balance", "Energy balance of the simulations", caption, [["residuals", "energies"]], size=(7.6, 4.4))
+    axes = sheet.axes["residuals"]
+    axes.set_title(f"residuals of {len(records)} cases")
+    for variable, (name, limit, colour, marker) in RESIDUALS.items():
+        values = np.maximum([float(dataset[variable]) for dataset in records.values()], FLOOR)
+        sheet.line(axes, ("load_rms_N", np.array([key.load_rms_N for key in records])), ("residual", values), variable,
+                   tags={"gap_m": np.array([key.gap_m for key in records]), "seed": np.array([key.seed for key in records])}, color=colour,
+                   marker=marker, linestyle="none", markersize=3.5, label=name)
+        if limit:
+            sheet.mark(axes, "residual", limit, f"limit of {variable}", vertical=False, color=colour, linestyle="--", linewidth=1.0)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(0.2 * FLOOR, 30.0)
+    sheet.legend(axes, loc="upper left")
+    _energies(sheet, sheet.axes["energies"], records[case])
+    sheet.axes["energies"].set_title(f"energies at {case.load_rms_N:g} N RMS")
+    return [sheet]
+
+
+def _energies(sheet, axes, record):
+    """Draw the energy terms of a case over time."""
+    time = record["energy_time"].values
+    for term, (name, colour, dash) in TERMS.items():
+        sheet.line(axes, ("time_s", time), ("energy_J", np.abs(record["energy"].sel(energy_term=term).values)), term, color=colour,
+                   linestyle=dash, label=name)
+    axes.set_yscale("log")
+    largest = float(np.abs(record["energy"]).max())
+    axes.set_ylim(1e-6 * largest, 1e3 * largest)  # room for the legend
+    sheet.legend(axes, loc="upper left")
+
+
+STATISTICS = (
+    # panel, variable of a record, column, title
+    ("fraction", "contact_fraction", "contact_fraction", "time in contact"),
+    ("rate", "impact_rate", "impact_rate_per_s", "impact rate"),
+    ("velocity", "impact_velocity_rms", "impact_velocity_m_per_s", "impact velocity, RMS"),
+    ("force", "rms_force", "force_N", "support force: RMS, peak (open)"),
+    ("wear", "wear_work_rate", "wear_work_rate_W", "wear work rate"),
+    ("stress", "stress_peak", "stress_Pa", "largest bending stress"),
+)
+
+
+def contact_statistics(config, records):
+    """Return the Sheet of contact statistics and peak stress against load, for every gap.
+
+    records: {Case: Dataset} of statistics.
+    """
+    caption = (
+        "Contact against load, for every gap: fraction of time in contact, impacts per second, RMS radial velocity at impact, RMS and "
+        "peak force, wear work rate (normal force times sliding speed), per support, and the largest bending stress anywhere in the "
+        "tube with the limit above which a case is flagged (dashed). Median over seeds and supports, bars from the smallest to the "
+        "largest value.")
+    sheet = Sheet("contact_statistics", "Contact, wear and stress against load", caption,
+                  [["fraction", "rate", "velocity"], ["force", "wear", "stress"]], size=(9.6, 6.0), sharex=True)
+    diameter = config.structure.section.outer_diameter_m
+    for index, gap in enumerate(sorted({case.gap_m for case in records}, reverse=True)):
+        colour, marker = GAP_COLOURS[index % 6], GAP_MARKERS[index % 6]
+        style = {"color": colour, "marker": marker, "linewidth": 0.9, "label": f"gap {gap_label(gap, diameter)}"}
+        for panel, variable, column, _ in STATISTICS:
+            rows = _rows(records, gap, variable, column)
+            over_seeds(sheet, sheet.axes[panel], rows, "load_rms_N", column, variable, tags=("gap_m",), **style)
+        over_seeds(sheet, sheet.axes["force"], _rows(records, gap, "peak_force", "force_N"), "load_rms_N", "force_N", "peak_force",
+                   tags=("gap_m",), color=colour, marker=marker, markerfacecolor="white", linewidth=0.9, linestyle=":")
+    sheet.mark(sheet.axes["stress"], "stress_Pa", config.record.stress_limit_Pa, "limit", vertical=False, color=BLACK, linestyle="--",
+               linewidth=1.0)
+    for panel, _, column, title in STATISTICS:
+        axes = sheet.axes[panel]
+        axes.set_title(title)
+        if not axes.get_xlabel():
+            sheet.note(axes, "no contact", "load_rms_N", column)
+        axes.set_xscale("log")
+        if panel != "fraction" and axes.get_legend_handles_labels()[1]:
+            axes.set_yscale("log")
+    for panel in ("fraction", "rate", "velocity"):
+        sheet.axes[panel].set_xlabel("")
+    handles, labels = sheet.axes["stress"].get_legend_handles_labels()
+    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    return [sheet]
+
+
+def _rows(records, gap, variable, column):
+    """Return one row per case and support (or per case for the stress); zeros (no contact) are left out of logarithmic panels."""
+    rows = []
+    for case, dataset in records.items():
+        if case.gap_m != gap:
+            continue
+        values = [float(dataset[variable].max())] if variable == "stress_peak" else dataset[variable].values
+        rows += [{"gap_m": gap, "load_rms_N": case.load_rms_N, column: float(value)} for value in values
+                 if value > 0.0 or variable == "contact_fraction"]
+    return rows

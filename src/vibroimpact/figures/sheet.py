@@ -1,0 +1,167 @@
+"""A figure and its data: whatever is drawn through a Sheet is also a row of its CSV, in SI units under the column's name."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.figure import Figure
+
+from vibroimpact.figures.style import label_of, shown, tidy_log_axis
+from vibroimpact.records import write_table
+
+DIGITS = 7  # significant digits in the CSV
+WIDTH_IN, PNG_DPI = 7.6, 160
+
+
+class Sheet:
+    """A figure with a title, a caption, and the table of what it shows.
+
+    name: stem of its files. caption: what is seen and how to read it, without the paper at hand. mosaic: rows of names of the axes, as
+    matplotlib takes it; axes: {name: axes}; the name stands in the table's column panel. size: (width, height) in inches.
+    The table has the columns panel and curve, then one per plotted quantity, named with its SI unit; cells that do not apply are empty.
+    """
+
+    def __init__(self, name, title, caption, mosaic=(("main",),), size=None, **gridspec):
+        self.name, self.caption, self.tables = name, caption, []
+        self.figure = Figure(figsize=size or (WIDTH_IN, 4.2), layout="constrained")
+        self.axes = self.figure.subplot_mosaic(mosaic, **gridspec)
+        for key, axes in self.axes.items():
+            axes.set_label(key)
+        self.figure.suptitle(title, x=0.01, ha="left")
+
+    def record(self, axes, curve, **values):
+        """Add rows to the table: each value an array of equal length or a single value, in SI, under the name of its column."""
+        lengths = {np.size(value) for value in values.values() if np.ndim(value)}
+        if len(lengths) > 1:
+            raise ValueError(f"{self.name}, {curve}: columns of different lengths {sorted(lengths)}")
+        length = lengths.pop() if lengths else 1
+        table = {column: np.ravel(np.broadcast_to(value, length)) for column, value in values.items()}
+        self.tables.append((axes.get_label(), curve, table))
+
+    def line(self, axes, x, y, curve, low=None, high=None, tags=None, **style):
+        """Draw y over x, and the band from low to high where given; return the line.
+
+        x, y: (column, values) with values (point,) in SI. tags: {column: value} that identify the curve, recorded with each point.
+        """
+        (x_column, x_values), (y_column, y_values) = x, y
+        if low is not None:
+            axes.fill_between(shown(x_column, x_values), shown(y_column, low), shown(y_column, high),
+                              color=style.get("color"), alpha=0.18, linewidth=0)
+            tags = {**(tags or {}), f"{y_column}_low": low, f"{y_column}_high": high}
+        self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
+        line, = axes.plot(shown(x_column, x_values), shown(y_column, y_values), **style)
+        self._label(axes, x_column, y_column)
+        return line
+
+    def bars(self, axes, x, y, curve, low, high, tags=None, **style):
+        """Draw points with bars from low to high, (point,) each, in SI; return the container."""
+        (x_column, x_values), (y_column, y_values) = x, y
+        self.record(axes, curve, **(tags or {}),
+                    **{x_column: x_values, y_column: y_values, f"{y_column}_low": low, f"{y_column}_high": high})
+        middle = shown(y_column, y_values)
+        spread = np.array([middle - shown(y_column, low), shown(y_column, high) - middle])
+        self._label(axes, x_column, y_column)
+        return axes.errorbar(shown(x_column, x_values), middle, np.maximum(spread, 0.0), **{"capsize": 2, "linewidth": 1, **style})
+
+    def mark(self, axes, column, value, curve, vertical=True, **style):
+        """Draw a line across the axes at one value of a column (vertical: of the x axis)."""
+        self.record(axes, curve, **{column: value})
+        place = float(shown(column, value))
+        return axes.axvline(place, **style) if vertical else axes.axhline(place, **style)
+
+    def map(self, axes, x, y, z, curve, **style):
+        """Draw z (y, x) as colours over x and y, logarithmic y in even steps of its own; return the mesh. Rasterised in PDF."""
+        (x_column, x_values), (y_column, y_values), (z_column, z_values) = x, y, z
+        grid = np.meshgrid(x_values, y_values)
+        self.record(axes, curve, **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)})
+        mesh = axes.pcolormesh(edges(shown(x_column, x_values)), np.exp(edges(np.log(shown(y_column, y_values)))),
+                               shown(z_column, z_values), rasterized=True, **style)
+        axes.set_yscale("log")
+        axes.grid(False)
+        self._label(axes, x_column, y_column)
+        return mesh
+
+    def note(self, axes, text, x_column, y_column):
+        """Write into axes that have nothing to show why, and label them all the same."""
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center")
+        self._label(axes, x_column, y_column)
+
+    def legend(self, axes, **style):
+        """Add the legend of the axes, if anything in it has a name."""
+        if axes.get_legend_handles_labels()[1]:
+            axes.legend(**style)
+
+    def colour_bar(self, mappable, axes, column, **style):
+        """Add a colour bar for a column beside axes (one or several)."""
+        bar = self.figure.colorbar(mappable, ax=axes, pad=0.02, **style)
+        bar.set_label(label_of(column))
+        return bar
+
+    def save(self, folder):
+        """Write name.png, name.pdf and name.csv, and the caption as name.txt, into a folder (made where missing)."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        for axis in (axis for axes in self.figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
+            tidy_log_axis(axis)
+        # The canvases are called directly: savefig would draw each file twice, and place the axes again for the second one.
+        self.figure.set_dpi(PNG_DPI)
+        self._write(folder, "png", FigureCanvasAgg(self.figure).print_png, metadata={"Software": None})
+        self.figure.set_layout_engine("none")
+        self._write(folder, "pdf", FigureCanvasPdf(self.figure).print_pdf, metadata={"CreationDate": None, "Title": self.name})
+        write_table(self.rows(), folder / f"{self.name}.csv")
+        (folder / f"{self.name}.txt").write_text(self.caption + "\n", encoding="utf-8")
+
+    def _write(self, folder, suffix, write, **options):
+        """Write one file under a temporary name, then rename it, so that no half-written file is left."""
+        temporary = folder / f".{self.name}.{os.getpid()}.{suffix}"
+        try:
+            write(temporary, **options)
+            os.replace(temporary, folder / f"{self.name}.{suffix}")
+        finally:
+            temporary.unlink(missing_ok=True)
+
+    def rows(self):
+        """Return the table as a list of {column: value}; cells that do not apply are empty texts."""
+        columns = list(dict.fromkeys(column for _, _, table in self.tables for column in table))
+        rows = []
+        for panel, curve, table in self.tables:
+            values = [rounded(table[column]) if column in table else [""] * length_of(table) for column in columns]
+            rows += [dict(zip(("panel", "curve", *columns), (panel, curve, *row), strict=True)) for row in zip(*values, strict=True)]
+        return rows
+
+    def _label(self, axes, x_column, y_column):
+        if not axes.get_xlabel():
+            axes.set_xlabel(label_of(x_column))
+        if not axes.get_ylabel():
+            axes.set_ylabel(label_of(y_column))
+
+
+def edges(centres):
+    """Return (n + 1,) cell edges half-way between (n,) ascending centres; the outer cells are symmetric about theirs."""
+    centres = np.asarray(centres, dtype=float)
+    if centres.size == 1:
+        return centres[0] + np.array([-0.5, 0.5])
+    inner = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]]])
+
+
+def length_of(table):
+    """Return the number of rows of a table {column: (row,)}."""
+    return len(next(iter(table.values())))
+
+
+def rounded(values):
+    """Return a list of the values, numbers to DIGITS significant digits: the noise of later digits would triple the file."""
+    values = np.asarray(values)
+    if values.dtype.kind not in "f":
+        return values.tolist()
+    values = values.astype(float)
+    usable = np.isfinite(values) & (values != 0.0)
+    size = np.floor(np.log10(np.abs(values[usable])))
+    scale = 10.0 ** np.abs(DIGITS - 1 - size)
+    values[usable] = np.where(size < DIGITS, np.round(values[usable] * np.where(size < DIGITS, scale, 1.0)) / scale, values[usable])
+    return values.tolist()

@@ -1,0 +1,187 @@
+"""The house and its rooms: imports go downwards, each door is in one place, files hold one idea."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LIBRARY = ROOT / "src" / "vibroimpact"
+FILES = sorted(LIBRARY.rglob("*.py"))
+SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
+RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
+
+# From the lowest layer up. A module imports from its own layer and from those before it; a package counts as one entry.
+LAYERS = (
+    ("__init__", "config", "config_checks", "config_schema", "config_structure", "config_types", "settings", "stages", "cases",
+     "provenance", "centreline", "beam", "kernels", "model"),
+    ("records",),
+    ("structure", "supports", "force_files", "excitation", "spectra", "spectral_kernel"),
+    ("ritz", "reduction", "linear", "antialias", "layout"),
+    ("integrate", "simulate", "identify"),
+    ("consistency",),
+    ("figures",),
+)
+ANATOMY = ["input", "output", "params", "log", "benchmark", "threads", "resources", "message", "script"]
+ALLOWED_BETWEEN = {"priority"}  # optional, after threads
+
+
+def module_of(file):
+    """The dotted name of a library file below the package: identify.lscf, cases, __init__."""
+    parts = file.relative_to(LIBRARY).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 1 else parts)
+
+
+MODULES = {module_of(file): file for file in FILES}
+
+
+def tree_of(file):
+    """The parsed source of a file."""
+    return ast.parse(file.read_text(encoding="utf-8"), filename=str(file))
+
+
+def imports(file):
+    """The absolute dotted names that a file imports, at any depth: with `from a import b`, both a and a.b."""
+    names = set()
+    package = ("vibroimpact", *file.relative_to(LIBRARY).parts[:-1]) if LIBRARY in file.parents else ()
+    for node in ast.walk(tree_of(file)):
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            base = ".".join([*above, *filter(None, [node.module])])
+            names.update([base, *(f"{base}.{alias.name}" for alias in node.names)])
+    return names
+
+
+def library_imports(file):
+    """The modules of the library that a file imports."""
+    return {name.removeprefix("vibroimpact.") for name in imports(file)} & set(MODULES) - {module_of(file)}
+
+
+def layer_of(module):
+    """The index of the layer of a module."""
+    return next((index for index, layer in enumerate(LAYERS) if module.split(".")[0] in layer), None)
+
+
+def imported_tops(file):
+    """The top-level packages that a file imports."""
+    return {name.split(".")[0] for name in imports(file)}
+
+
+def test_every_module_has_a_layer():
+    assert [module for module in MODULES if layer_of(module) is None] == []
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_imports_go_downwards(module):
+    upwards = {name for name in library_imports(MODULES[module]) if layer_of(name) > layer_of(module)}
+    assert upwards == set()
+
+
+def test_no_module_imports_itself_through_others():
+    graph = {module: library_imports(file) for module, file in MODULES.items()}
+    done, open_ = set(), []
+
+    def visit(module):
+        assert module not in open_, " -> ".join([*open_, module])
+        if module in done:
+            return
+        open_.append(module)
+        for name in graph[module]:
+            visit(name)
+        done.add(open_.pop())
+
+    for module in graph:
+        visit(module)
+
+
+def test_netcdf_has_one_door():
+    doors = {"open_dataset", "load_dataset", "open_mfdataset", "open_dataarray", "load_dataarray", "to_netcdf", "to_zarr", "open_zarr"}
+    for file in [*FILES, *SCRIPTS]:
+        used = {node.attr for node in ast.walk(tree_of(file)) if isinstance(node, ast.Attribute)} & doors
+        if file.name != "records.py":
+            assert used == set() and not imported_tops(file) & {"netCDF4", "h5netcdf", "h5py"}, file
+
+
+def test_matplotlib_stays_in_the_figures():
+    assert [file for file in [*FILES, *SCRIPTS] if "matplotlib" in imported_tops(file) and not module_of_figures(file)] == []
+
+
+def module_of_figures(file):
+    """Whether a file belongs to the figures."""
+    return LIBRARY in file.parents and module_of(file).split(".")[0] == "figures"
+
+
+def test_compiled_code_stays_in_the_kernels():
+    # A cached kernel does not see an edit in a compiled function of another file: one file, so that it recompiles.
+    assert [file for file in [*FILES, *SCRIPTS] if imported_tops(file) & {"numba", "llvmlite"} and file.name != "kernels.py"] == []
+
+
+def test_the_library_knows_nothing_of_the_workflow():
+    assert [file for file in FILES if "snakemake" in imported_tops(file)] == []
+
+
+def test_modules_are_imported_by_name():
+    # provenance.imported_files reads import statements: a name made at run time would hide a file from its rule.
+    for file in [*FILES, *SCRIPTS]:
+        assert not imported_tops(file) & {"importlib"} or file.name == "provenance.py", file
+        calls = {node.func.id for node in ast.walk(tree_of(file)) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+        assert not calls & {"__import__", "exec", "eval"}, file
+
+
+def test_files_hold_one_idea():
+    too_long = {file.name: lines for file in FILES if (lines := len(file.read_text().splitlines())) > 300 and file.name != "kernels.py"}
+    assert too_long == {}
+    assert [file for file in FILES if re.search("util|helper|common|misc", file.stem)] == []
+
+
+def test_every_file_and_public_function_says_what_it_is():
+    silent = []
+    for file in FILES:
+        tree = tree_of(file)
+        public = [node for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_")]
+        silent += [f"{file.name}:{getattr(node, 'name', '')}" for node in (tree, *public) if not ast.get_docstring(node)]
+    assert silent == []
+
+
+def test_errors_are_not_swallowed_and_warnings_not_silenced():
+    for file in [*FILES, *SCRIPTS]:
+        for node in ast.walk(tree_of(file)):
+            assert not (isinstance(node, ast.ExceptHandler) and node.type is None), f"{file}:{node.lineno} bare except"
+            name = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
+            assert name not in ("warnings.filterwarnings", "warnings.simplefilter", "np.seterr", "numpy.seterr"), f"{file}:{node.lineno}"
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda file: file.stem)
+def test_scripts_are_short(script):
+    assert len(script.read_text().splitlines()) <= 20
+    assert [node for node in ast.walk(tree_of(script)) if isinstance(node, (ast.FunctionDef, ast.ClassDef, ast.Lambda))] == []
+
+
+def test_the_snakefile_is_short():
+    assert len((ROOT / "Snakefile").read_text().splitlines()) <= 40
+
+
+def rules():
+    """(name, keys in their order) of every rule in workflow/rules."""
+    for file in RULES:
+        for name, body in re.findall(r"^rule (\w+):\n((?:(?:    .*)?\n)+)", file.read_text(), flags=re.M):
+            yield name, re.findall(r"^    (\w+):", body, flags=re.M)
+
+
+def test_there_is_a_script_for_every_rule():
+    assert sorted(name for name, _ in rules()) == [file.stem for file in SCRIPTS]
+
+
+def test_rules_have_the_same_anatomy():
+    assert {name: keys for name, keys in rules() if [key for key in keys if key not in ALLOWED_BETWEEN] != ANATOMY} == {}
+
+
+def test_rules_hold_no_physics():
+    # Numbers in rules are resources and counts; a value with a point or an exponent is physics that belongs into the configuration.
+    for file in RULES:
+        code = re.sub(r"#.*|\"\"\".*?\"\"\"|r?f?\"[^\"]*\"", "", file.read_text())
+        assert re.findall(r"\b\d+\.\d*\b|\b\d+e-?\d+\b", code) == [], file
+        assert not re.search(r"^ +(run|shell):", file.read_text(), flags=re.M), file

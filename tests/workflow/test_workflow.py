@@ -1,0 +1,163 @@
+"""The workflow as a plan: what runs, what reruns after a change, what is said when the configuration is wrong.
+
+The scripts are replaced by ones that import the same files and write empty outputs, so that a whole study takes seconds.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+STUB = """\
+import os, sys
+from pathlib import Path
+if False:
+{imports}
+if os.environ.get("STUDY_FAILS_AT") == snakemake.rule:
+    sys.exit("stopped on purpose")
+for path in snakemake.output:
+    Path(path).write_text(snakemake.rule)
+"""
+FIGURES = {"figures_model", "figures_response", "figures_identification", "figures_checks"}
+AFTER_SPECTRA = {"identify", "consistency", "figures_response", "figures_identification", "figures_checks", "all"}
+
+
+class Study:
+    """A copy of the workflow in a folder of its own, with a study of two loads, one gap and two seeds."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        ignore = shutil.ignore_patterns("__pycache__")
+        for name in ("src", "workflow", "config"):
+            shutil.copytree(ROOT / name, folder / name, ignore=ignore)
+        shutil.copy(ROOT / "Snakefile", folder)
+        (folder / "profiles").symlink_to(Path("workflow", "profiles"))
+        for script in (folder / "workflow" / "scripts").glob("*.py"):
+            imports = [line for line in script.read_text().splitlines() if re.match(r"(from|import) .*vibroimpact", line)]
+            script.write_text(STUB.format(imports="\n".join(f"    {line}" for line in ["import os", *imports])))
+        self.values = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
+        self.values["grid"] = {"load_rms_N": [0.5, 4.0], "gap_m": [1e-4], "seeds": 2}
+        self.results = folder / "results" / "smoke"
+
+    def snakemake(self, *arguments, values=None, **environment):
+        """Run snakemake with a configuration; returns the finished process."""
+        (self.folder / "mine.yaml").write_text(yaml.safe_dump(values or self.values))
+        clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        command = [sys.executable, "-m", "snakemake", *arguments, "--configfile", "mine.yaml"]
+        return subprocess.run(command, cwd=self.folder, env=clean | environment, capture_output=True, text=True)
+
+    def plan(self, *arguments, values=None):
+        """{rule: number of jobs} that a run would do; {} when nothing is to be done."""
+        run = self.snakemake("--dry-run", *arguments, values=values)
+        assert run.returncode == 0, run.stdout + run.stderr
+        counts = re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M)
+        return {rule: int(count) for rule, count in counts if rule != "total"}
+
+    def changed(self, **sections):
+        """The configuration with keys of some sections replaced."""
+        return {**self.values, **{name: {**self.values[name], **keys} for name, keys in sections.items()}}
+
+    def plan_after_edit(self, name):
+        """The rules that would run after an edit of one library file, which is then undone."""
+        file = self.folder / "src" / "vibroimpact" / name
+        text = file.read_text()
+        file.write_text(text + "\n# an edit\n")
+        try:
+            return set(self.plan())
+        finally:
+            file.write_text(text)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A study that has been interrupted at its identification, continued, and is complete."""
+    study = Study(tmp_path_factory.mktemp("study"))
+    study.stopped = study.snakemake("-j2", "--keep-going", STUDY_FAILS_AT="identify")
+    study.plan_when_stopped = study.plan()
+    study.finished = study.snakemake("-j2")
+    return study
+
+
+def test_the_default_study_is_planned_with_one_job_per_load(study):
+    plan = study.plan(values=yaml.safe_load((ROOT / "config" / "study.yaml").read_text()))
+    assert plan == {"basis": 1, "simulate": 24, "spectra": 24, "identify": 24, "consistency": 1, **dict.fromkeys(FIGURES, 1), "all": 1}
+
+
+def test_an_interrupted_study_continues_where_it_stopped(study):
+    assert study.stopped.returncode != 0
+    assert "stopped on purpose" in study.stopped.stderr
+    done = {"basis", "simulate", "spectra", "figures_model", "figures_response"}
+    assert set(study.plan_when_stopped) == {"identify", "consistency", "figures_identification", "figures_checks", "all"} - done
+    assert study.plan_when_stopped["identify"] == 2
+    assert study.finished.returncode == 0, study.finished.stderr
+
+
+def test_a_complete_study_has_tables_and_figures_and_nothing_left_to_do(study):
+    for name in ("consistency.csv", "consistency_summary.csv", "consistency.nc", "basis_quality.csv", "figures/figure_01_layout.png"):
+        assert (study.results / name).is_file()
+    assert len(list((study.results / "records").glob("load_*_gap_0.0001_seed_*.nc"))) == 4
+    assert study.plan() == {}
+
+
+def test_progress_tells_load_and_number_of_cases(study):
+    told = study.stopped.stdout + study.stopped.stderr
+    assert "Simulation at 0.5 N RMS: 2 of 4 cases" in told
+    assert "Identification at 4 N RMS: 2 of 4 cases" in told
+
+
+@pytest.mark.parametrize(("file", "expected"), [
+    ("spectra.py", {"spectra"} | AFTER_SPECTRA),
+    ("reduction.py", {"basis", "simulate", "spectra"} | AFTER_SPECTRA | FIGURES),
+    ("config_checks.py", set()),
+])
+def test_an_edited_file_reruns_the_stages_that_import_it_and_what_follows(study, file, expected):
+    assert study.plan_after_edit(file) == expected
+
+
+def test_an_added_load_simulates_only_what_is_new(study):
+    plan = study.plan(values=study.changed(grid={"load_rms_N": [0.5, 1.5, 4.0]}))
+    assert plan["simulate"] == plan["spectra"] == plan["identify"] == 1
+    assert "basis" not in plan
+
+
+def test_a_changed_key_reruns_the_stages_that_use_it(study):
+    assert set(study.plan(values=study.changed(spectra={"overlap": 0.5}))) == {"spectra"} | AFTER_SPECTRA
+    assert set(study.plan("--config", "seed=7")) == {"simulate", "spectra"} | AFTER_SPECTRA
+
+
+def test_time_series_are_removed_unless_they_are_kept(study):
+    assert len(list((study.results / "timeseries").glob("*.nc"))) == 4
+    values = {**study.changed(record={"keep_time_series": False}), "study": "short"}
+    series = "results/short/timeseries"
+    run = study.snakemake("-j2", "results/short/spectra/load_4_gap_0.0001_seed_0.nc", values=values)
+    assert run.returncode == 0, run.stderr
+    assert (study.folder / "results/short/records/load_4_gap_0.0001_seed_0.nc").is_file()
+    assert list((study.folder / series).glob("*.nc")) == []
+
+
+def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
+    run = study.snakemake("--dry-run", values=study.changed(spectra={"overlp": 0.5}, record={"duration_s": 1.0}))
+    told = run.stdout + run.stderr
+    assert run.returncode == 1
+    assert "mine.yaml: unknown key 'overlp' in spectra: did you mean 'overlap'?" in told
+    assert "mine.yaml: spectra.segment_s = 4.0 is longer than the record, 1 s" in told
+    assert "Traceback" not in told and "Building DAG" not in told
+
+
+def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study):
+    run = study.snakemake("--dry-run", "f16", "--config", "f16_data=nowhere")
+    told = run.stdout + run.stderr
+    assert run.returncode == 1
+    assert "f16_data = 'nowhere' holds no file" in told and "nonlinearbenchmark.org" in told
+
+
+def test_lint_has_no_advice_but_on_conda_and_containers(study):
+    run = study.snakemake("--lint")
+    advice = set(re.findall(r"^ +\* (.*)$", run.stdout + run.stderr, flags=re.M))
+    assert advice == {"Specify a conda environment or container for each rule.:"}

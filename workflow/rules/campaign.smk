@@ -1,0 +1,25 @@
+# A stand-in for the measured campaign of figure 5, where overlay.campaign names no file.
+
+
+rule synthetic_campaign:
+    input:
+        library=library("synthetic_campaign"),
+        model=f"{RESULTS}/model.nc",
+        force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
+    output:
+        campaign=f"{RESULTS}/synthetic_campaign.nc",
+    params:
+        config=settings("synthetic_campaign"),
+        loads=nearest_loads(STUDY.grid, STUDY.overlay.load_rms_N),
+    log:
+        f"{RESULTS}/logs/synthetic_campaign.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/synthetic_campaign.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=20,
+    message:
+        "Synthetic campaign to lay over the simulation"
+    script:
+        "../scripts/synthetic_campaign.py"

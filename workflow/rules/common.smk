@@ -1,0 +1,93 @@
+# The checked configuration, the names of all files, and the inputs and params that rules declare with functions.
+import os
+import sys
+from pathlib import Path
+
+SOURCE = os.path.relpath(Path(workflow.basedir, "src"))
+SCRIPTS = os.path.relpath(Path(workflow.basedir, "workflow", "scripts"))
+sys.path.insert(0, SOURCE)
+# Jobs inherit these: the library needs no installation, and -j jobs of one thread each do not crowd one another out.
+os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
+
+from vibroimpact.cases import all_cases, ids_of_load, load_values, nearest_loads
+from vibroimpact.config import ConfigError, check_config, read_yaml
+from vibroimpact.provenance import imported_files
+from vibroimpact.stages import stage_params
+
+FIGURES = {
+    "model": ("figure_01_layout", "figure_02_free_modes", "figure_03_contact_law", "figure_04_first_frequency", "basis_quality"),
+    "response": ("figure_05_overlay", "figure_06_levels", "figure_07_overlay_of_loads", "figure_08_load_and_stiffness", "in_plane_share"),
+    "identification": (
+        "figure_09_poles", "figure_09_stabilisation", "figure_10_shapes", "figure_11_singular_values", "figure_12_broadband",
+    ),
+    "checks": ("figure_13_equivalent_support", "collapse", "energy_balance", "contact_statistics"),
+}
+
+
+def checked_config():
+    """The Config of the files and --config values given to snakemake; ends with every problem as a sentence before any job is planned."""
+    files = [os.path.relpath(file) for file in workflow.configfiles]
+    try:
+        for file in files:
+            read_yaml(file)
+        return check_config(config, " + ".join(files))
+    except ConfigError as error:
+        sys.exit(str(error))
+
+
+STUDY = checked_config()
+RESULTS = f"results/{STUDY.study}"
+CASES = [case.id for case in all_cases(STUDY.grid)]
+CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
+
+
+def library(script):
+    """The library files that a script imports: an edit then reruns the stages that import the file, and no others."""
+    return [str(file) for file in imported_files(f"{SCRIPTS}/{script}.py", SOURCE)]
+
+
+def settings(stage):
+    """The part of the configuration that a stage uses."""
+    return stage_params(STUDY, stage)
+
+
+def files_of_load(folder, suffix="nc"):
+    """The files of the cases of wildcard {load}, one per gap and seed."""
+    return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in ids_of_load(STUDY.grid, "{load}")]
+
+
+def files_of_study(folder, suffix="nc"):
+    """The files of all cases."""
+    return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in CASES]
+
+
+def kept(files):
+    """Time series: kept where the configuration says so, else removed as soon as their spectra are made."""
+    return files if STUDY.record.keep_time_series else temp(files)
+
+
+def figure_files(group):
+    """The files of a group of figures."""
+    return [f"{RESULTS}/figures/{name}.{suffix}" for name in FIGURES[group] for suffix in ("png", "pdf", "csv", "txt")]
+
+
+def f16_records(wildcards):
+    """The level files in the configured folder; a sentence where they are missing."""
+    found = sorted(Path(STUDY.f16_data).glob("F16Data_FullMSine_Level*.mat"))
+    if not found:
+        sys.exit(
+            f"f16_data = '{STUDY.f16_data}' holds no file F16Data_FullMSine_Level<N>.mat: download the F-16 ground vibration test "
+            "(Noel and Schoukens, 2017) from nonlinearbenchmark.org and give its folder: --config f16_data=FOLDER"
+        )
+    return [str(file) for file in found]
+
+
+def targets():
+    """What a complete study holds: the tables, every figure, and the time series where they are kept."""
+    figures = [file for group in FIGURES for file in figure_files(group)]
+    series = files_of_study("timeseries") if STUDY.record.keep_time_series else []
+    return [f"{RESULTS}/consistency.csv", f"{RESULTS}/consistency_summary.csv", f"{RESULTS}/consistency.nc", *figures, *series]
+
+
+wildcard_constraints:
+    load=r"[0-9.e+-]+",

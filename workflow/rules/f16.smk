@@ -1,0 +1,23 @@
+# Optional: the methods on measured records of an aircraft. `snakemake -j2 f16 --config f16_data=FOLDER`
+
+
+rule f16:
+    input:
+        library=library("f16"),
+        records=f16_records,
+    output:
+        poles="results/f16/poles.csv",
+    params:
+        config=settings("f16"),
+    log:
+        "results/f16/logs/f16.log",
+    benchmark:
+        "results/f16/benchmarks/f16.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Pole and shape of the F-16 near 7.3 Hz, by peak and by LSCF"
+    script:
+        "../scripts/f16.py"

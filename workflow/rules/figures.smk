@@ -1,0 +1,96 @@
+# Every figure as PNG and PDF, its data as CSV, its caption as text; common.smk names them.
+
+
+rule figures_model:
+    input:
+        library=library("figures_model"),
+        quality=f"{RESULTS}/basis_quality.csv",
+    output:
+        figures=figure_files("model"),
+    params:
+        config=settings("figures_model"),
+    log:
+        f"{RESULTS}/logs/figures_model.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures_model.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Figures: layout, modes, contact law, first frequency, reduced model"
+    script:
+        "../scripts/figures_model.py"
+
+
+rule figures_response:
+    input:
+        library=library("figures_response"),
+        model=f"{RESULTS}/model.nc",
+        campaign=STUDY.overlay.campaign or f"{RESULTS}/synthetic_campaign.nc",
+        spectra=files_of_study("spectra"),
+    output:
+        figures=figure_files("response"),
+    params:
+        config=settings("figures_response"),
+    log:
+        f"{RESULTS}/logs/figures_response.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures_response.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Figures: campaign over simulation, responses against load, in-plane share"
+    script:
+        "../scripts/figures_response.py"
+
+
+rule figures_identification:
+    input:
+        library=library("figures_identification"),
+        model=f"{RESULTS}/model.nc",
+        spectra=files_of_study("spectra"),
+        curves=files_of_study("estimates"),
+        table=f"{RESULTS}/consistency.csv",
+    output:
+        figures=figure_files("identification"),
+    params:
+        config=settings("figures_identification"),
+    log:
+        f"{RESULTS}/logs/figures_identification.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures_identification.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Figures: poles, stabilisation, shapes, singular values, broadband"
+    script:
+        "../scripts/figures_identification.py"
+
+
+rule figures_checks:
+    input:
+        library=library("figures_checks"),
+        model=f"{RESULTS}/model.nc",
+        records=files_of_study("records"),
+        table=f"{RESULTS}/consistency.csv",
+    output:
+        figures=figure_files("checks"),
+    params:
+        config=settings("figures_checks"),
+    log:
+        f"{RESULTS}/logs/figures_checks.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures_checks.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Figures: equivalent support, collapse, energy balance, contact statistics"
+    script:
+        "../scripts/figures_checks.py"

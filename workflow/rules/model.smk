@@ -1,0 +1,23 @@
+# Structure -> reduced model and its quality report.
+
+
+rule basis:
+    input:
+        library=library("basis"),
+    output:
+        model=f"{RESULTS}/model.nc",
+        quality=f"{RESULTS}/basis_quality.csv",
+    params:
+        config=settings("basis"),
+    log:
+        f"{RESULTS}/logs/basis.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/basis.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Reduced model of the structure, and its quality against the full model"
+    script:
+        "../scripts/basis.py"

@@ -1,0 +1,48 @@
+# One job per load: its gaps and seeds are integrated side by side; one pair of files per case. Then the spectra of those files.
+
+
+rule simulate:
+    input:
+        library=library("simulate"),
+        model=f"{RESULTS}/model.nc",
+        force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
+    output:
+        records=files_of_load("records"),
+        series=kept(files_of_load("timeseries")),
+    params:
+        config=settings("simulate"),
+    log:
+        f"{RESULTS}/logs/simulate_load_{{load}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    message:
+        f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
+    script:
+        "../scripts/simulate.py"
+
+
+rule spectra:
+    input:
+        library=library("spectra"),
+        series=files_of_load("timeseries"),
+    output:
+        spectra=files_of_load("spectra"),
+    params:
+        config=settings("spectra"),
+    log:
+        f"{RESULTS}/logs/spectra_load_{{load}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/spectra_load_{{load}}.tsv"
+    threads: 1
+    priority: 1  # before the next simulation: frees the time series
+    resources:
+        mem_mb=1000,
+        runtime=20,
+    message:
+        f"Spectra at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
+    script:
+        "../scripts/spectra.py"

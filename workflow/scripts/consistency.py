@@ -1,0 +1,16 @@
+"""Gather the estimates of all cases into the consistency tables."""
+
+import sys
+
+from vibroimpact.consistency import consistency_dataset, consistency_rows, summary_rows
+from vibroimpact.provenance import origin
+from vibroimpact.records import read_table, write_record, write_table
+
+sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+rows = consistency_rows([read_table(path) for path in snakemake.input.tables])
+summary = summary_rows(rows)
+write_table(rows, snakemake.output.table)
+write_table(summary, snakemake.output.summary)
+dataset = consistency_dataset(rows, summary)
+write_record(dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), snakemake.output.dataset)
+print(f"{len(rows)} estimates")

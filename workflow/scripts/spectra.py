@@ -1,0 +1,15 @@
+"""Write the spectra of all cases of one load."""
+
+import sys
+
+from vibroimpact.provenance import origin
+from vibroimpact.records import read_record, write_record
+from vibroimpact.settings import Settings
+from vibroimpact.spectra import case_spectra
+
+sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+config = Settings(snakemake.params.config)
+for series, path in zip(snakemake.input.series, snakemake.output.spectra, strict=True):
+    spectra = case_spectra(config, read_record(series))
+    write_record(spectra.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), path)
+    print(f"{path} written")
