@@ -17,10 +17,10 @@ LAYERS = (
     ("__init__", "config", "config_checks", "config_schema", "config_structure", "config_types", "settings", "stages", "cases",
      "provenance", "centreline", "beam", "kernels", "model"),
     ("records",),
-    ("structure", "supports", "force_files", "excitation", "spectra", "spectral_kernel"),
+    ("structure", "supports", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
     ("ritz", "reduction", "linear", "antialias", "layout"),
-    ("integrate", "simulate", "identify"),
-    ("consistency",),
+    ("integrate", "simulate", "identify", "synthetic_campaign"),
+    ("consistency", "f16"),
     ("figures",),
 )
 ANATOMY = ["input", "output", "params", "log", "benchmark", "threads", "resources", "message", "script"]

@@ -40,7 +40,7 @@ class Basis(Section):
     """What spans the reduced model."""
 
     free_modes_to_Hz: Frequency_Hz = 7500.0
-    constrained_modes_to_Hz: Frequency_Hz = 2000.0
+    constrained_modes_to_Hz: Frequency_Hz = 1000.0
     attachment_shapes: bool = True
 
 

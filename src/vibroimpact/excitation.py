@@ -1,7 +1,6 @@
 """Forces: band-limited Gaussian records of exact RMS, and measured records resampled to the integration step."""
 
 import numpy as np
-from scipy.fft import next_fast_len
 
 from .force_files import read_force
 
@@ -18,7 +17,7 @@ def band_limited_noise(generator: np.random.Generator, samples: int, rate: float
     Synthesised by inverse FFT of independent complex Gaussian lines (Shinozuka & Deodatis 1991, random amplitudes).
     Raises ForceError when the band holds no line.
     """
-    length = next_fast_len(samples, real=True)
+    length = fast_length(samples)
     low, high = (int(np.ceil(band[0] * length / rate)), int(np.floor(band[1] * length / rate)))
     if high < low or low < 1 or high >= length // 2:
         raise ForceError(
@@ -28,6 +27,16 @@ def band_limited_noise(generator: np.random.Generator, samples: int, rate: float
     lines = np.zeros(length // 2 + 1, complex)
     lines[low : high + 1] = generator.standard_normal(count) + 1j * generator.standard_normal(count)
     return np.fft.irfft(lines, length)[:samples] * (0.5 * length / np.sqrt(count))
+
+
+def fast_length(samples: int) -> int:
+    """The smallest 2^a 3^b 5^c that is at least ``samples``, a length that an FFT likes."""
+    best = 2 ** (samples - 1).bit_length()
+    for threes in range(11):
+        for fives in range(8):
+            odd = 3**threes * 5**fives
+            best = min(best, odd * 2 ** max((-(-samples // odd) - 1).bit_length(), 0))
+    return best
 
 
 def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> np.ndarray:

@@ -5,7 +5,7 @@ import numpy as np
 from .kernels import CHANNEL_BLOCK, LANES, PANEL, RATIO, SLOTS, Contact, Modal, Output, State, Tally, Work
 from .model import ModalModel
 
-FIXED_POINT_TOLERANCE = 1e-5
+FIXED_POINT_TOLERANCE = 1e-4
 FIXED_POINT_PASSES = 40
 DIVERGED_DISPLACEMENT = 1e3  # m
 

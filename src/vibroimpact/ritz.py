@@ -15,8 +15,9 @@ FAMILIES = ("free_modes", "constrained_modes", "attachment_shapes")
 # A direction in which unit vectors (strain-energy norm) reach less than this beyond the free modes is dropped: it holds less than
 # 1e-10 of anyone's energy, so no frequency moves by more, and the static shapes' own singular values stay above 7e-3.
 RANK_TOLERANCE = 1.0e-5
-RIGID_BODY_TOLERANCE = 1.0e-12  # of the highest eigenvalue: about 1e4 times its round-off, below it a frequency is 0
+SINGULAR_BELOW = 1.0e-14  # lowest eigenvalue of the stiffness scaled to a unit diagonal: below it a rigid-body motion is free
 RIGID_BODY_SHIFT = 1.0e-9  # of the highest eigenvalue: makes the stiffness of a free tube definite
+RIGID_BODY_TOLERANCE = 1.0e-6  # of the shift, below it a squared frequency is 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +41,7 @@ class DofGroup:
         A shift that is small against the squared cut-off of the free modes does not change what the basis spans: it alters the part
         of a static shape that the free modes hold anyway.
         """
-        lowest = linalg.eigh(self.stiffness, self.mass, eigvals_only=True, subset_by_index=[0, 0])[0]
-        scale = _highest_eigenvalue(self.stiffness, self.mass)
-        return RIGID_BODY_SHIFT * scale if lowest < RIGID_BODY_TOLERANCE * scale else 0.0
+        return rigid_body_shift(self.stiffness, self.mass)
 
     @cached_property
     def factor(self):
@@ -68,10 +67,23 @@ def uncoupled_groups(mass, stiffness, contact_rows):
     return groups
 
 
+def rigid_body_shift(stiffness, mass):
+    """Return the mass shift in rad²/s² that makes stiffness + shift mass definite: 0 where the stiffness is."""
+    scale = 1.0 / np.sqrt(np.diag(stiffness))
+    lowest = linalg.eigh(stiffness * scale * scale[:, None], eigvals_only=True, subset_by_index=[0, 0])[0]
+    return RIGID_BODY_SHIFT * _highest_eigenvalue(stiffness, mass) if lowest < SINGULAR_BELOW else 0.0
+
+
 def eigenmodes(stiffness, mass, frequency_to_Hz):
-    """Return (omega (mode,) rad/s, shapes (dof, mode) mass-orthonormal) up to a frequency; rigid-body modes get omega = 0 exactly."""
-    squares, shapes = linalg.eigh(stiffness, mass, subset_by_value=[-np.inf, (2.0 * np.pi * frequency_to_Hz) ** 2])
-    return _frequencies(squares, _highest_eigenvalue(stiffness, mass)), shapes
+    """Return (omega (mode,) rad/s, shapes (dof, mode) mass-orthonormal) up to a frequency; rigid-body modes get omega = 0 exactly.
+
+    Solved for the flexibility 1/(omega² + shift): round-off is then relative to each mode, not to the highest one, which on
+    short elements is 1e12 times the first.
+    """
+    shift = rigid_body_shift(stiffness, mass)
+    least = 1.0 / ((2.0 * np.pi * frequency_to_Hz) ** 2 + shift)
+    flexibility, shapes = linalg.eigh(mass, stiffness + shift * mass, subset_by_value=[least, np.inf])
+    return _frequencies(1.0 / flexibility[::-1] - shift, shift), (shapes / np.sqrt(flexibility))[:, ::-1]
 
 
 def basis_vectors(group, basis, families=FAMILIES):
@@ -102,8 +114,7 @@ def orthonormal_basis(group, vectors):
     the Gram matrix x^T K x would lose half the digits: the static shapes of neighbouring contact points are nearly alike.
     """
     free = vectors.get("free_modes", np.zeros((len(group.dofs), 0)))
-    squares = np.einsum("dm,dm->m", free, group.stiffness @ free)
-    omega = _frequencies(squares, _highest_eigenvalue(group.stiffness, group.mass))
+    omega = _frequencies(np.sum((group.factor.T @ free) ** 2, axis=0) - group.shift, group.shift)
     others = [shapes for family, shapes in vectors.items() if family != "free_modes"]
     if not others:
         return omega, free
@@ -131,6 +142,6 @@ def _highest_eigenvalue(stiffness, mass):
     return float(np.max(np.diag(stiffness) / np.diag(mass)))
 
 
-def _frequencies(squares, highest):
-    """Return (mode,) rad/s from eigenvalues in rad²/s²: those below 1e-12 of the `highest` one are rigid-body motion, exactly 0."""
-    return np.sqrt(np.where(squares < RIGID_BODY_TOLERANCE * highest, 0.0, squares))
+def _frequencies(squares, shift):
+    """Return (mode,) rad/s from eigenvalues in rad²/s²: those below 1e-6 of the `shift` are rigid-body motion, exactly 0."""
+    return np.sqrt(np.where(squares < RIGID_BODY_TOLERANCE * shift, 0.0, squares))

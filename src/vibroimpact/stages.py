@@ -18,7 +18,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
                  "record.sampling_frequency_Hz", "record.stress_limit_Pa"),
     "spectra": ("study", "excitation.direction", "record.sampling_frequency_Hz", "spectra", "identification.lscf",
                 "identification.broadband"),
-    "identify": ("excitation.kind", "excitation.band_Hz", "identification"),
+    "identify": ("excitation", "identification"),
     "consistency": ("study", "grid", "identification"),
     "synthetic_campaign": ("study", "seed", "points", "excitation", "integration", "grid.gap_m", "record.duration_s",
                            "record.sampling_frequency_Hz", "record.stress_limit_Pa", "overlay.gap_ratio", "overlay.noise", "overlay.seed"),

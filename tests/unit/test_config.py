@@ -158,6 +158,8 @@ REFUSALS = [
     ("grid.load_rms_N", [1.0, 2.0, 1.0], ["grid.load_rms_N = 1.0", "2 times"]),
     ("grid.load_rms_N.last", 0.01, ["grid.load_rms_N.last = 0.01", "above first"]),
     ("grid.seeds", 2.5, ["grid.seeds = 2.5 must be a whole number"]),
+    ("overlay.campaign", "no/such.nc", ["overlay.campaign = 'no/such.nc' is not a file", "or null"]),
+    ("overlay.seed", 3, ["overlay.seed = 3 is a seed of the study", "larger"]),
     ("study", "a/b", ["study = 'a/b'", "folder name"]),
 ]
 

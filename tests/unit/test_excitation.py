@@ -8,7 +8,7 @@ import xarray as xr
 from scipy.io import savemat
 
 from vibroimpact.cases import random_stream
-from vibroimpact.excitation import ForceError, band_limited_noise, resample_measured, unit_force
+from vibroimpact.excitation import ForceError, band_limited_noise, fast_length, resample_measured, unit_force
 from vibroimpact.force_files import ForceFileError, read_force
 
 BAND = (5.0, 200.0)
@@ -108,3 +108,13 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path):
     table.write_text("force\n" + "\n".join(["1.0"] * 10))
     with pytest.raises(ForceFileError, match="says no sampling frequency"):
         read_force(table, "force", None)
+
+
+def test_fast_length_has_small_factors_only():
+    for samples in (1, 7, 1000, 12345, 2825000):
+        length = fast_length(samples)
+        assert samples <= length <= 1.1 * samples + 1
+        for prime in (2, 3, 5):
+            while length % prime == 0:
+                length //= prime
+        assert length == 1

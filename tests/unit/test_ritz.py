@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import linalg, sparse
 
+from vibroimpact.reduction import build_model
 from vibroimpact.ritz import basis_vectors, eigenmodes, orthonormal_basis, uncoupled_groups
 from vibroimpact.structure import build_structure
 
@@ -152,3 +153,13 @@ def test_families_can_be_chosen_and_a_group_without_contact_has_free_modes_only(
     torsion = groups_of(tube(bend=False))[3]
     wide = SimpleNamespace(free_modes_to_Hz=5000.0, constrained_modes_to_Hz=5000.0, attachment_shapes=True)
     assert list(basis_vectors(torsion, wide)) == ["free_modes"]
+
+
+@pytest.mark.parametrize("theory", ["euler_bernoulli", "timoshenko"])
+def test_short_elements_do_not_lose_the_first_modes(study_config, theory):
+    """25 contact points in 30 mm: elements of 1.25 mm, highest frequency 1e6 times the first. The first modes stay those of testbed.md."""
+    structure = study_config.structure.model_copy(update={"theory": theory})
+    supports = tuple(support.model_copy(update={"points": 25}) for support in study_config.supports)
+    model = build_model(study_config.model_copy(update={"structure": structure, "supports": supports}))
+    expected = {"euler_bernoulli": [15.98, 29.02, 45.10], "timoshenko": [15.97, 28.96, 45.03]}[theory]
+    assert model.frequencies[:3] == pytest.approx(expected, rel=1.0e-3)

@@ -86,7 +86,8 @@ def study(tmp_path_factory):
 
 def test_the_default_study_is_planned_with_one_job_per_load(study):
     plan = study.plan(values=yaml.safe_load((ROOT / "config" / "study.yaml").read_text()))
-    assert plan == {"basis": 1, "simulate": 24, "spectra": 24, "identify": 24, "consistency": 1, **dict.fromkeys(FIGURES, 1), "all": 1}
+    once = {"basis", "synthetic_campaign", "consistency", "all"} | FIGURES
+    assert plan == {"simulate": 24, "spectra": 24, "identify": 24, **dict.fromkeys(once, 1)}
 
 
 def test_an_interrupted_study_continues_where_it_stopped(study):
@@ -113,7 +114,7 @@ def test_progress_tells_load_and_number_of_cases(study):
 
 @pytest.mark.parametrize(("file", "expected"), [
     ("spectra.py", {"spectra"} | AFTER_SPECTRA),
-    ("reduction.py", {"basis", "simulate", "spectra"} | AFTER_SPECTRA | FIGURES),
+    ("reduction.py", {"basis", "simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA | FIGURES),
     ("config_checks.py", set()),
 ])
 def test_an_edited_file_reruns_the_stages_that_import_it_and_what_follows(study, file, expected):
@@ -128,7 +129,7 @@ def test_an_added_load_simulates_only_what_is_new(study):
 
 def test_a_changed_key_reruns_the_stages_that_use_it(study):
     assert set(study.plan(values=study.changed(spectra={"overlap": 0.5}))) == {"spectra"} | AFTER_SPECTRA
-    assert set(study.plan("--config", "seed=7")) == {"simulate", "spectra"} | AFTER_SPECTRA
+    assert set(study.plan("--config", "seed=7")) == {"simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA
 
 
 def test_time_series_are_removed_unless_they_are_kept(study):

@@ -97,7 +97,7 @@ def figure_04_first_frequency(config):
         "its height. Dotted: the frequencies of the free tube, of the tube pinned at the middle of each support and of the tube held "
         f"over its whole height. Shaded: the stiffness ranges where 9 points are within {NEAR:.0%} of the step to the neighbouring "
         "limit. One point can pin the tube but never clamp it; five follow the layer over the whole range.")
-    sheet = Sheet("figure_04_first_frequency", "Support stiffness: from the free to the pinned to the clamped tube", caption, size=(7.6, 4.4))
+    sheet = Sheet("figure_04_first_frequency", "Support stiffness: from the free to the pinned to the clamped tube", caption, size=(7.6, 4.7))
     axes = sheet.axes["main"]
     axes.set_title("first frequency of the driven plane, by number of contact points per support")
     models = {points: model_with_points(config, points) for points in POINTS}
@@ -121,7 +121,7 @@ def figure_04_first_frequency(config):
     axes.set_xscale("log")
     axes.set_xlim(STIFFNESS[0], STIFFNESS[-1])
     axes.margins(y=0.08)
-    sheet.legend(axes, loc="upper left", bbox_to_anchor=(0.01, 0.63), title="contact points per support")
+    sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return [sheet]
 
 

@@ -40,7 +40,7 @@ def figure_13_equivalent_support(config, model, rows):
             if label not in labels:
                 handles.append(handle)
                 labels.append(label)
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=5)
+    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=(2, 4, 5)[min(len(gaps), 3) - 1])
     return [sheet]
 
 

@@ -64,6 +64,7 @@ def figure_07_overlay_of_loads(config, model, responses):
                    tags={"load_rms_N": load}, color=colours[load], linewidth=0.9, alpha=0.9)
     shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
     force = unit_force_psd(config, frequency)
+    force[force == 0.0] = np.nan  # without force there is no linear line to draw
     for k, dash in ((FREE_K, (0, (4, 2))), (stiff, "-")):
         psd = psd_family(model, [k], [0.0], frequency, shape)[0, 0] * force
         sheet.line(axes, ("frequency_Hz", frequency), ("psd_per_load2_m2_per_N2_per_Hz", psd), "linear", tags={"k_N_per_m": k}, color=BLACK,

@@ -109,5 +109,5 @@ def figure_11_singular_values(config, curves):
     axes.set_ylim(bottom=max(axes.get_ylim()[0], LOWEST_VALUE))
     if not axes.get_xlabel():
         sheet.note(axes, "no shape found", "load_rms_N", "singular_value")
-    sheet.legend(axes, loc="lower right")
+    sheet.legend(axes, loc="upper left", bbox_to_anchor=(0.0, 0.92), ncols=5)
     return [sheet]

@@ -34,13 +34,18 @@ class Sheet:
         self.figure.suptitle(title, x=0.01, ha="left")
 
     def record(self, axes, curve, **values):
-        """Add rows to the table: each value an array of equal length or a single value, in SI, under the name of its column."""
+        """Add rows to the table: each value an array of equal length or a single value, in SI, under the name of its column.
+
+        Returns the text "rows FIRST:LAST", the place of these rows in the table, that artists carry as their gid.
+        """
         lengths = {np.size(value) for value in values.values() if np.ndim(value)}
         if len(lengths) > 1:
             raise ValueError(f"{self.name}, {curve}: columns of different lengths {sorted(lengths)}")
         length = lengths.pop() if lengths else 1
         table = {column: np.ravel(np.broadcast_to(value, length)) for column, value in values.items()}
+        first = sum(length_of(other) for _, _, other in self.tables)
         self.tables.append((axes.get_label(), curve, table))
+        return f"rows {first}:{first + length}"
 
     def line(self, axes, x, y, curve, low=None, high=None, tags=None, **style):
         """Draw y over x, and the band from low to high where given; return the line.
@@ -52,20 +57,22 @@ class Sheet:
             axes.fill_between(shown(x_column, x_values), shown(y_column, low), shown(y_column, high),
                               color=style.get("color"), alpha=0.18, linewidth=0)
             tags = {**(tags or {}), f"{y_column}_low": low, f"{y_column}_high": high}
-        self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
-        line, = axes.plot(shown(x_column, x_values), shown(y_column, y_values), **style)
+        place = self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
+        line, = axes.plot(shown(x_column, x_values), shown(y_column, y_values), gid=place, **style)
         self._label(axes, x_column, y_column)
         return line
 
     def bars(self, axes, x, y, curve, low, high, tags=None, **style):
         """Draw points with bars from low to high, (point,) each, in SI; return the container."""
         (x_column, x_values), (y_column, y_values) = x, y
-        self.record(axes, curve, **(tags or {}),
-                    **{x_column: x_values, y_column: y_values, f"{y_column}_low": low, f"{y_column}_high": high})
+        place = self.record(axes, curve, **(tags or {}),
+                            **{x_column: x_values, y_column: y_values, f"{y_column}_low": low, f"{y_column}_high": high})
         middle = shown(y_column, y_values)
         spread = np.array([middle - shown(y_column, low), shown(y_column, high) - middle])
         self._label(axes, x_column, y_column)
-        return axes.errorbar(shown(x_column, x_values), middle, np.maximum(spread, 0.0), **{"capsize": 2, "linewidth": 1, **style})
+        container = axes.errorbar(shown(x_column, x_values), middle, np.maximum(spread, 0.0), **{"capsize": 2, "linewidth": 1, **style})
+        container.lines[0].set_gid(place)
+        return container
 
     def mark(self, axes, column, value, curve, vertical=True, **style):
         """Draw a line across the axes at one value of a column (vertical: of the x axis)."""
@@ -77,9 +84,9 @@ class Sheet:
         """Draw z (y, x) as colours over x and y, logarithmic y in even steps of its own; return the mesh. Rasterised in PDF."""
         (x_column, x_values), (y_column, y_values), (z_column, z_values) = x, y, z
         grid = np.meshgrid(x_values, y_values)
-        self.record(axes, curve, **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)})
+        place = self.record(axes, curve, **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)})
         mesh = axes.pcolormesh(edges(shown(x_column, x_values)), np.exp(edges(np.log(shown(y_column, y_values)))),
-                               shown(z_column, z_values), rasterized=True, **style)
+                               shown(z_column, z_values), rasterized=True, gid=place, **style)
         axes.set_yscale("log")
         axes.grid(False)
         self._label(axes, x_column, y_column)

@@ -64,8 +64,9 @@ def _front_view(sheet, axes, config, structure):
     sheet.record(axes, "roots", **{column: line[[0, -1], axis] for column, axis in zip(columns, view[:2], strict=True)})
     _draw_points(sheet, axes, config, structure, view, columns)
     axes.set_aspect("equal")
-    axes.margins(0.34, 0.06)
-    sheet.legend(axes, loc="lower center", bbox_to_anchor=(0.5, 0.02))
+    tall = np.ptp(line[:, view[1]]) >= np.ptp(line[:, view[0]])
+    axes.margins(*((0.34, 0.08) if tall else (0.15, 0.35)))  # room for the names beside, or above and below
+    sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=5)
 
 
 def _draw_plate(axes, structure, points, view, name):
@@ -80,8 +81,15 @@ def _draw_plate(axes, structure, points, view, name):
     axes.add_patch(Polygon(corners, facecolor=GREY, alpha=0.55, edgecolor=BLACK, linewidth=0.6, zorder=0))
     centre = structure.nodes[:, list(view[:2])].mean(axis=0)
     side = np.sign((middle - centre) @ across) or 1.0
-    axes.annotate(f"support\n{name}", middle + side * reach * across, xytext=(5 * (1 if side * across[0] > 0 else -1), 0),
-                  textcoords="offset points", ha="left" if side * across[0] > 0 else "right", va="center", fontsize=8.5)
+    offset, alignment = _beside(side * across)
+    axes.annotate(f"support\n{name}", middle + side * reach * across, xytext=5 * offset, textcoords="offset points", fontsize=8.5, **alignment)
+
+
+def _beside(direction):
+    """Return (offset (2,), {ha, va}) of a text that stands beside a point, horizontally or vertically, on the side of direction (2,)."""
+    if abs(direction[0]) > 0.4:
+        return np.array([np.sign(direction[0]), 0.0]), {"ha": "left" if direction[0] > 0.0 else "right", "va": "center"}
+    return np.array([0.0, np.sign(direction[1])]), {"ha": "center", "va": "bottom" if direction[1] > 0.0 else "top"}
 
 
 def _draw_points(sheet, axes, config, structure, view, columns):
@@ -96,7 +104,9 @@ def _draw_points(sheet, axes, config, structure, view, columns):
         spot = np.array(place)[list(view[:2])]
         sheet.line(axes, (columns[0], spot[:1]), (columns[1], spot[1:]), "points", tags={"names": " ".join(names)}, color=BLUE, marker="o",
                    markersize=6, linestyle="none", zorder=6, label="named point" if number == 0 else None)
+        tangent = structure.centreline.direction(structure.centreline.locate(place, names[0]))[list(view[:2])]
         outward = spot - centre[list(view[:2])]
+        outward = outward - (outward @ tangent) * tangent
         outward = outward / (np.linalg.norm(outward) or 1.0)
         lines = [", ".join(names)]
         if set(names) & set(config.record.sensors.points):
@@ -105,10 +115,8 @@ def _draw_points(sheet, axes, config, structure, view, columns):
             lines[0] = ", ".join(name for name in names if name != config.excitation.point) or "drive"
             lines.append(f"drive '{config.excitation.point}'")
             _direction(axes, spot, np.array(config.excitation.direction), view)
-        topmost = abs(outward[0]) <= 0.3  # its label goes inside the bend, where there is room
-        axes.annotate("\n".join(lines), spot, xytext=-14 * outward if topmost else 12 * np.sign(outward) * (1, 0), textcoords="offset points",
-                      ha="center" if topmost else "left" if outward[0] > 0.0 else "right",
-                      va="center" if not topmost else "top" if outward[1] > 0.0 else "bottom", fontsize=8.5, zorder=7)
+        offset, alignment = _beside(-outward if abs(outward[0]) <= 0.4 else outward)  # above and below a bend there is more room inside
+        axes.annotate("\n".join(lines), spot, xytext=13 * offset, textcoords="offset points", fontsize=8.5, zorder=7, **alignment)
 
 
 def _direction(axes, spot, direction, view):
@@ -165,7 +173,7 @@ def _support_section(sheet, axes, config, gap):
         sheet.line(axes, ("section_e1_m", size * np.cos(turn)), ("section_e2_m", size * np.sin(turn)), curve, color=colour, linewidth=1.2)
     for start, end in ((wall * 1.3, wall), (radius * 0.75, radius)):
         axes.annotate("", (end * 1e3, 0), (start * 1e3, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 1.6})
-    axes.text(0, 0, f"gap\n{gap * 1e3:.3g} mm\n({gap / section.outer_diameter_m * 100:.3g} % of D)", ha="center", va="center", fontsize=8.5)
+    axes.text(0, 0, f"gap\n{gap * 1e3:.3g} mm\n({gap / section.outer_diameter_m * 100:.3g} % of D)", ha="center", va="center", fontsize=7.5)
     axes.set_aspect("equal")
     axes.set_xlim(-1.5e3 * wall, 1.5e3 * wall)
     axes.set_ylim(-1.35e3 * wall, 1.35e3 * wall)

@@ -98,11 +98,18 @@ def match_shape(measured, response, mode_shapes, member):
             break
     shape = _aligned(measured.shape, middle)
     changes = np.array([np.vdot(slope, _aligned(other, shape) - shape).real for other in measured.segment_shapes]) / strength
-    moved = np.vdot(slope, _aligned(family.shape(log_k, 1.0), middle)).real / strength
-    damping_change = np.log(abs(member(log_k, 1.0)[0] / member(log_k)[0])) - moved
+    higher, lower = (_change_with_damping(family, member, log_k, errors, middle, slope, strength) for errors in (1.0, -1.0))
     model_error = GAIN_ERROR * np.sqrt(np.sum(np.abs(slope * shape) ** 2)) / strength
+    # The damping is as likely too high as too low, but k does not fall with the one as it rises with the other: the mean is taken out.
+    k = member(log_k)[0] * np.exp(-0.5 * (higher + lower))
     value = float(mac(measured.shape, middle))
-    return ShapeMatch(float(member(log_k)[0]), value, float(model_error), changes, float(damping_change), k_grid, macs)
+    return ShapeMatch(float(k), value, float(model_error), changes, float(0.5 * (higher - lower)), k_grid, macs)
+
+
+def _change_with_damping(family, member, log_k, errors, middle, slope, strength):
+    """Return the change of ln k for the same measured shape when the peak's damping is so many standard errors higher."""
+    moved = np.vdot(slope, _aligned(family.shape(log_k, errors), middle)).real / strength
+    return np.log(abs(member(log_k, errors)[0] / member(log_k)[0])) - moved
 
 
 class _Members:

@@ -14,7 +14,7 @@ from vibroimpact.identify.segments import widened
 from vibroimpact.spectral_kernel import correlated_sum
 
 LEVELS = {"peak_half": 2.0, "peak_quarter": 4.0, "peak_25th": 25.0}
-LARGEST_RATIO = 0.5  # damping ratio beyond which a peak is no peak
+SMALLEST_RATIO, LARGEST_RATIO = 1.0e-4, 0.5  # damping ratios beyond which a peak is no resonance
 FARTHEST = 50.0  # the weight falls to nothing at S_peak / FARTHEST: other modes and sensors' floors live there
 FEWEST_BINS = 7
 LEAST_WEIGHT = 0.01
@@ -83,63 +83,74 @@ def fit_peak(frequency, psd, kernel, level, start, other_modes=None, averages=np
 
     kernel: SpectralKernel of the analysis window, through which the curve passes before it meets the PSD; start: (Hz, width in Hz) as
     find_peak gives; other_modes(frequency, damping_ratio) -> function of the fine index that gives N (fine,): what the other modes of a
-    linear model with that first pole make of the curve (None: N = 1, a structure without a model); averages: effective degrees of freedom of a bin; segments
-    (segment, frequency): PSDs of the single segments, from which the standard error may be widened.
+    linear model with that first pole make of the curve (None: N = 1, a structure without a model); averages: effective degrees of
+    freedom of a bin; segments (segment, frequency): PSDs of the single segments, from which the standard error may be widened.
     """
-    theta = np.array([0.0, np.log(start[0]), np.log(min(0.5 * start[1] / start[0], 0.2))])
+    theta = np.array([np.nan, np.log(start[0]), np.log(min(0.5 * start[1] / start[0], 0.2))])
     passes = 1 if other_modes is None else OTHER_MODES_PASSES
     for number in range(passes):
         factor = None if other_modes is None else other_modes(*np.exp(theta[1:]))
-        state = _score(frequency, psd, kernel, level, theta, factor, SETTLED if number == passes - 1 else ROUGHLY)
-        if state is None:
+        fit = _score(frequency, psd, kernel, level, theta, factor, SETTLED if number == passes - 1 else ROUGHLY)
+        if fit is None:
             return None
-        theta, bins, model, slopes, weights = state
-    weighted = slopes * weights
-    inverse = np.linalg.inv(weighted @ slopes.T)
-    covariance = inverse @ correlated_sum(weighted, kernel) @ inverse * (2.0 / averages)
+        theta = fit.theta
+    weighted = fit.slopes * fit.weights
+    inverse = np.linalg.inv(weighted @ fit.slopes.T)
+    covariance = (inverse @ correlated_sum(weighted, kernel) @ inverse * (2.0 / averages))[1:, 1:]
     if segments is not None:
-        ratios = segments[:, bins] / model - psd[bins] / model
-        covariance = widened(covariance[1:, 1:], (ratios @ weighted.T @ inverse)[:, 1:], averages)
-    else:
-        covariance = covariance[1:, 1:]
-    edges = level_edges(np.exp(theta[1]), np.exp(theta[2]), level)
+        pulls = (segments[:, fit.bins] - psd[fit.bins]) / fit.curve @ weighted.T @ inverse
+        covariance = widened(covariance, pulls[:, 1:], averages)
+    frequency_Hz, damping_ratio = np.exp(theta[1:])
+    edges = level_edges(frequency_Hz, damping_ratio, level)
     if edges[0] > 0.0:
-        place, ratio = damping_from_width(edges, level)
-    else:
-        place, ratio = np.exp(theta[1:])
-    scale = np.array([place, ratio])
-    return PeakFit(float(place), float(ratio), covariance * np.outer(scale, scale), edges, bins, model)
+        frequency_Hz, damping_ratio = damping_from_width(edges, level)
+    scale = np.array([frequency_Hz, damping_ratio])
+    return PeakFit(float(frequency_Hz), float(damping_ratio), covariance * np.outer(scale, scale), edges, fit.bins, fit.curve)
+
+
+@dataclass(frozen=True)
+class _Score:
+    """State of the fit: theta = (ln A, ln frequency in Hz, ln damping ratio), bins, curve (bin,), slopes (3, bin), weights (bin,)."""
+
+    theta: np.ndarray
+    bins: slice
+    curve: np.ndarray
+    slopes: np.ndarray
+    weights: np.ndarray
 
 
 def _score(frequency, psd, kernel, level, theta, factor, tolerance):
-    """Return (theta, bins, fitted PSD (bin,), logarithmic slopes (3, bin), weights (bin,)) of the quasi-likelihood fit, or None.
+    """Return the _Score where the quasi-likelihood of the bins is stationary, or None.
 
-    The bins are gamma distributed about the curve: Fisher scoring on sum of weight (estimate/curve - 1) slope = 0 for theta = (ln A,
-    ln frequency in Hz, ln damping ratio). Bins and weights follow the curve, not the noise.
+    The bins are gamma distributed about the curve: Fisher scoring on sum of weight (estimate/curve - 1) slope = 0. Bins and weights
+    follow the curve, not the noise. An amplitude that is NaN is set from the first curve.
     """
-    amplitude_known = theta[0] != 0.0
     for step in range(SCORING_STEPS):
         bins = _bins(frequency, theta)
-        model, slopes, weights = _curve(frequency[bins], theta, kernel, level, factor)
-        if not amplitude_known:
-            theta = theta + np.array([np.log(np.sum(weights * psd[bins] / model) / np.sum(weights)), 0.0, 0.0])
-            amplitude_known = True
+        shape, slopes, weights = _curve(frequency[bins], theta, kernel, level, factor)
         if np.count_nonzero(weights > LEAST_WEIGHT) < len(theta) + 1:
             return None  # a peak narrower than the bins has no width to be read
-        model = model * np.exp(theta[0])
+        if np.isnan(theta[0]):
+            theta = np.array([np.log(np.sum(weights * psd[bins] / shape) / np.sum(weights)), *theta[1:]])
+        curve = np.exp(theta[0]) * shape
         weighted = slopes * weights
         information = weighted @ slopes.T
         information[np.diag_indices(3)] *= 1.0 + 1.0e-10
-        change = np.linalg.solve(information, weighted @ (psd[bins] / model - 1.0))
+        change = np.linalg.solve(information, weighted @ (psd[bins] / curve - 1.0))
         largest = max(abs(change[1]) * 20.0, abs(change[2]))
         if largest < tolerance:
-            return theta, bins, model, slopes, weights
+            return _Score(theta, bins, curve, slopes, weights)
         # The weights follow the curve: where they make the steps go to and fro, half steps settle.
         theta = theta + change * min(1.0 if step < FULL_STEPS else 0.5, 0.5 / largest)
-        inside = frequency[0] < np.exp(theta[1]) < frequency[-1] if np.all(np.isfinite(theta)) else False
-        if not (inside and -9.0 < theta[2] < np.log(LARGEST_RATIO)):
+        if not _plausible(theta, frequency):
             return None
-    return (theta, bins, model, slopes, weights) if largest < ROUGHLY else None
+    return _Score(theta, bins, curve, slopes, weights) if largest < ROUGHLY else None
+
+
+def _plausible(theta, frequency):
+    """Return whether the pole of theta lies inside the spectrum and is a damped resonance."""
+    ratios = np.log((SMALLEST_RATIO, LARGEST_RATIO))
+    return bool(np.all(np.isfinite(theta)) and frequency[0] < np.exp(theta[1]) < frequency[-1] and ratios[0] < theta[2] < ratios[1])
 
 
 def _bins(frequency, theta):

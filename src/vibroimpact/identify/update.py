@@ -1,17 +1,14 @@
 """From a pole to the equivalent support: the (k, c) whose linear tube has that pole.
 
 A complex lambda is a pole of the tube with support s = k + lambda c exactly when s = -1/mu for an eigenvalue mu of the contact
-compliance G at lambda. So no search is needed: the eigenvalue that belongs to the first mode is followed along the straight line from
-the pole of the free tube (where s = 0) to the wanted one, and its end gives s; the imaginary part of s gives c.
-The slow twin, which checks every candidate by continuation in c, is `linear.support_from_pole`.
+compliance G at lambda. So no search is needed: the imaginary part of s gives c, the rest k. Of the eigenvalues the first mode's is the
+one with a positive k, the smallest if there are several: supports that stiffen the other modes down to this pole are negative.
+The slow twin, which follows the first mode of every candidate from c = 0, is `linear.support_from_pole`.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-
-CONTINUATION_STEPS = 6
-
 
 @dataclass(frozen=True)
 class SupportFromPole:
@@ -44,30 +41,23 @@ def free_pole(modes):
 def support_from_pole(modes, frequency, damping_ratio):
     """Return the SupportFromPole of a pole given by its undamped frequency (Hz) and damping ratio, for the followed mode of DrivenModes."""
     pole = pole_of(frequency, damping_ratio)
-    mu, vector = _follow(modes, pole)
-    stiffness = -1.0 / mu
-    c = stiffness.imag / pole.imag
-    k = stiffness.real - c * pole.real
-    slope = _compliance_slope(modes, pole, vector) / mu**2
+    values, vectors = np.linalg.eig(modes.compliance(pole))
+    stiffness = -1.0 / np.where(values == 0.0, np.finfo(float).tiny, values)
+    damping = stiffness.imag / pole.imag
+    static = stiffness.real - damping * pole.real
+    above_free = np.abs(pole) > np.abs(free_pole(modes))
+    stiffening = above_free and np.any(static > 0.0)
+    chosen = int(np.argmin(np.where(static > 0.0, np.abs(stiffness), np.inf) if stiffening else np.abs(stiffness)))
+    k, c = float(static[chosen]), float(damping[chosen])
+    slope = _compliance_slope(modes, pole, vectors[:, chosen]) / values[chosen] ** 2
     columns = []
     for pole_change in (pole / frequency, 2.0 * np.pi * frequency * (-1.0 - 1j * damping_ratio / np.sqrt(1.0 - damping_ratio**2))):
         change = slope * pole_change
         c_change = (change.imag - c * pole_change.imag) / pole.imag
         columns.append((change.real - c_change * pole.real - c * pole_change.real, c_change))
-    beyond_clamped = np.abs(pole) > np.abs(free_pole(modes)) and mu.real > 0.0 and abs(stiffness.real) > abs(stiffness.imag)
-    return SupportFromPole(float("inf") if beyond_clamped else float(k), float(c), np.array(columns).T)
-
-
-def _follow(modes, pole):
-    """Return (mu, vector (contact,)) at the pole of the eigenvalue of G that is infinite at the free pole."""
-    start = free_pole(modes)
-    places = start + np.linspace(0.0, 1.0, CONTINUATION_STEPS + 1)[1:] * (pole - start)
-    values, vectors = np.linalg.eig(modes.compliance(places))
-    chosen = int(np.argmax(np.abs(values[0])))
-    for here in range(1, len(places)):
-        likeness = np.abs(vectors[here - 1][:, chosen].conj() @ vectors[here])
-        chosen = int(np.argmax(likeness))
-    return values[-1, chosen], vectors[-1][:, chosen]
+    # Above the free frequency a negative k is possible only as a small part of a heavily damped support.
+    beyond_clamped = above_free and not stiffening and abs(k) > abs(c) * pole.imag
+    return SupportFromPole(float("inf") if beyond_clamped else k, c, np.array(columns).T)
 
 
 def _compliance_slope(modes, pole, vector):

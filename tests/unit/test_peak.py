@@ -1,0 +1,81 @@
+"""Widths of a peak: exact inversion at every level, and the fit that reads them from a noisy, windowed spectrum."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.identify.peak import LEVELS, damping_from_width, find_peak, fit_peak, level_edges, resonance
+from vibroimpact.spectral_kernel import spectral_kernel
+
+FREQUENCY = np.arange(0, 601) * 0.1
+
+
+def expected(place, ratio, kernel, size=3.0e-7):
+    """The averaged spectrum of an oscillator that the window lets expect."""
+    fine = kernel.fine_index(FREQUENCY) * kernel.spacing_Hz / kernel.oversampling
+    return size * kernel.smooth(resonance(fine, np.log(place), np.log(ratio))[0])
+
+
+@pytest.mark.parametrize("level", LEVELS.values())
+@pytest.mark.parametrize("ratio", [1.0e-3, 0.015, 0.1])
+def test_width_and_damping_are_inverse(level, ratio):
+    edges = level_edges(20.0, ratio, level)
+    peak = 1.0 / (4.0 * ratio**2 * (1.0 - ratio**2))
+    for edge in edges:
+        assert resonance(np.array([edge]), np.log(20.0), np.log(ratio))[0, 0] == pytest.approx(peak / level, rel=1.0e-9)
+    assert damping_from_width(edges, level) == pytest.approx((20.0, ratio), rel=1.0e-9)
+
+
+def test_for_light_damping_the_textbook_rule_holds():
+    low, high = level_edges(16.0, 0.002, 2.0)
+    assert (high - low) / (2.0 * 16.0) == pytest.approx(0.002, rel=1.0e-4)
+    low, high = level_edges(16.0, 0.002, 25.0)
+    assert (high - low) / (2.0 * 16.0 * np.sqrt(24.0)) == pytest.approx(0.002, rel=1.0e-3)
+
+
+def test_slopes_of_the_resonance():
+    place, ratio, step = np.log(20.0), np.log(0.03), 1.0e-6
+    frequency = np.linspace(15.0, 25.0, 41)
+    curve, by_frequency, by_ratio = resonance(frequency, place, ratio)
+    np.testing.assert_allclose(by_frequency, (resonance(frequency, place + step, ratio)[0] - curve) / step, rtol=1.0e-3, atol=1.0e-3)
+    np.testing.assert_allclose(by_ratio, (resonance(frequency, place, ratio + step)[0] - curve) / step, rtol=1.0e-3, atol=1.0e-3)
+
+
+@pytest.mark.parametrize("window", ["hann", "boxcar", "none"])
+@pytest.mark.parametrize("level", LEVELS.values())
+def test_an_exact_spectrum_gives_its_pole_at_every_level(window, level):
+    kernel = spectral_kernel(window, 10.0)
+    psd = expected(21.3, 0.024, kernel)
+    fit = fit_peak(FREQUENCY, psd, kernel, level, find_peak(FREQUENCY, psd, (8.0, 45.0)))
+    assert (fit.frequency, fit.damping_ratio) == pytest.approx((21.3, 0.024), rel=1.0e-5)
+    np.testing.assert_allclose(fit.curve, psd[fit.bins], rtol=1.0e-5)
+
+
+def test_without_the_kernel_the_window_s_width_is_taken_for_damping():
+    psd = expected(16.0, 0.015, spectral_kernel("hann", 10.0))
+    blind = fit_peak(FREQUENCY, psd, spectral_kernel("none", 10.0), 2.0, find_peak(FREQUENCY, psd, (8.0, 45.0)))
+    assert 1.025 < blind.damping_ratio / 0.015 < 1.12
+
+
+def test_noisy_spectra_are_read_without_bias_and_with_the_right_standard_error():
+    kernel, averages = spectral_kernel("none", 10.0), 18.0
+    psd = expected(21.0, 0.025, kernel)
+    generator = np.random.default_rng(11)
+    for level in LEVELS.values():
+        fits = []
+        for _ in range(150):
+            noisy = psd * generator.gamma(averages / 2.0, 2.0 / averages, psd.size)
+            fits.append(fit_peak(FREQUENCY, noisy, kernel, level, find_peak(FREQUENCY, noisy, (8.0, 45.0)), averages=averages))
+        found = np.array([(fit.frequency, fit.damping_ratio) for fit in fits])
+        errors = np.sqrt(np.mean([np.diag(fit.covariance) for fit in fits], axis=0))
+        bias = (found.mean(axis=0) - (21.0, 0.025)) / (found.std(axis=0) / np.sqrt(150))
+        assert np.all(np.abs(bias) < 3.0)
+        np.testing.assert_allclose(errors / found.std(axis=0), 1.0, atol=0.25)
+
+
+def test_what_is_no_resonance_gives_none_or_a_wide_error():
+    kernel = spectral_kernel("none", 10.0)
+    line = np.full(FREQUENCY.size, 1.0e-12)
+    line[200] = 1.0
+    assert fit_peak(FREQUENCY, line, kernel, 2.0, find_peak(FREQUENCY, line, (8.0, 45.0))) is None
+    with pytest.raises(ValueError, match="only 2 bins between 8 and 8.1 Hz"):
+        find_peak(FREQUENCY, line, (8.0, 8.1))
