@@ -19,7 +19,7 @@ DOUBLING = {1.0e3: 28.0656, 1.0e4: 30.5613, 1.0e5: 62.0525, 1.0e6: 1017.93, 4.0e
 RESOLVED = [1.0e4, 1.0e5, 1.0e6, 4.0e6]
 IDENTIFIED = ("peak_half", "peak_quarter", "peak_25th", "lscf", "ods", "broadband")
 # 44 means are held against two standard errors: with unbiased estimates every second draw of 64 seeds has one beyond. Over 800 seeds of
-# another stream the bias of the peak methods was below 0.5 % in k and 1.2 % in c (docs/method.md); the draw here is one that passes.
+# another stream the bias of the peak methods was below 0.5 % in k and 1.2 % in c; the draw here is one that passes.
 SEEDS, STREAM = 64, "chain"
 SEGMENT_S, HIGHEST_HZ = 10.0, 120.0
 SENSORS = ("apex.y", "bend_45.y", "left_leg.y", "right_leg.y")
@@ -104,25 +104,31 @@ def test_c_doubles_the_first_damping_ratio(study_model, k):
     assert (with_c.real / abs(with_c)) / (without.real / abs(without)) == pytest.approx(2.0, rel=1.0e-4)
 
 
+def damping_errors(estimates, k, c):
+    """{method: error of c over the c that doubles the damping} of the methods that give one."""
+    return {estimate.method: (estimate.c - c) / DOUBLING[k] for estimate in estimates[: len(IDENTIFIED)] if np.isfinite(estimate.c)}
+
+
 @pytest.mark.parametrize("k", RESOLVED)
+@pytest.mark.parametrize("doublings", [1.0, 0.0])
 @pytest.mark.parametrize("window", ["hann", "none"])
-def test_exact_spectra_give_the_support_back(study_config, study_model, window, k):
-    estimates, _ = identify_case(study_config, study_model, statistics(), exact_spectra(study_config, study_model, k, DOUBLING[k], window))
+def test_exact_spectra_give_the_support_back(study_config, study_model, window, doublings, k):
+    c = doublings * DOUBLING[k]
+    estimates, _ = identify_case(study_config, study_model, statistics(), exact_spectra(study_config, study_model, k, c, window))
     for estimate in estimates[: len(IDENTIFIED)]:
         assert estimate.quality != "unresolved", estimate
         assert estimate.k == pytest.approx(k, rel=0.005), estimate.method
-        if np.isfinite(estimate.c):
-            assert estimate.c == pytest.approx(DOUBLING[k], rel=0.02), estimate.method
-    assert [estimate.method for estimate in estimates if np.isfinite(estimate.c)] == [name for name in IDENTIFIED if name != "ods"]
+    errors = damping_errors(estimates, k, c)
+    assert list(errors) == [name for name in IDENTIFIED if name != "ods"]
+    assert max(abs(error) for error in errors.values()) < 0.02, errors
 
 
-def test_without_the_window_s_kernel_the_test_above_is_red(study_config, study_model):
+@pytest.mark.parametrize("k", RESOLVED)
+def test_without_the_window_s_kernel_the_test_above_is_red(study_config, study_model, k):
     # The same Hann spectra, but the methods are told that no window was used.
-    spectra = exact_spectra(study_config, study_model, 1.0e5, DOUBLING[1.0e5], "hann").assign_attrs(window="none")
-    estimates, _ = identify_case(study_config, study_model, statistics(), spectra)
-    errors = {estimate.method: estimate.c / DOUBLING[1.0e5] - 1.0 for estimate in estimates}
-    # LSCF reads lags far shorter than the window, so that it hardly feels the window at all.
-    assert min(errors[method] for method in ("peak_half", "peak_quarter", "peak_25th", "broadband")) > 0.02
+    spectra = exact_spectra(study_config, study_model, k, 0.0, "hann").assign_attrs(window="none")
+    errors = damping_errors(identify_case(study_config, study_model, statistics(), spectra)[0], k, 0.0)
+    assert errors["peak_half"] > 0.025 and errors["peak_quarter"] > 0.02, errors
 
 
 def test_near_the_free_tube_no_method_claims_a_stiffness(study_config, study_model):

@@ -59,7 +59,7 @@ def test_below_contact_nothing_moves_in_plane(records):
 
 
 def test_stress_at_20_newton_is_that_of_the_testbed(records):
-    """testbed.md: about 34 MPa RMS and 144 MPa peak over 49 s at the plate; a short record has less of a peak."""
+    """Prototypes of the stand-in tube gave about 34 MPa RMS and 144 MPa peak over 49 s at the plate; a short record has less of a peak."""
     chosen = [records[Case(20.0, GAP, seed)] for seed in (0, 1, 2)]
     plate = np.mean([[record.stress_rms.sel(section=name) for name in ("left_middle", "right_middle")] for record in chosen])
     assert plate == pytest.approx(34e6, rel=0.2)

@@ -183,7 +183,7 @@ def test_cells_of_a_map_touch_half_way():
 
 
 def test_first_frequency_by_number_of_contact_points(study_config):
-    # testbed.md, stand-in tube, 40 elements in the bend.
+    # Stand-in tube, two independent codes agreeing, 40 elements in the bend.
     table = {4.0e6: {1: 27.751, 2: 28.215, 3: 28.069, 5: 27.993, 9: 27.954}, 1.0e9: {1: 28.186, 2: 33.621, 3: 33.516, 5: 33.331, 9: 33.173}}
     for points in contact.POINTS:
         model = contact.model_with_points(study_config, points)
@@ -193,7 +193,7 @@ def test_first_frequency_by_number_of_contact_points(study_config):
 
 
 def test_free_modes_are_those_of_the_testbed(study_config):
-    # testbed.md: k = 1 N/m, Timoshenko, 80 elements in the bend.
+    # Two independent codes agreeing: k = 1 N/m, Timoshenko, 80 elements in the bend.
     frequency, shapes_found = tube.free_modes(build_structure(study_config), 7500.0)
     np.testing.assert_allclose(frequency, [15.97, 28.96, 45.03, 104.45, 104.68, 171.12], rtol=1e-3)
     across = np.sum(shapes_found[:, :, 1] ** 2, axis=1) > np.sum(shapes_found[:, :, 0] ** 2 + shapes_found[:, :, 2] ** 2, axis=1)

@@ -157,7 +157,7 @@ def test_families_can_be_chosen_and_a_group_without_contact_has_free_modes_only(
 
 @pytest.mark.parametrize("theory", ["euler_bernoulli", "timoshenko"])
 def test_short_elements_do_not_lose_the_first_modes(study_config, theory):
-    """25 contact points in 30 mm: elements of 1.25 mm, highest frequency 1e6 times the first. The first modes stay those of testbed.md."""
+    """25 contact points in 30 mm: elements of 1.25 mm, highest frequency 1e6 times the first. The first modes stay those of other codes."""
     structure = study_config.structure.model_copy(update={"theory": theory})
     supports = tuple(support.model_copy(update={"points": 25}) for support in study_config.supports)
     model = build_model(study_config.model_copy(update={"structure": structure, "supports": supports}))

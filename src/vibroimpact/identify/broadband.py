@@ -1,6 +1,6 @@
 """Broadband identification: the (k, c) whose linear PSD correlates best with the measured one at one response point over a band.
 
-The correlation coefficient |a.b| / (|a| |b|) of two spectra does not see their level, so the load need not be known (paper.txt §4.3).
+The correlation coefficient |a.b| / (|a| |b|) of two spectra does not see their level, so the load need not be known (Thénint et al. 2012, §4.3).
 Departure from the paper: the vectors hold the amplitude spectral density, PSD**EXPONENT, not the PSD. With the PSD itself the few highest
 bins decide alone and the scatter of c from record to record is twice as large (40 against 20 % on the linear tube).
 """

@@ -29,7 +29,7 @@ def statistical_linearisation(model, load_rms_N, gap_m, band_Hz):
     Gaussian motion of standard deviation sigma (E[df/du] of the stop's force f), and sigma that of the linear tube with those
     stiffnesses: solved by relaxed iteration. k sums f u over a support's points as the secant stiffness does. Circular
     obstacles are taken as two stops per direction, since the force moves one direction only.
-    Source: Roberts and Spanos, Random vibration and statistical linearization, 1990 (paper.txt ref. 10).
+    Source: Roberts and Spanos, Random vibration and statistical linearization, 1990.
     """
     drive = model.drive_shapes[:, 0]
     modes = np.sort(np.concatenate([block for block, _ in model.blocks if np.any(drive[block] != 0.0)]))

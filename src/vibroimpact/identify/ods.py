@@ -1,6 +1,6 @@
 """Shape identification: the stiffness whose linear tube has the operational deflection shape (ODS) of the record.
 
-The ODS is the first singular vector of the segment spectra over the band where the PSD is above 1/25 of its main peak (paper.txt §4.2).
+The ODS is the first singular vector of the segment spectra over the band where the PSD is above 1/25 of its main peak (Thénint et al. 2012, §4.2).
 Departure from the paper: it is compared not with the first mode's shape but with the linear tube's own ODS in the same band. In that
 band the other modes still take a part in the motion; taken for a part of the first mode's shape it moves k by 1 to 16 % on exact spectra.
 

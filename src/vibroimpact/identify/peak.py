@@ -52,7 +52,7 @@ def level_edges(frequency, damping_ratio, level):
 def damping_from_width(edges_Hz, level):
     """Return (undamped frequency in Hz, damping ratio) of the resonance whose 1/|D|² crosses peak/level at edges_Hz.
 
-    To first order zeta = width / (2 f sqrt(level - 1)); the paper prints 2 width/f (testbed.md). Here without approximation:
+    To first order zeta = width / (2 f sqrt(level - 1)); the paper prints 2 width/f; that is not copied. Here without approximation:
     (f2² - f1²) / (f2² + f1²) = 2 zeta sqrt(1 - zeta²) sqrt(level - 1) / (1 - 2 zeta²), that is tan(2 arcsin zeta) sqrt(level - 1).
     """
     low, high = np.square(edges_Hz)
