@@ -14,6 +14,7 @@ COMPARED = ("lscf", "ods", "broadband")  # one of each of the three independent 
 AGREEMENT = 0.25  # largest relative distance from the median of the three
 VERDICTS = ("agree", "spread", "unresolved")
 SUMMARY_COLUMNS = ("gap_m", "load_rms_N", "load_over_gap", "method", "k_median", "k_low", "k_high", "c_median", "c_low", "c_high", "ratio", "verdict")
+COLLAPSE_COLUMNS = ("method", "load_over_gap", "k_smallest", "k_largest", "gaps", "k_ratio")
 
 
 def consistency_rows(tables):

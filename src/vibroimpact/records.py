@@ -135,14 +135,17 @@ def read_model(path) -> ModalModel:
     return ModalModel(**values)
 
 
-def write_table(rows: list[dict], path) -> None:
-    """Write rows (all with the same keys) as CSV: floats in full precision, NaN as 'nan'. Atomic like write_record."""
+def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
+    """Write rows (all with the same keys) as CSV: floats in full precision, NaN as 'nan'. Atomic like write_record.
+
+    columns: the header of a table that may have no rows.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with open(temporary, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else [])
+            writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else list(columns))
             writer.writeheader()
             writer.writerows({key: _plain(value) for key, value in row.items()} for row in rows)
         os.replace(temporary, path)

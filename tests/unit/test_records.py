@@ -48,6 +48,11 @@ def test_a_broken_file_is_named(tmp_path):
         records.read_record(tmp_path / "broken.nc")
 
 
+def test_an_empty_table_keeps_its_header(tmp_path):
+    records.write_table([], tmp_path / "table.csv", ("a", "b"))
+    assert (tmp_path / "table.csv").read_text().strip() == "a,b"
+
+
 def test_tables_keep_numbers_and_nan(tmp_path):
     rows = [{"name": "a", "k": 0.1 + 0.2, "n": 3}, {"name": "b", "k": float("nan"), "n": 4}]
     records.write_table(rows, tmp_path / "table.csv")

@@ -86,7 +86,8 @@ def targets():
     """What a complete study holds: the tables, every figure, and the time series where they are kept."""
     figures = [file for group in FIGURES for file in figure_files(group)]
     series = files_of_study("timeseries") if STUDY.record.keep_time_series else []
-    return [f"{RESULTS}/consistency.csv", f"{RESULTS}/consistency_summary.csv", f"{RESULTS}/consistency.nc", *figures, *series]
+    tables = [f"{RESULTS}/{name}" for name in ("consistency.csv", "consistency_summary.csv", "consistency_collapse.csv", "consistency.nc")]
+    return [*tables, *figures, *series]
 
 
 wildcard_constraints:

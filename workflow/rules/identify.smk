@@ -33,6 +33,7 @@ rule consistency:
     output:
         table=f"{RESULTS}/consistency.csv",
         summary=f"{RESULTS}/consistency_summary.csv",
+        collapse=f"{RESULTS}/consistency_collapse.csv",
         dataset=f"{RESULTS}/consistency.nc",
     params:
         config=settings("consistency"),

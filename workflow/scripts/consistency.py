@@ -2,7 +2,7 @@
 
 import sys
 
-from vibroimpact.consistency import consistency_dataset, consistency_rows, summary_rows
+from vibroimpact.consistency import COLLAPSE_COLUMNS, collapse_rows, consistency_dataset, consistency_rows, summary_rows
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_table, write_record, write_table
 
@@ -11,6 +11,7 @@ rows = consistency_rows([read_table(path) for path in snakemake.input.tables])
 summary = summary_rows(rows)
 write_table(rows, snakemake.output.table)
 write_table(summary, snakemake.output.summary)
+write_table(collapse_rows(summary), snakemake.output.collapse, COLLAPSE_COLUMNS)
 dataset = consistency_dataset(rows, summary)
 write_record(dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), snakemake.output.dataset)
 print(f"{len(rows)} estimates")

@@ -49,7 +49,8 @@ def identify_broadband(psd, response, kernel, family, least_damping, averages=np
     """Return the BroadbandFit of a PSD (bin,), or None when the search ends nowhere.
 
     response: FamilyResponse of the point on the kernel's fine grid of the band's bins; family: its FamilyMap; least_damping(k) -> c
-    (N s/m) below which a member is unstable (its spectrum would look damped); averages: effective degrees of freedom of a bin; segments (segment, bin): PSDs of the single segments, from which the standard error may be widened.
+    (N s/m) below which a member is unstable (its spectrum would look damped); averages: effective degrees of freedom of a bin;
+    segments (segment, bin): PSDs of the single segments, from which the standard error may be widened.
     Maximal correlation is the least-squares fit of the vector with a free amplitude: damped Gauss-Newton steps in (ln k, c) from the
     best member of the map.
     """
@@ -68,7 +69,8 @@ def identify_broadband(psd, response, kernel, family, least_damping, averages=np
     if segments is not None:
         covariance = widened(covariance, ((segments - psd) / curve) @ weighted.T @ inverse, averages)
     scale = np.array([k, 1.0])
-    return BroadbandFit(float(k), float(c), float(np.sqrt(max(0.0, 1.0 - residual @ residual))), covariance * np.outer(scale, scale), curve, correlations)
+    correlation = float(np.sqrt(max(0.0, 1.0 - residual @ residual)))
+    return BroadbandFit(float(k), float(c), correlation, covariance * np.outer(scale, scale), curve, correlations)
 
 
 def _climb(target, response, kernel, k, c, least_damping):

@@ -60,9 +60,9 @@ def operational_pole(outputs, references, search, peak, averages=np.inf, duratio
     """Return the OperationalPole of segment spectra outputs (output, segment, frequency), or None where no pole is near the peak.
 
     references: indices of the outputs that serve as references; search: PoleSearch; peak: (Hz, half-power width in Hz) as find_peak
-    gives; averages: effective degrees of freedom of a bin; duration_s: length of the record; tube_spectra(frequency, damping_ratio) -> (cross-spectra (output,
-    reference, frequency) of the linear tube with about that first pole, its exact pole in rad/s), or None where there is none (default:
-    no model).
+    gives; averages: effective degrees of freedom of a bin; duration_s: length of the record; tube_spectra(frequency, damping_ratio) ->
+    (cross-spectra (output, reference, frequency) of the linear tube with about that first pole, its exact pole in rad/s), or None where
+    there is none (default: no model).
     """
     segments = outputs.shape[1]
     lags = lag_window(search.window, 2 * (search.frequency.size - 1), 1.0 / search.frequency[1],
