@@ -22,7 +22,7 @@ def oscillator(contact_stiffness, damping=0.2):
 
 @pytest.mark.parametrize("s0, contact_stiffness, k", [(0.5, 10.0, 1.2522), (1.0, 10.0, 2.2966), (1.0, 100.0, 4.4632), (2.0, 100.0, 10.8917)])
 def test_oscillator_between_stops_under_white_noise(s0, contact_stiffness, k):
-    # cases.md R11: E[w(t) w(t+s)] = 2 pi S0 delta(s), one-sided PSD 4 pi S0 per Hz, T = pi S0 / c = s0²; k there counts the spring, 1.
+    # E[w(t) w(t+s)] = 2 pi S0 delta(s), one-sided PSD 4 pi S0 per Hz, T = pi S0 / c = s0²; k there counts the spring, 1.
     damping, band = 0.2, (1.0e-6, 1.0e4)
     force_psd = 4.0 * damping * s0**2
     found = statistical_linearisation(oscillator(contact_stiffness, damping), np.sqrt(force_psd * (band[1] - band[0])), 1.0, band)
