@@ -15,12 +15,13 @@ RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 # From the lowest layer up. A module imports from its own layer and from those before it; a package counts as one entry.
 LAYERS = (
     ("__init__", "config", "config_checks", "config_schema", "config_structure", "config_types", "settings", "stages", "cases",
-     "provenance", "centreline", "beam", "kernels", "model"),
+     "provenance", "centreline", "beam", "kernels", "laws", "model"),
     ("records",),
     ("structure", "supports", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
-    ("ritz", "reduction", "linear", "antialias", "layout"),
-    ("integrate", "simulate", "identify", "synthetic_campaign"),
+    ("ritz", "reduction", "linear", "antialias", "layout", "potential"),
+    ("integrate", "trace", "simulate", "identify", "synthetic_campaign"),
     ("consistency", "f16"),
+    ("validation",),
     ("figures",),
 )
 ANATOMY = ["input", "output", "params", "log", "benchmark", "threads", "resources", "message", "script"]

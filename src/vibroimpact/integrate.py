@@ -9,6 +9,7 @@ from .antialias import OutputFilter, output_filter
 from .kernels import LANES, RATIO
 from .layout import ModalLayout
 from .model import ModalModel
+from .potential import stored_energy
 
 CHUNK_TICKS = 5000  # steps between visits to Python, in units of RATIO: half a second at 51200 Hz
 CONTRACTION_LIMIT = 0.5
@@ -27,7 +28,7 @@ class Lanes:
     tally: sums over the recorded steps (see kernels.Tally); steps: how many; energy (case, term, chunk) J at
     energy_time (chunk,) s; terms ENERGY_TERMS, all accumulated from the start of the simulation.
     fixed_point_residual (case,): largest relative change of the contact forces in the last pass of a step; times
-    contraction it bounds the error left. contact_rows (contact_point, 2): row of each contact direction in the tally.
+    contraction it bounds the error left. contact_rows (contact_point, 2), element_rows (element,): rows in the tally.
     """
 
     displacement: np.ndarray
@@ -40,6 +41,7 @@ class Lanes:
     fixed_point_residual: np.ndarray
     contraction: float
     contact_rows: np.ndarray
+    element_rows: np.ndarray
 
 
 ENERGY_TERMS = ("input_work", "dissipated", "contact_work", "kinetic", "elastic", "contact_potential")
@@ -81,13 +83,20 @@ class Schedule:
 def contact_contraction(model: ModalModel, dt: float) -> float:
     """Upper bound of the factor by which one pass of the contact fixed point shrinks its error.
 
-    The largest eigenvalue of stiffness times the compliance of one step, all points in contact at once.
+    The largest eigenvalue of the tangent stiffness of all contacts and elements, dampers counting as 2 c / dt, times the compliance of
+    one step, all of them engaged at once. Terms that grow with the motion (cubic, drag, Hunt-Crossley) are left out: the residual of the
+    fixed point, kept with every record, tells of them.
     """
-    modal = ModalLayout(model).modal(dt)
-    largest, row = 0.0, 0
+    layout = ModalLayout(model)
+    modal, own, local = layout.modal(dt), model.contact_laws, model.local_laws
     stiffness = np.zeros(modal.row_force_channel.size)
+    radial = np.where(own.hertz > 0.0, 0.0, model.contact_stiffness) + 2.0 / dt * own.damping
+    tangential = np.where(own.friction > 0.0, own.stick_stiffness, 0.0)
     for direction in range(2):
-        stiffness[ModalLayout(model).contact_rows()[:, direction]] = model.contact_stiffness
+        stiffness[layout.contact_rows()[:, direction]] = np.maximum(radial, tangential)
+    stick = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)
+    stiffness[layout.element_rows()] = np.abs(local.stiffness) + 2.0 / dt * np.abs(local.damping) + stick + np.abs(local.saturation_stiffness)
+    largest = 0.0
     for g in range(modal.row_start.size - 1):
         row, end = modal.row_start[g], modal.force_row_start[g]
         count = end - row
@@ -100,6 +109,19 @@ def contact_contraction(model: ModalModel, dt: float) -> float:
     return float(largest)
 
 
+def checked_contraction(model, steps_per_second):
+    """The contraction factor of the contact iteration; raises IntegrationError when it is too slow to rely on."""
+    contraction = contact_contraction(model, 1.0 / steps_per_second)
+    if contraction > CONTRACTION_LIMIT:
+        largest = max(model.contact_stiffness.max(initial=0.0), np.abs(model.local_laws.stiffness).max(initial=0.0))
+        raise IntegrationError(
+            f"contact stiffness {largest:.3g} N/m is too stiff for a step of {1 / steps_per_second:.3g} s: "
+            f"the contact iteration contracts by {contraction:.2g} only (limit {CONTRACTION_LIMIT}; dampers and friction springs count too): "
+            f"raise integration.steps_per_second to at least {steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
+        )
+    return contraction
+
+
 def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive) -> Lanes:
     """Integrate up to LANES cases side by side.
 
@@ -107,18 +129,11 @@ def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive)
     (first, count) -> (count, force_channel, case) force in N at steps first, first + 1, ... (0 to schedule.steps + 1).
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the run diverged.
     """
-    cases = np.size(gap)
-    contraction = contact_contraction(model, 1.0 / schedule.steps_per_second)
-    if contraction > CONTRACTION_LIMIT:
-        raise IntegrationError(
-            f"contact stiffness {model.contact_stiffness.max():.3g} N/m is too stiff for a step of {1 / schedule.steps_per_second:.3g} s: "
-            f"the contact iteration contracts by {contraction:.2g} only (limit {CONTRACTION_LIMIT}): raise integration.steps_per_second "
-            f"to at least {schedule.steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
-        )
-    return _Run(model, schedule, _to_lanes(gap, 1.0), _to_lanes(imperfection, 0.0), drive, cases).finish(contraction)
+    contraction = checked_contraction(model, schedule.steps_per_second)
+    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap)).finish(contraction)
 
 
-def _to_lanes(values, padding):
+def to_lanes(values, padding):
     """values (..., case) padded to LANES along the last axis."""
     values = np.asarray(values, float)
     out = np.full((*values.shape[:-1], LANES), padding)
@@ -134,8 +149,9 @@ class _Run:
         self.layout = ModalLayout(model)
         self.dt = 1.0 / schedule.steps_per_second
         self.modal = self.layout.modal(self.dt)
-        self.contact = self.layout.contact(gap, imperfection)
+        self.contact, self.laws = self.layout.contact(gap, imperfection), self.layout.laws(gap)
         self.state, self.tally, self.work = self.layout.state(), self.layout.tally(), self.layout.work()
+        start_state(self.layout, self.modal, self.contact, self.laws, self.state, self.work)
         tail = schedule.filter.second.size - schedule.filter.step
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
         self.output = self.layout.output(schedule.filter.phase_weights(), tail + self.chunk)
@@ -178,15 +194,18 @@ class _Run:
             fixed_point_residual=self.residual[: self.cases],
             contraction=contraction,
             contact_rows=self.layout.contact_rows(),
+            element_rows=self.layout.element_rows(),
         )
 
     def advance(self, ticks, column, recorded):
         """March ``ticks`` ticks, their outputs to ``column`` on; keep the sums when recorded."""
-        force = np.zeros((ticks * RATIO + 2, self.model.drive_shapes.shape[1], LANES))
-        force[..., : self.cases] = self.drive(self.done, ticks * RATIO + 2)
+        force = np.zeros((ticks * RATIO + 2, self.layout.drive_shapes.shape[1], LANES))
+        force[:, : self.model.drive_shapes.shape[1], : self.cases] = self.drive(self.done, ticks * RATIO + 2)
         for array in self.tally:
             array[...] = 0.0
-        steps = kernels.march(self.modal, self.contact, self.state, self.tally, self.output._replace(column=column), self.work, force)
+        force[:, self.model.drive_shapes.shape[1] :] = 1.0  # the dead load, see ModalLayout.drive_shapes
+        output = self.output._replace(column=column)
+        steps = kernels.march(self.modal, self.contact, self.laws, self.state, self.tally, output, self.layout.trace(0), self.work, force)
         if steps < ticks * RATIO:
             self.fail(steps)
         self.done += steps
@@ -199,12 +218,10 @@ class _Run:
         self.totals["contact_work"] += tally.contact_work[0]
         self.totals["dissipated"] += tally.dissipated[0]
         self.residual = np.maximum(self.residual, tally.residual[0])
-        rows = np.stack([self.contact.row_1, self.contact.row_2])
-        square_force = (self.state.row_force[rows] ** 2).sum(axis=0)
         stored = {
             "kinetic": 0.5 * (self.state.velocity**2).sum(axis=0),
             "elastic": 0.5 * ((self.omega * self.state.displacement[-1]) ** 2).sum(axis=0),
-            "contact_potential": 0.5 * (square_force / self.contact.stiffness).sum(axis=0),
+            "contact_potential": stored_energy(self.contact, self.laws, self.state),
         }
         terms = self.totals | stored
         self.energies.append(np.array([terms[name] for name in ENERGY_TERMS]))
@@ -227,6 +244,15 @@ class _Run:
             f"contact point {points[0] if points.size else row}: raise integration.steps_per_second (now {self.schedule.steps_per_second:g}, "
             f"highest mode kept {self.model.omega.max() / (2 * np.pi):.0f} Hz) or check the contact stiffness and the force"
         )
+
+
+def start_state(layout: ModalLayout, modal, contact, laws, state, work) -> None:
+    """Put the model's initial displacement and velocity into the kernel's state; nothing to do for a plain model at rest."""
+    model = layout.model
+    if np.any(model.initial_displacement) or np.any(model.initial_velocity):
+        state.displacement[-1] = layout.per_mode(model.initial_displacement)[:, None]
+        state.velocity[...] = layout.per_mode(model.initial_velocity)[:, None]
+        kernels.begin(modal, contact, laws, state, work)
 
 
 def _chunks(total, size):

@@ -325,15 +325,15 @@ def vector_plus_dot(typing_context, coefficients, j, panel, vector):
 class Modal(NamedTuple):
     """The modes, in uncoupled groups (in plane, out of plane), each padded to whole panels.
 
-    A *row* is one scalar generalised displacement of a group: its contact directions first, then its force
-    channels. ``shapes`` holds for each group a (row, mode of the group) matrix, flat, from ``shape_start``.
+    A *row* is one scalar generalised displacement of a group: its contact directions first, then its local
+    elements, then its force channels. ``shapes`` holds for each group a (row, mode of the group) matrix, flat, from ``shape_start``.
     """
 
     dt: float
     mode_start: np.ndarray  # (group + 1,) first mode of each group, multiples of PANEL
     row_start: np.ndarray  # (group + 1,) first row of each group
     force_row_start: np.ndarray  # (group,) first row of each group that is a force channel
-    row_force_channel: np.ndarray  # (row,) force channel of the row, -1 for a contact row
+    row_force_channel: np.ndarray  # (row,) force channel of the row, -1 for a contact or element row
     shapes: np.ndarray  # flat [kg^-1/2]
     shape_start: np.ndarray  # (group,)
     velocity_from_velocity: np.ndarray  # (mode,) the Newmark step, see integrate.newmark_coefficients
@@ -357,9 +357,53 @@ class Contact(NamedTuple):
     gap: np.ndarray  # (point, lane) m
     offset_1: np.ndarray  # (point, lane) m
     offset_2: np.ndarray  # (point, lane) m
+    plain: np.ndarray  # (point,) 1: nothing but the elastic circle; 0: see Laws
     tolerance: float  # relative change of the contact forces at which the fixed point stops
     passes: int  # at most
     limit: float  # m, a displacement beyond it means that the run has diverged
+
+
+class Laws(NamedTuple):
+    """What goes beyond the elastic circle: contact laws, one per special point or flat land, then local elements.
+
+    A special point has gap inf and stiffness anything in Contact, so that the plain loop never sees it touch.
+    """
+
+    point: np.ndarray  # (law,) contact point
+    flat: np.ndarray  # (law,) 1: a land with the normal below; 0: round the centre
+    normal_1: np.ndarray  # (law,)
+    normal_2: np.ndarray  # (law,)
+    lobes: np.ndarray  # (law,) 0: a circle
+    lobe_depth: np.ndarray  # (law, lane) m
+    lobe_cosine: np.ndarray  # (law, lane) of the lobes' angle
+    lobe_sine: np.ndarray  # (law, lane)
+    gap: np.ndarray  # (law, lane) m
+    stiffness: np.ndarray  # (law, lane) N/m, 0 where the law is Hertz's
+    hertz: np.ndarray  # (law, lane) N/m^1.5
+    hunt_crossley: np.ndarray  # (law, lane) s/m
+    damping: np.ndarray  # (law, lane) N s/m
+    friction: np.ndarray  # (law, lane)
+    stick_stiffness: np.ndarray  # (law, lane) N/m
+    stick_flexibility: np.ndarray  # (law, lane) m/N, its inverse, 0 without friction
+    row: np.ndarray  # (element,)
+    element_stiffness: np.ndarray  # (element, lane) N/m
+    quadratic: np.ndarray  # (element, lane) N/m²
+    cubic: np.ndarray  # (element, lane) N/m³
+    element_damping: np.ndarray  # (element, lane) N s/m
+    drag: np.ndarray  # (element, lane) N s²/m²
+    element_stick: np.ndarray  # (element, lane) N/m
+    element_flexibility: np.ndarray  # (element, lane) m/N, its inverse, 0 without a slider
+    slip_limit: np.ndarray  # (element, lane) N
+    saturation_stiffness: np.ndarray  # (element, lane) N/m
+    saturation_limit: np.ndarray  # (element, lane) N
+
+
+class Trace(NamedTuple):
+    """Every step of the contact and element rows, (row, step, lane); no steps: not kept."""
+
+    displacement: np.ndarray  # m
+    force: np.ndarray  # N, on the structure
+    steps: int
 
 
 class State(NamedTuple):
@@ -367,21 +411,24 @@ class State(NamedTuple):
 
     displacement: np.ndarray  # (RATIO, mode, lane) m kg^1/2, the last RATIO steps, the present one last between ticks
     velocity: np.ndarray  # (mode, lane)
-    row_displacement: np.ndarray  # (row, lane) m, contact rows only
+    row_displacement: np.ndarray  # (row, lane) m, contact and element rows only
+    row_velocity: np.ndarray  # (row, lane) m/s, kept where there are Laws
     row_force: np.ndarray  # (row, lane) N, force on the structure at the end of the last step
     row_force_before: np.ndarray  # (row, lane) N, one step earlier (starts the fixed point)
     row_pull: np.ndarray  # (row, lane) m, compliance of a step times row_force
     row_pull_before: np.ndarray  # (row, lane) m
+    stick: np.ndarray  # (law, lane) N, friction force along the law's tangent
+    slider: np.ndarray  # (element, lane) N, force of the slider
     touching: np.ndarray  # (support, lane) 1.0 while in contact
     average: np.ndarray  # (slot, mode + extra channel, lane) first stage of the output filter
-    flag: np.ndarray  # (2,) int64: contact forces non-zero at the end of the last step; steps done
+    flag: np.ndarray  # (2,) int64: contact or element forces non-zero at the end of the last step; steps done
 
 
 class Tally(NamedTuple):
     """Sums over the steps since they were last cleared, each (.., lane)."""
 
     input_work: np.ndarray  # (lane,) J
-    contact_work: np.ndarray  # (lane,) J, trapezoidal sum of f du
+    contact_work: np.ndarray  # (lane,) J, trapezoidal sum of f du over contacts and elements
     dissipated: np.ndarray  # (lane,) J, by the modal damping
     contact_steps: np.ndarray  # (support, lane)
     impacts: np.ndarray  # (support, lane)
@@ -393,6 +440,8 @@ class Tally(NamedTuple):
     sliding_work: np.ndarray  # (support, lane) J: normal force times sliding distance
     force_displacement: np.ndarray  # (row, lane) N m sum of force times displacement
     square_displacement: np.ndarray  # (row, lane) m² sum, every RATIO-th step
+    element_work: np.ndarray  # (element, lane) J, trapezoidal sum of f du
+    slip_work: np.ndarray  # (element, lane) J, slider force times slip
     residual: np.ndarray  # (lane,) largest relative change in the last pass of the fixed point
     square_stress: np.ndarray  # (section, lane) Pa² sum, every RATIO-th step
     peak_square_stress: np.ndarray  # (section, lane) Pa²
@@ -408,6 +457,11 @@ class Work(NamedTuple):
     pull: np.ndarray  # (row, lane) m
     force_sum: np.ndarray  # (row, lane) N
     next_drive: np.ndarray  # (row, lane) N
+    fresh: np.ndarray  # (row, lane) N, forces of one pass
+    stick: np.ndarray  # (law, lane) N
+    slider: np.ndarray  # (element, lane) N
+    held_stick: np.ndarray  # (law, lane) N
+    held_slider: np.ndarray  # (element, lane) N
     channels: np.ndarray  # (displacement channel + 2 stress channels per section + 1, lane)
 
 
@@ -522,6 +576,248 @@ def contact_forces(contact, p, u1, u2):
 
 
 @njit(**INLINE)
+def larger(a, b):
+    """The larger of two, lane by lane."""
+    return select_greater(a, b, a, b)
+
+
+@njit(**INLINE)
+def clip(a, limit):
+    """a held between -limit and limit."""
+    zero = spread(0.0)
+    a = select_greater(a, limit, limit, a)
+    return larger(a, zero - limit)
+
+
+@njit(**INLINE)
+def penetration(contact, laws, k, u1, u2):
+    """Gradient of the penetration of law k, its length, and the penetration: (n1, n2, length, p), p < 0 when apart.
+
+    Round: phi = r - R(theta) with R = gap + depth (1 - cos(lobes (theta - angle))) / 2; the force -k phi grad(phi) has the potential
+    k phi²/2 and acts along the normal of the profile. cos and sin of the multiple angle by complex powers.
+    """
+    zero, one = spread(0.0), spread(1.0)
+    at = laws.point[k]
+    d1, d2 = u1 - load(contact.offset_1, at), u2 - load(contact.offset_2, at)
+    gap = load(laws.gap, k)
+    if laws.flat[k] != 0:
+        n1, n2 = spread(laws.normal_1[k]), spread(laws.normal_2[k])
+        return n1, n2, one, fma(n1, d1, n2 * d2) - gap
+    square = fma(d1, d1, d2 * d2)
+    inverse = inverse_root(square)
+    n1, n2 = d1 * inverse, d2 * inverse
+    distance = square * inverse
+    if laws.lobes[k] == 0:
+        return n1, n2, one, distance - gap
+    c0, s0 = load(laws.lobe_cosine, k), load(laws.lobe_sine, k)
+    c1, s1 = fma(n1, c0, n2 * s0), fma(n2, c0, zero - n1 * s0)
+    c, s = c1, s1
+    for _ in range(laws.lobes[k] - 1):
+        c, s = fma(c, c1, zero - s * s1), fma(s, c1, c * s1)
+    half_depth = spread(0.5) * load(laws.lobe_depth, k)
+    slope = half_depth * spread(1.0 * laws.lobes[k]) * s * inverse
+    return fma(slope, n2, n1), fma(zero - slope, n1, n2), root(fma(slope, slope, one)), distance - fma(half_depth, one - c, gap)
+
+
+@njit(**INLINE)
+def normal_force(laws, k, p, speed, dt):
+    """Force of law k per unit gradient, never negative: p penetration, speed its rate.
+
+    Kelvin-Voigt counts from the part of the step spent in contact, min(c speed, c p / dt) while closing: it begins at 0 and the
+    implicit equation has a solution at every first touch.
+    """
+    zero, one = spread(0.0), spread(1.0)
+    p = larger(p, zero)
+    force = p * fma(load(laws.hertz, k), root(p), load(laws.stiffness, k))
+    force = force * larger(fma(load(laws.hunt_crossley, k), speed, one), zero)
+    c = load(laws.damping, k)
+    closing, ramp = c * speed, c * p * spread(1.0 / dt)
+    return larger(force + select_greater(closing, ramp, ramp, closing), zero)
+
+
+@njit(**INLINE)
+def friction_force(laws, state, k, slip, normal):
+    """Force along the tangent (-n2, n1) of law k: elastic stick spring from the state, Coulomb slip at friction times normal."""
+    trial = fma(spread(-1.0) * load(laws.stick_stiffness, k), slip, load(state.stick, k))
+    return clip(trial, load(laws.friction, k) * normal)
+
+
+@njit(**INLINE)
+def element_force(laws, state, e, u, v, moved):
+    """Force of local element e on the structure and that of its slider: (force, slider)."""
+    slider = fma(spread(-1.0) * load(laws.element_stick, e), moved, load(state.slider, e))
+    slider = clip(slider, load(laws.slip_limit, e))
+    stiffness = fma(u, fma(u, load(laws.cubic, e), load(laws.quadratic, e)), load(laws.element_stiffness, e))
+    force = fma(stiffness, u, fma(load(laws.drag, e), magnitude(v), load(laws.element_damping, e)) * v)
+    return slider - force - clip(load(laws.saturation_stiffness, e) * u, load(laws.saturation_limit, e)), slider
+
+
+@njit(**INLINE)
+def row_speed(modal, state, u, r):
+    """End-of-step velocity of row r: exact for the scheme, whose displacement moves by dt times the mean velocity."""
+    return fma(spread(2.0 / modal.dt), u - load(state.row_displacement, r), spread(-1.0) * load(state.row_velocity, r))
+
+
+@njit(**INLINE)
+def all_forces(modal, contact, laws, state, work, u):
+    """Forces of every contact and element at displacements u: work.fresh; friction and sliders to work.stick and work.slider."""
+    zero = spread(0.0)
+    for p in range(contact.row_1.size):
+        r1, r2 = contact.row_1[p], contact.row_2[p]
+        f1, f2 = contact_forces(contact, p, load(u, r1), load(u, r2))
+        store(work.fresh, r1, f1)
+        store(work.fresh, r2, f2)
+    for k in range(laws.point.size):
+        r1, r2 = contact.row_1[laws.point[k]], contact.row_2[laws.point[k]]
+        u1, u2 = load(u, r1), load(u, r2)
+        n1, n2, length, p = penetration(contact, laws, k, u1, u2)
+        if not any_greater(p, zero):
+            store(work.stick, k, zero)
+            continue
+        speed = fma(n1, row_speed(modal, state, u1, r1), n2 * row_speed(modal, state, u2, r2))
+        f = normal_force(laws, k, p, speed, modal.dt)
+        slip = fma(n1, u2 - load(state.row_displacement, r2), zero - n2 * (u1 - load(state.row_displacement, r1))) / length
+        stick = friction_force(laws, state, k, slip, f * length)
+        store(work.stick, k, stick)
+        stick = stick / length
+        store(work.fresh, r1, load(work.fresh, r1) - fma(f, n1, stick * n2))
+        store(work.fresh, r2, load(work.fresh, r2) - fma(f, n2, zero - stick * n1))
+    for e in range(laws.row.size):
+        r = laws.row[e]
+        ur = load(u, r)
+        f, slider = element_force(laws, state, e, ur, row_speed(modal, state, ur, r), ur - load(state.row_displacement, r))
+        store(work.fresh, r, f)
+        store(work.slider, e, slider)
+
+
+@njit(**INLINE)
+def solve_laws(contact, laws, modal, state, tally, work):
+    """solve_contact where there are Laws: the same fixed point over contact and element rows. True if any lane may bear a force."""
+    free, base, u, force, pull = work.free, work.base, work.displacement, work.force, work.pull
+    zero, one, half = spread(0.0), spread(1.0), spread(0.5)
+    opened = one if laws.row.size > 0 else zero
+    for g in range(modal.row_start.size - 1):
+        for r in range(modal.row_start[g], modal.force_row_start[g]):
+            store(base, r, load(free, r) + load(state.row_pull, r))
+    for p in range(contact.row_1.size):
+        _, _, square, gap = reach(contact, p, load(base, contact.row_1[p]), load(base, contact.row_2[p]))
+        opened = select_greater(square, gap * gap, one, opened)
+    for k in range(laws.point.size):
+        at = laws.point[k]
+        _, _, _, p = penetration(contact, laws, k, load(base, contact.row_1[at]), load(base, contact.row_2[at]))
+        opened = select_greater(p, zero, one, opened)
+        store(work.stick, k, zero)
+    near = any_greater(opened, half)
+    for g in range(modal.row_start.size - 1):
+        for r in range(modal.row_start[g], modal.force_row_start[g]):
+            f, move = load(state.row_force, r), load(state.row_pull, r)
+            f = select_greater(opened, half, f + f - load(state.row_force_before, r), zero)
+            move = select_greater(opened, half, move + move - load(state.row_pull_before, r), zero)
+            store(force, r, f)
+            store(pull, r, move)
+            store(u, r, load(base, r) + move)
+    if not near:
+        return False
+    change, size = zero, zero
+    tolerance = spread(contact.tolerance)
+    held_stick, held_slider = work.held_stick, work.held_slider
+    for k in range(laws.point.size):
+        store(held_stick, k, zero)
+    for _ in range(contact.passes):
+        moved, size = zero, zero
+        all_forces(modal, contact, laws, state, work, u)
+        for k in range(laws.point.size):
+            store(held_stick, k, select_greater(opened, half, load(work.stick, k), load(held_stick, k)))
+        for e in range(laws.row.size):
+            store(held_slider, e, select_greater(opened, half, load(work.slider, e), load(held_slider, e)))
+        for g in range(modal.row_start.size - 1):
+            for r in range(modal.row_start[g], modal.force_row_start[g]):
+                old = load(force, r)
+                f = select_greater(opened, half, load(work.fresh, r), old)
+                moved = moved + magnitude(f - old)
+                size = size + magnitude(f)
+                store(force, r, f)
+        change = select_greater(opened, half, moved, change)
+        yield_to(modal, force, pull)
+        for g in range(modal.row_start.size - 1):
+            for r in range(modal.row_start[g], modal.force_row_start[g]):
+                store(u, r, load(base, r) + load(pull, r))
+        opened = select_greater(moved, tolerance * size, opened, zero)
+        if not any_greater(opened, half):
+            break
+    for k in range(laws.point.size):
+        store(work.stick, k, load(held_stick, k))
+    for e in range(laws.row.size):
+        store(work.slider, e, load(held_slider, e))
+    worst = load(tally.residual, 0)
+    relative = select_greater(size, zero, change / size, zero)
+    store(tally.residual, 0, larger(relative, worst))
+    return True
+
+
+@njit(**INLINE)
+def tally_laws(modal, contact, laws, state, tally, work):
+    """Work of the elements, slip of sliders and wear of special contacts in one step; state still holds its start."""
+    zero, half = spread(0.0), spread(0.5)
+    u, force = work.displacement, work.force
+    total = load(tally.contact_work, 0)
+    for e in range(laws.row.size):
+        r = laws.row[e]
+        moved = load(u, r) - load(state.row_displacement, r)
+        done = half * (load(force, r) + load(state.row_force, r)) * moved
+        total = total + done
+        store(tally.element_work, e, load(tally.element_work, e) + done)
+        slip = fma(load(work.slider, e) - load(state.slider, e), load(laws.element_flexibility, e), moved)
+        store(tally.slip_work, e, fma(magnitude(load(work.slider, e)), magnitude(slip), load(tally.slip_work, e)))
+        store(tally.force_displacement, r, fma(load(force, r), load(u, r), load(tally.force_displacement, r)))
+        store(state.slider, e, load(work.slider, e))
+    store(tally.contact_work, 0, total)
+    for k in range(laws.point.size):
+        at = laws.point[k]
+        r1, r2 = contact.row_1[at], contact.row_2[at]
+        u1, u2, stick = load(u, r1), load(u, r2), load(work.stick, k)
+        n1, n2, length, p = penetration(contact, laws, k, u1, u2)
+        if any_greater(p, zero):
+            speed = fma(n1, row_speed(modal, state, u1, r1), n2 * row_speed(modal, state, u2, r2))
+            normal = normal_force(laws, k, p, speed, modal.dt) * length
+            slip = fma(n1, u2 - load(state.row_displacement, r2), zero - n2 * (u1 - load(state.row_displacement, r1))) / length
+            slip = fma(stick - load(state.stick, k), load(laws.stick_flexibility, k), slip)
+            s = contact.support[at]
+            store(tally.sliding_work, s, fma(normal, magnitude(slip), load(tally.sliding_work, s)))
+        store(state.stick, k, stick)
+
+
+@njit(**COMPILED)
+def begin(modal, contact, laws, state, work):
+    """Rows, forces and their pull of an initial state.displacement (its last step) and state.velocity: fills state.row_*."""
+    zero = spread(0.0)
+    present = (RATIO - 1) * modal.mode_start[-1]
+    for rows in (state.row_displacement, state.row_velocity, work.fresh):
+        clear(rows)
+    for g in range(modal.row_start.size - 1):
+        width = modal.mode_start[g + 1] - modal.mode_start[g]
+        for i in range(0, width, PANEL):
+            q = load_panel(state.displacement, present + modal.mode_start[g] + i)
+            v = load_panel(state.velocity, modal.mode_start[g] + i)
+            for r in range(modal.row_start[g], modal.force_row_start[g]):
+                at = modal.shape_start[g] + (r - modal.row_start[g]) * width + i
+                store(state.row_displacement, r, vector_plus_dot(modal.shapes, at, q, load(state.row_displacement, r)))
+                # turned, so that row_speed at rest in this step gives the velocity itself
+                store(state.row_velocity, r, vector_plus_dot(modal.shapes, at, v, load(state.row_velocity, r)))
+    for r in range(state.row_velocity.size // LANES):
+        store(work.displacement, r, load(state.row_displacement, r))
+        store(state.row_velocity, r, zero - load(state.row_velocity, r))
+    all_forces(modal, contact, laws, state, work, work.displacement)
+    for r in range(state.row_velocity.size // LANES):
+        store(state.row_velocity, r, zero - load(state.row_velocity, r))
+        store(state.row_force, r, load(work.fresh, r))
+        store(state.row_force_before, r, load(work.fresh, r))
+    yield_to(modal, state.row_force, state.row_pull)
+    yield_to(modal, state.row_force_before, state.row_pull_before)
+    state.flag[0] = 1
+
+
+@njit(**INLINE)
 def solve_contact(contact, modal, state, tally, free, base, u, force, pull):
     """End-of-step contact forces and contact-row displacements, implicit; True if any lane may be in contact.
 
@@ -614,7 +910,8 @@ def tally_contact(modal, contact, state, tally, u, force):
             work = fma(half * (f2 + load(state.row_force, r2)), du2, work)
             store(tally.force_displacement, r1, fma(f1, u1, load(tally.force_displacement, r1)))
             store(tally.force_displacement, r2, fma(f2, u2, load(tally.force_displacement, r2)))
-            sliding = sliding + magnitude(fma(f1, du2, zero - f2 * du1))  # |f| times the slip across it
+            if contact.plain[p] != 0:
+                sliding = sliding + magnitude(fma(f1, du2, zero - f2 * du1))  # |f| times the slip across it
             borne = borne + magnitude(f1) + magnitude(f2)
             sum1, sum2 = sum1 + f1, sum2 + f2
             p += 1
@@ -768,8 +1065,28 @@ def sum_drive(modal, drive, n, forces, out):
             store(out, r, load(drive, n * forces + c) + load(drive, (n + 1) * forces + c))
 
 
+@njit(**INLINE)
+def keep_step(modal, contact, laws, state, trace, u, force, pull):
+    """Make the end of the step the start of the next, and put it on the trace."""
+    special = laws.point.size + laws.row.size > 0
+    n = state.flag[1]
+    for g in range(modal.row_start.size - 1):
+        for r in range(modal.row_start[g], modal.force_row_start[g]):
+            ur, f = load(u, r), load(force, r)
+            if special:
+                store(state.row_velocity, r, row_speed(modal, state, ur, r))
+            if n < trace.steps:
+                store(trace.displacement, r * trace.steps + n, ur)
+                store(trace.force, r * trace.steps + n, f)
+            store(state.row_displacement, r, ur)
+            store(state.row_force_before, r, load(state.row_force, r))
+            store(state.row_force, r, f)
+            store(state.row_pull_before, r, load(state.row_pull, r))
+            store(state.row_pull, r, load(pull, r))
+
+
 @njit(**COMPILED)
-def march(modal, contact, state, tally, output, work, drive):
+def march(modal, contact, laws, state, tally, output, trace, work, drive):
     """Integrate whole ticks of RATIO steps; ``drive`` (step + 2, force_channel, lane) N: the force at the
     start of the first step, at the end of every step, and one more.
 
@@ -777,12 +1094,13 @@ def march(modal, contact, state, tally, output, work, drive):
     filter output centred RATIO steps before the tick), adds to ``tally`` and advances ``state`` in place.
     Returns the number of steps done; fewer than asked means that the run diverged there.
     """
-    rows = state.row_force.size // LANES
     forces = drive.shape[1]
     steps = drive.shape[0] - 2
-    free, base, u, force, pull, force_sum, next_drive, channel_values = work
+    free, base, u, force, pull = work.free, work.base, work.displacement, work.force, work.pull
+    force_sum, next_drive = work.force_sum, work.next_drive
     limit = spread(contact.limit)
     zero, half, one = spread(0.0), spread(0.5), spread(1.0)
+    special = laws.point.size + laws.row.size > 0
     sum_drive(modal, drive, 0, forces, next_drive)
     predict(modal, state, next_drive, free)
     for at_tick in range(steps // RATIO):
@@ -792,22 +1110,23 @@ def march(modal, contact, state, tally, output, work, drive):
             sum_drive(modal, drive, n, forces, force_sum)
             sum_drive(modal, drive, n + 1, forces, next_drive)
             pushed = state.flag[0] != 0
-            active = solve_contact(contact, modal, state, tally, free, base, u, force, pull)
+            if special:
+                active = solve_laws(contact, laws, modal, state, tally, work)
+            else:
+                active = solve_contact(contact, modal, state, tally, free, base, u, force, pull)
             touched = 0
             if active or pushed:
                 touched = tally_contact(modal, contact, state, tally, u, force)
+                if special:
+                    tally_laws(modal, contact, laws, state, tally, work)
+                    if laws.row.size > 0:
+                        touched = 1
                 for g in range(modal.row_start.size - 1):
                     for r in range(modal.row_start[g], modal.force_row_start[g]):
                         store(force_sum, r, load(state.row_force, r) + load(force, r))
             update(modal, state, tally, force_sum, next_drive, active or pushed, phase, free)
             filter_forces(modal, contact, state, output, force, drive, (n + 1) * forces, forces, touched, phase, tick)
-            for g in range(modal.row_start.size - 1):
-                for r in range(modal.row_start[g], modal.force_row_start[g]):
-                    store(state.row_displacement, r, load(u, r))
-                    store(state.row_force_before, r, load(state.row_force, r))
-                    store(state.row_force, r, load(force, r))
-                    store(state.row_pull_before, r, load(state.row_pull, r))
-                    store(state.row_pull, r, load(pull, r))
+            keep_step(modal, contact, laws, state, trace, u, force, pull)
             state.flag[0] = touched
             state.flag[1] += 1
         for g in range(modal.row_start.size - 1):
@@ -818,7 +1137,7 @@ def march(modal, contact, state, tally, output, work, drive):
                 if any_greater(lost, half):
                     return (at_tick + 1) * RATIO
         average_modes(modal, state, output, tick)
-        emit(modal, state, tally, output, tick, at_tick, channel_values)
+        emit(modal, state, tally, output, tick, at_tick, work.channels)
     return steps
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .kernels import CHANNEL_BLOCK, LANES, PANEL, RATIO, SLOTS, Contact, Modal, Output, State, Tally, Work
+from .kernels import CHANNEL_BLOCK, LANES, PANEL, RATIO, SLOTS, Contact, Laws, Modal, Output, State, Tally, Trace, Work
 from .model import ModalModel
 
 FIXED_POINT_TOLERANCE = 1e-4
@@ -13,21 +13,36 @@ DIVERGED_DISPLACEMENT = 1e3  # m
 class ModalLayout:
     """Where the modes, contact rows and force rows of a ModalModel sit in the kernel's flat arrays.
 
-    groups: list of (mode indices, contact rows as (contact_point, direction), force channels); padded: modes after
-    padding every group to whole panels; place (mode,) position of each mode.
+    groups: list of (mode indices, force rows); padded: modes after padding every group to whole panels; place (mode,)
+    position of each mode; implicit_shapes: for each group {row key: (mode of the group,)} with the key (contact_point, direction) of a
+    contact or the index of an element, in the order of their rows; drive_shapes (mode, force_channel): the model's channels, then, where
+    there is one, the dead load as a channel of constant 1.
     """
 
     def __init__(self, model: ModalModel):
         self.model = model
-        self.groups = []
-        for modes, contacts in model.blocks:
-            driven = [c for c in range(model.drive_shapes.shape[1]) if np.any(model.drive_shapes[modes, c])]
-            self.groups.append((np.asarray(modes), list(contacts), driven))
-        widths = [-(-len(modes) // PANEL) * PANEL for modes, _, _ in self.groups]
+        self.drive_shapes = model.drive_shapes
+        if np.any(model.constant_force):
+            self.drive_shapes = np.column_stack([model.drive_shapes, model.constant_force])
+        self.groups, self.implicit_shapes = [], []
+        shapes = {(point, direction): model.contact_shapes[:, point, direction]
+                  for point in range(model.contact_shapes.shape[1]) for direction in range(2)}  # fmt: skip
+        shapes |= {element: model.element_shapes[:, element] for element in range(len(model.element_names))}
+        taken = set()
+        for modes, _ in model.blocks:
+            moved = {key: shape[modes] for key, shape in shapes.items() if np.any(shape[modes])}
+            driven = [c for c in range(self.drive_shapes.shape[1]) if np.any(self.drive_shapes[modes, c])]
+            self.groups.append((np.asarray(modes), driven))
+            self.implicit_shapes.append(moved)
+            taken |= set(moved)
+        # A direction that nothing moves, as the second one of a point on a line, still needs a row to read.
+        still = {key: np.zeros(len(self.groups[0][0])) for key in shapes if key not in taken}
+        self.implicit_shapes[0] = dict(sorted((self.implicit_shapes[0] | still).items(), key=lambda item: (isinstance(item[0], int), item[0])))
+        widths = [-(-len(modes) // PANEL) * PANEL for modes, _ in self.groups]
         self.mode_start = np.concatenate([[0], np.cumsum(widths)]).astype(np.int64)
         self.padded = int(self.mode_start[-1])
         self.place = np.zeros(model.omega.size, np.int64)
-        for g, (modes, _, _) in enumerate(self.groups):
+        for g, (modes, _) in enumerate(self.groups):
             self.place[modes] = self.mode_start[g] + np.arange(len(modes))
 
     def per_mode(self, values: np.ndarray) -> np.ndarray:
@@ -41,20 +56,19 @@ class ModalLayout:
         newmark = newmark_coefficients(self.model.omega, self.model.damping, dt)
         row_start, force_row_start, channels = [0], [], []
         shapes, shape_start, compliance, compliance_start = [], [], [], []
-        for g, (modes, contacts, driven) in enumerate(self.groups):
-            rows = np.zeros((len(contacts) + len(driven), self.mode_start[g + 1] - self.mode_start[g]))
-            for r, (point, direction) in enumerate(contacts):
-                rows[r, : len(modes)] = self.model.contact_shapes[modes, point, direction]
-            for r, channel in enumerate(driven):
-                rows[len(contacts) + r, : len(modes)] = self.model.drive_shapes[modes, channel]
-            touched = rows[: len(contacts), : len(modes)]
+        for g, (modes, driven) in enumerate(self.groups):
+            implicit = list(self.implicit_shapes[g].values())
+            rows = np.zeros((len(implicit) + len(driven), self.mode_start[g + 1] - self.mode_start[g]))
+            for r, shape in enumerate([*implicit, *self.drive_shapes[np.ix_(modes, driven)].T]):
+                rows[r, : len(modes)] = shape
+            touched = rows[: len(implicit), : len(modes)]
             shape_start.append(sum(map(np.size, shapes)))
             compliance_start.append(sum(map(np.size, compliance)))
             shapes.append(rows.ravel())
             compliance.append(((touched * newmark["displacement_from_force"][modes]) @ touched.T).ravel())
-            force_row_start.append(row_start[-1] + len(contacts))
+            force_row_start.append(row_start[-1] + len(implicit))
             row_start.append(row_start[-1] + len(rows))
-            channels += [-1] * len(contacts) + driven
+            channels += [-1] * len(implicit) + driven
         return Modal(
             dt=float(dt),
             mode_start=self.mode_start,
@@ -70,45 +84,100 @@ class ModalLayout:
 
     def contact_rows(self) -> np.ndarray:
         """Row of each contact point and direction: (contact_point, 2) int."""
-        rows = np.zeros((self.model.support_of_point.size, 2), np.int64)
-        row = 0
-        for _, contacts, driven in self.groups:
-            for point, direction in contacts:
-                rows[point, direction] = row
-                row += 1
-            row += len(driven)
+        rows = self._rows()
+        points = self.model.support_of_point.size
+        return np.array([[rows[point, direction] for direction in range(2)] for point in range(points)], np.int64).reshape(-1, 2)
+
+    def element_rows(self) -> np.ndarray:
+        """Row of each local element: (element,) int."""
+        rows = self._rows()
+        return np.array([rows[element] for element in range(len(self.model.element_names))], np.int64)
+
+    def _rows(self):
+        rows, row = {}, 0
+        for keys, (_, driven) in zip(self.implicit_shapes, self.groups, strict=True):
+            rows |= {key: row + r for r, key in enumerate(keys)}
+            row += len(keys) + len(driven)
         return rows
 
     def contact(self, gap: np.ndarray, imperfection: np.ndarray) -> Contact:
-        """The kernel's Contact: gap (lane,) nominal gap [m]; imperfection (contact_point, 2, lane) [m] added to the centres."""
+        """The kernel's Contact: gap (lane,) nominal gap [m]; imperfection (contact_point, 2, lane) [m] added to the centres.
+
+        Points with special laws are out of reach here, see laws().
+        """
         model, rows = self.model, self.contact_rows()
-        ones = np.ones(LANES)
+        ones, plain = np.ones(LANES), model.contact_laws.plain
         offset = model.centre_offset[:, :, None] + imperfection
         return Contact(
             row_1=rows[:, 0].copy(),
             row_2=rows[:, 1].copy(),
             support=model.support_of_point.astype(np.int64),
             stiffness=np.outer(model.contact_stiffness, ones),
-            gap=np.outer(model.gap_factor, gap),
+            gap=np.where(plain[:, None], self.gaps(gap), np.inf),
             offset_1=np.ascontiguousarray(offset[:, 0]),
             offset_2=np.ascontiguousarray(offset[:, 1]),
+            plain=plain.astype(np.int64),
             tolerance=FIXED_POINT_TOLERANCE,
             passes=FIXED_POINT_PASSES,
             limit=DIVERGED_DISPLACEMENT,
         )
 
+    def gaps(self, gap: np.ndarray) -> np.ndarray:
+        """Gap [m] of each contact point, (contact_point, lane): its own where it has one, else the case's times its factor."""
+        own = self.model.contact_laws.gap
+        return np.where(np.isnan(own)[:, None], np.outer(self.model.gap_factor, gap), own[:, None])
+
+    def laws(self, gap: np.ndarray) -> Laws:
+        """The kernel's Laws: every contact point that is not plain (once per land), then the local elements."""
+        model, own, local = self.model, self.model.contact_laws, self.model.local_laws
+        round_points = [point for point in np.flatnonzero(~own.plain) if point not in set(own.land_point)]
+        point = np.concatenate([np.array(round_points, np.int64), np.asarray(own.land_point, np.int64)])
+        normal = np.concatenate([np.zeros((len(round_points), 2)), own.land_normal])
+        contact = {
+            "lobe_depth": own.lobe_depth, "lobe_cosine": np.cos(own.lobe_angle), "lobe_sine": np.sin(own.lobe_angle),
+            "stiffness": np.where(own.hertz != 0.0, 0.0, model.contact_stiffness), "hertz": own.hertz, "hunt_crossley": own.hunt_crossley,
+            "damping": own.damping, "friction": own.friction, "stick_stiffness": np.where(own.friction != 0.0, own.stick_stiffness, 0.0),
+            "stick_flexibility": _inverse(np.where(own.friction != 0.0, own.stick_stiffness, 0.0)),
+        }  # fmt: skip
+        slider = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)
+        element = {
+            "element_stiffness": local.stiffness, "quadratic": local.quadratic, "cubic": local.cubic, "element_damping": local.damping,
+            "drag": local.drag, "element_stick": slider, "element_flexibility": _inverse(slider), "slip_limit": local.slip_limit,
+            "saturation_stiffness": local.saturation_stiffness, "saturation_limit": local.saturation_limit,
+        }  # fmt: skip
+        return Laws(
+            point=point,
+            flat=np.repeat([0, 1], [len(round_points), len(own.land_point)]).astype(np.int64),
+            normal_1=normal[:, 0].copy(),
+            normal_2=normal[:, 1].copy(),
+            lobes=own.lobes[point].astype(np.int64),
+            gap=np.ascontiguousarray(self.gaps(gap)[point]),
+            row=self.element_rows(),
+            **{name: np.outer(values[point], np.ones(LANES)) for name, values in contact.items()},
+            **{name: np.outer(values, np.ones(LANES)) for name, values in element.items()},
+        )
+
+    def trace(self, steps: int) -> Trace:
+        """Room for `steps` steps of every row, none for 0."""
+        rows, _ = self._sizes()
+        return Trace(_aligned((rows, steps, LANES)), _aligned((rows, steps, LANES)), int(steps))
+
     def state(self) -> State:
         """A structure at rest."""
         rows, supports = self._sizes()
-        extras = 2 * supports + self.model.drive_shapes.shape[1]
+        laws, elements = self._law_sizes()
+        extras = 2 * supports + self.drive_shapes.shape[1]
         return State(
             displacement=_aligned((RATIO, self.padded, LANES)),
             velocity=_aligned((self.padded, LANES)),
             row_displacement=_aligned((rows, LANES)),
+            row_velocity=_aligned((rows, LANES)),
             row_force=_aligned((rows, LANES)),
             row_force_before=_aligned((rows, LANES)),
             row_pull=_aligned((rows, LANES)),
             row_pull_before=_aligned((rows, LANES)),
+            stick=_aligned((laws, LANES)),
+            slider=_aligned((elements, LANES)),
             touching=_aligned((supports, LANES)),
             average=_aligned((SLOTS, self.padded + extras, LANES)),
             flag=np.zeros(2, np.int64),
@@ -117,8 +186,8 @@ class ModalLayout:
     def tally(self) -> Tally:
         """Sums at zero."""
         rows, supports = self._sizes()
-        sections = self.model.stress_shapes.shape[1]
-        counts = {
+        sections, elements = self.model.stress_shapes.shape[1], len(self.model.element_names)
+        counts = {"element_work": elements, "slip_work": elements,
             "input_work": 1, "contact_work": 1, "residual": 1, "dissipated": 1,
             "force_displacement": rows, "square_displacement": rows, "square_stress": sections, "peak_square_stress": sections,
         }  # fmt: skip
@@ -127,9 +196,11 @@ class ModalLayout:
     def work(self) -> Work:
         """Scratch space."""
         rows, _ = self._sizes()
+        laws, elements = self._law_sizes()
         model = self.model
         channels = model.sensor_shapes.shape[1] + model.line_shapes.shape[1] + 2 * model.stress_shapes.shape[1] + 1
-        return Work(*[_aligned((rows, LANES)) for _ in Work._fields[:-1]], _aligned((channels, LANES)))
+        counts = {"channels": channels, "stick": laws, "held_stick": laws, "slider": elements, "held_slider": elements}
+        return Work(**{name: _aligned((counts.get(name, rows), LANES)) for name in Work._fields})
 
     def output(self, weights: np.ndarray, columns: int) -> Output:
         """Output buffers: displacement channels are the sensors, then the shape line; then the stresses of each section."""
@@ -140,7 +211,7 @@ class ModalLayout:
         )
         stress_start = channels.shape[1] - 2 * sections
         start, entries, shapes, shape_start = [0], [], [], []
-        for g, (modes, _, _) in enumerate(self.groups):
+        for g, (modes, _) in enumerate(self.groups):
             width = self.mode_start[g + 1] - self.mode_start[g]
             seen = [int(c) for c in np.flatnonzero(np.any(channels[modes], axis=0))]
             for c in seen + [-1] * (-len(seen) % CHANNEL_BLOCK):  # whole blocks; a filler adds zeros to a spare channel
@@ -149,7 +220,7 @@ class ModalLayout:
                 shapes.append(np.pad(channels[modes, c] if c >= 0 else np.zeros(len(modes)), (0, width - len(modes))))
             start.append(len(entries))
         _, supports = self._sizes()
-        extras = 2 * supports + model.drive_shapes.shape[1]
+        extras = 2 * supports + self.drive_shapes.shape[1]
         return Output(
             weights=weights,
             channel_start=np.array(start, np.int64),
@@ -164,8 +235,18 @@ class ModalLayout:
         )
 
     def _sizes(self):
-        rows = sum(len(contacts) + len(driven) for _, contacts, driven in self.groups)
+        rows = sum(len(keys) + len(driven) for keys, (_, driven) in zip(self.implicit_shapes, self.groups, strict=True))
         return rows, len(self.model.support_names)
+
+    def _law_sizes(self):
+        own = self.model.contact_laws
+        at_lands = np.isin(np.arange(len(own.gap)), own.land_point)
+        return int(np.sum(~own.plain & ~at_lands)) + len(own.land_point), len(self.model.element_names)
+
+
+def _inverse(values):
+    """1 / values, 0 where they are 0."""
+    return np.divide(1.0, values, out=np.zeros(np.shape(values)), where=values != 0.0)
 
 
 def _aligned(shape):

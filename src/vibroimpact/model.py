@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from vibroimpact.laws import ContactLaws, LocalLaws
+
 # Fields whose axes are checked: name -> axis names. "mode", "contact_point", ... must agree between fields.
 AXES = {
     "omega": ("mode",), "damping": ("mode",),
@@ -15,13 +17,14 @@ AXES = {
     "sensor_shapes": ("mode", "sensor"), "sensor_positions": ("sensor", 3), "sensor_directions": ("sensor", 3),
     "line_shapes": ("mode", "line_point"), "line_positions": ("line_point", 3), "line_arc_length": ("line_point",),
     "stress_shapes": ("mode", "section", 2), "full_mode_frequencies": ("full_mode",),
+    "element_shapes": ("mode", "element"), "initial_displacement": ("mode",), "initial_velocity": ("mode",), "constant_force": ("mode",),
 }
-NAMES = {"support_names": "support", "sensor_names": "sensor", "section_names": "section"}
+NAMES = {"support_names": "support", "sensor_names": "sensor", "section_names": "section", "element_names": "element"}
 
 
 @dataclass(frozen=True, eq=False)
 class ModalModel:
-    """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, without contact.
+    """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, and what acts on it locally.
 
     omega (mode,) rad/s, ascending; damping (mode,) = 2 zeta omega in 1/s.
     Shapes: displacement in m per unit modal amplitude (kg^1/2 m), that is kg^-1/2: contact_shapes (mode, contact_point, 2) along the
@@ -33,6 +36,10 @@ class ModalModel:
     contact_weight (contact_point,) share of the support's stiffness, sums to 1 per support; contact_stiffness (contact_point,) N/m;
     gap_factor (contact_point,) times the case's gap; centre_offset (contact_point, 2) m along the contact directions.
     full_mode_frequencies (full_mode,) Hz: the lowest frequencies of the full model without contact.
+    contact_laws: what the contacts have beyond the elastic circle (None: nothing). Local elements: element_shapes (mode, element),
+    their direction's displacement, relative for an element between two points; element_names; local_laws.
+    initial_displacement, initial_velocity (mode,): modal amplitudes at the start, kg^1/2 m and kg^1/2 m/s; constant_force (mode,):
+    dead load, N kg^-1/2.
 
     Raises ValueError listing every field with a wrong shape or value.
     """
@@ -59,9 +66,23 @@ class ModalModel:
     stress_shapes: np.ndarray
     section_names: tuple[str, ...]
     full_mode_frequencies: np.ndarray
+    contact_laws: ContactLaws = None
+    element_shapes: np.ndarray = None
+    element_names: tuple[str, ...] = ()
+    local_laws: LocalLaws = None
+    initial_displacement: np.ndarray = None
+    initial_velocity: np.ndarray = None
+    constant_force: np.ndarray = None
 
     def __post_init__(self):
-        """Refuse wrong shapes and values, all of them in one sentence."""
+        """Fill in what is off, and refuse wrong shapes and values, all of them in one sentence."""
+        modes = np.size(self.omega)
+        neutral = {"contact_laws": ContactLaws.neutral(np.size(self.support_of_point)), "element_shapes": np.zeros((modes, 0)),
+                   "local_laws": LocalLaws.neutral(len(self.element_names)), "initial_displacement": np.zeros(modes),
+                   "initial_velocity": np.zeros(modes), "constant_force": np.zeros(modes)}
+        for name, value in neutral.items():
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, value)
         problems = [*self._wrong_shapes()]
         problems = problems or [*self._wrong_values()]
         if problems:
@@ -83,9 +104,10 @@ class ModalModel:
 
         mode_indices is an ascending (mode,) int array. Two modes belong together when a contact point and direction moves in both;
         a shape of exactly 0.0 is no motion (the reduction treats uncoupled degrees of freedom apart, so zeros are exact). Modes that
-        move no contact point form one last block without contacts.
+        a local element moves belong together too. Modes that move no contact point and no element form one last block without contacts.
         """
-        moved = self.contact_shapes.reshape(self.modes, -1) != 0.0
+        points = 2 * self.contact_shapes.shape[1]
+        moved = np.hstack([self.contact_shapes.reshape(self.modes, points), self.element_shapes]) != 0.0
         unassigned, groups = set(range(self.modes)), []
         while unassigned:
             modes, reached = {min(unassigned)}, np.zeros(moved.shape[1], dtype=bool)
@@ -96,9 +118,10 @@ class ModalModel:
                 reached = contacts
                 modes |= set(np.flatnonzero(moved[:, contacts].any(axis=1)).tolist())
             unassigned -= modes
-            groups.append((sorted(modes), [divmod(int(contact), 2) for contact in np.flatnonzero(reached)]))
-        coupled = [(np.array(modes), contacts) for modes, contacts in groups if contacts]
-        alone = sorted(mode for modes, contacts in groups if not contacts for mode in modes)
+            contacts = [divmod(int(contact), 2) for contact in np.flatnonzero(reached[:points])]
+            groups.append((sorted(modes), contacts, reached.any()))
+        coupled = [(np.array(modes), contacts) for modes, contacts, held in groups if held]
+        alone = sorted(mode for modes, _, held in groups if not held for mode in modes)
         return coupled + ([(np.array(alone), [])] if alone else [])
 
     def _wrong_shapes(self):
@@ -127,6 +150,10 @@ class ModalModel:
         if (self.damping < 0.0).any():
             yield "damping must not be negative"
         points = len(self.support_of_point)
+        if len(self.contact_laws.gap) != points:
+            yield f"contact_laws are for {len(self.contact_laws.gap)} points, the model has {points}"
+        if len(self.local_laws.stiffness) != len(self.element_names):
+            yield f"local_laws are for {len(self.local_laws.stiffness)} elements, the model has {len(self.element_names)}"
         if points and not set(np.unique(self.support_of_point)) <= set(range(len(self.support_names))):
             yield "support_of_point must index support_names"
             return

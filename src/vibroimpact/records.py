@@ -10,6 +10,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from .laws import ContactLaws, LocalLaws
 from .model import ModalModel
 
 # name: (dimensions, dtype, units, long name)
@@ -51,6 +52,9 @@ COORDINATES = {
 
 class RecordError(Exception):
     """A file that can not be read or written; the message names it."""
+
+
+LAWS = {"contact_laws": ContactLaws, "local_laws": LocalLaws}  # fields of the model that are tables themselves
 
 
 def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
@@ -116,8 +120,12 @@ def write_model(model: ModalModel, path, attributes: dict | None = None) -> None
     data = {}
     for item in fields(ModalModel):
         value = getattr(model, item.name)
-        if item.name.endswith("_names"):
-            data[item.name] = ((f"{item.name[:-6]}",), np.array(value, dtype=object))
+        if item.name in LAWS:
+            for column in fields(value):
+                array = np.asarray(getattr(value, column.name))
+                data[f"{item.name}_{column.name}"] = (tuple(f"{item.name}_{column.name}_{axis}" for axis in range(array.ndim)), array)
+        elif item.name.endswith("_names"):
+            data[item.name] = ((f"{item.name[:-6]}",), np.array(value, dtype=object if value else str))
         else:
             data[item.name] = (tuple(f"{item.name}_{axis}" for axis in range(np.ndim(value))), np.asarray(value))
     write_record(xr.Dataset(data, attrs={"title": "vibroimpact reduced model", **(attributes or {})}), path)
@@ -128,8 +136,13 @@ def read_model(path) -> ModalModel:
     dataset = read_record(path)
     values = {}
     for item in fields(ModalModel):
-        if item.name not in dataset:
-            raise ValueError(f"{path}: has no '{item.name}': it was written by another version, delete it and run again")
+        names = [f"{item.name}_{column.name}" for column in fields(LAWS[item.name])] if item.name in LAWS else [item.name]
+        for name in names:
+            if name not in dataset:
+                raise ValueError(f"{path}: has no '{name}': it was written by another version, delete it and run again")
+        if item.name in LAWS:
+            values[item.name] = LAWS[item.name](*(dataset[name].values for name in names))
+            continue
         value = dataset[item.name].values
         values[item.name] = tuple(str(name) for name in value) if item.name.endswith("_names") else value
     return ModalModel(**values)

@@ -11,7 +11,10 @@ def test_the_model_comes_back_bit_for_bit(study_model, tmp_path):
     records.write_model(study_model, tmp_path / "model.nc")
     again = records.read_model(tmp_path / "model.nc")
     for name in study_model.__dataclass_fields__:
-        assert np.array_equal(getattr(again, name), getattr(study_model, name)), name
+        came, given = getattr(again, name), getattr(study_model, name)
+        columns = vars(given) if name in records.LAWS else {}
+        assert all(np.array_equal(getattr(came, column), value, equal_nan=True) for column, value in columns.items()), name
+        assert columns or np.array_equal(came, given), name
 
 
 def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
