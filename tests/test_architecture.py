@@ -19,7 +19,7 @@ LAYERS = (
     ("records",),
     ("structure", "supports", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
     ("ritz", "reduction", "linear", "antialias", "layout", "potential"),
-    ("integrate", "trace", "simulate", "identify", "synthetic_campaign"),
+    ("integrate", "trace", "simulate", "step_records", "identify", "synthetic_campaign"),
     ("consistency", "f16"),
     ("validation",),
     ("figures",),

@@ -162,6 +162,7 @@ class _Run:
         self.residual = np.zeros(LANES)
         self.energies, self.times = [], []
         self.omega = self.layout.per_mode(model.omega)[:, None]
+        self.take_energies()
 
     def finish(self, contraction) -> Lanes:
         """Start-up, filling of the filter, record."""
@@ -218,6 +219,16 @@ class _Run:
         self.totals["contact_work"] += tally.contact_work[0]
         self.totals["dissipated"] += tally.dissipated[0]
         self.residual = np.maximum(self.residual, tally.residual[0])
+        self.take_energies()
+        if recorded:
+            if self.sums is None:
+                self.sums = {name: np.zeros_like(array) for name, array in tally._asdict().items()}
+            for name, array in tally._asdict().items():
+                largest = name.startswith(("peak", "impact_velocity_peak", "residual"))
+                self.sums[name] = np.maximum(self.sums[name], array) if largest else self.sums[name] + array
+
+    def take_energies(self):
+        """Note the energies of the present state."""
         stored = {
             "kinetic": 0.5 * (self.state.velocity**2).sum(axis=0),
             "elastic": 0.5 * ((self.omega * self.state.displacement[-1]) ** 2).sum(axis=0),
@@ -226,12 +237,6 @@ class _Run:
         terms = self.totals | stored
         self.energies.append(np.array([terms[name] for name in ENERGY_TERMS]))
         self.times.append((self.done - 1) * self.dt - self.schedule.start_up)
-        if recorded:
-            if self.sums is None:
-                self.sums = {name: np.zeros_like(array) for name, array in tally._asdict().items()}
-            for name, array in tally._asdict().items():
-                largest = name.startswith(("peak", "impact_velocity_peak", "residual"))
-                self.sums[name] = np.maximum(self.sums[name], array) if largest else self.sums[name] + array
 
     def fail(self, steps):
         """Say where the run diverged."""

@@ -98,6 +98,13 @@ class ModalModel:
         """Return (mode,) undamped frequencies in Hz."""
         return self.omega / (2.0 * np.pi)
 
+    @property
+    def conservative(self):
+        """Return True when no contact and no local element takes energy."""
+        contact, local = self.contact_laws, self.local_laws
+        lossy = (contact.damping, contact.hunt_crossley, contact.friction, local.damping, local.drag, local.slip_limit)
+        return not any(np.any(column) for column in lossy)
+
     @cached_property
     def blocks(self):
         """Return [(mode_indices, [(contact_point, direction), ...])]: groups of modes that no contact force couples.

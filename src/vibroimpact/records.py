@@ -37,6 +37,18 @@ VARIABLES = {
     "energy": (("energy_term", "energy_time"), "f8", "J", "energies since the start of the simulation"),
     "energy_residual": ((), "f8", "1", "energy identity of the scheme, relative to the input work"),
     "potential_energy_residual": ((), "f8", "1", "energy balance with the contact's potential energy, relative to the input work"),
+    "contact_dissipation": ((), "f8", "J", "energy that contacts and elements took beyond what their springs hold"),
+    "element_displacement_square": (("element",), "f8", "m2", "mean square displacement of a local element"),
+    "element_force_displacement": (("element",), "f8", "N m", "mean of the element's restoring force times displacement"),
+    "element_power": (("element",), "f8", "W", "mean power that an element takes"),
+    "slip_power": (("element",), "f8", "W", "mean of slider force times slip speed"),
+    "contact_displacement": (("contact_point", "direction", "step"), "f8", "m", "displacement at every step"),
+    "contact_force": (("contact_point", "direction", "step"), "f8", "N", "force on the structure at every step"),
+    "element_displacement": (("element", "step"), "f8", "m", "displacement of a local element at every step"),
+    "element_force": (("element", "step"), "f8", "N", "force of an element on the structure at every step"),
+    "run_energy": (("run_term",), "f8", "J", "energies of the whole run"),
+    "sliding_work": (("support",), "f8", "J", "normal force times slip over the whole run"),
+    "slip_work": (("element",), "f8", "J", "slider force times slip over the whole run"),
     "fixed_point_residual": ((), "f8", "1", "bound of the relative error of the implicit contact forces, worst step"),
 }
 COORDINATES = {
@@ -45,6 +57,9 @@ COORDINATES = {
     "line_arc_length": (("line_point",), "m"),
     "support": (("support",), None),
     "section": (("section",), None),
+    "element": (("element",), None),
+    "step_time": (("step",), "s"),
+    "run_term": (("run_term",), None),
     "energy_term": (("energy_term",), None),
     "energy_time": (("energy_time",), "s"),
 }
@@ -70,8 +85,8 @@ def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
 
 def split_record(record: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
     """(statistics and energies, time series) of a record; both keep the attributes."""
-    series = [name for name, variable in record.data_vars.items() if "time" in variable.dims]
-    return record.drop_vars(series).drop_dims("time", errors="ignore"), record[series]
+    series = [name for name, variable in record.data_vars.items() if {"time", "step"} & set(variable.dims)]
+    return record.drop_vars(series).drop_dims(["time", "step"], errors="ignore"), record[series]
 
 
 def write_record(dataset: xr.Dataset, path) -> None:

@@ -84,10 +84,11 @@ def record_dataset(config, model: ModalModel, schedule: Schedule, lanes: Lanes, 
         "line_arc_length": model.line_arc_length,
         "support": list(model.support_names),
         "section": list(model.section_names),
+        "element": list(model.element_names),
         "energy_term": list(ENERGY_TERMS),
         "energy_time": lanes.energy_time,
     }
-    values = series | statistics(lanes, lane, schedule) | energy_balance(lanes, lane)
+    values = series | statistics(lanes, lane, schedule) | energy_balance(lanes, lane, model.conservative)
     values["stress_flag"] = np.int8(values["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa)
     attributes = {
         "study": config.study,
@@ -108,7 +109,7 @@ def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndar
     steps, dt = lanes.steps, 1.0 / schedule.steps_per_second
     impacts = tally["impacts"]
     per_impact = np.divide(1.0, impacts, out=np.full(impacts.shape, np.nan), where=impacts > 0)
-    rows = lanes.contact_rows
+    rows, elements = lanes.contact_rows, lanes.element_rows
     return {
         "stress_rms": np.sqrt(tally["square_stress"] * RATIO / steps),
         "stress_peak": np.sqrt(tally["peak_square_stress"]),
@@ -123,25 +124,32 @@ def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndar
         "wear_work_rate": tally["sliding_work"] / (steps * dt),
         "force_displacement": -tally["force_displacement"][rows] / steps,
         "displacement_square": tally["square_displacement"][rows] * RATIO / steps,
+        "element_displacement_square": tally["square_displacement"][elements] * RATIO / steps,
+        "element_force_displacement": -tally["force_displacement"][elements] / steps,
+        "element_power": -tally["element_work"] / (steps * dt),
+        "slip_power": tally["slip_work"] / (steps * dt),
     }
 
 
-def energy_balance(lanes: Lanes, lane: int) -> dict[str, np.ndarray]:
-    """Energies of one lane and the two residuals, relative to the input work at the end of the run.
+def energy_balance(lanes: Lanes, lane: int, conservative: bool) -> dict[str, np.ndarray]:
+    """Energies of one lane and the two residuals, relative to the largest energy that came in, by work or at the start.
 
     energy_residual: with the contact work as the trapezoidal sum of f du, the identity of the scheme (round-off only);
-    potential_energy_residual: with the contact's potential energy in its place, which measures the step.
+    potential_energy_residual: with the potential energy of contacts and elements in its place, which measures the step; NaN unless
+    they are conservative. contact_dissipation: what contacts and elements took beyond what their springs hold.
     """
     energy = lanes.energy[lane]
     terms = dict(zip(ENERGY_TERMS, energy, strict=True))
     mechanical = terms["kinetic"] + terms["elastic"]
-    supplied = terms["input_work"] - terms["dissipated"]
-    scale = abs(terms["input_work"][-1])
+    start = mechanical[0]
+    supplied = terms["input_work"] - terms["dissipated"] + start
+    scale = max(abs(terms["input_work"][-1]), start)
     exact = mechanical - supplied - terms["contact_work"]
-    potential = mechanical + terms["contact_potential"] - supplied
+    held = terms["contact_potential"] - terms["contact_potential"][0]
     return {
         "energy": energy,
         "energy_residual": np.max(np.abs(exact)) / scale,
-        "potential_energy_residual": np.max(np.abs(potential)) / scale,
+        "potential_energy_residual": np.max(np.abs(mechanical + held - supplied)) / scale if conservative else np.nan,
+        "contact_dissipation": (-terms["contact_work"] - held)[-1],
         "fixed_point_residual": lanes.fixed_point_residual[lane] * lanes.contraction,
     }
