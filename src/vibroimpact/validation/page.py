@@ -1,0 +1,73 @@
+"""The validation as one page: what was checked, the tables, the figures with their captions; plain HTML beside its figures."""
+
+from collections import Counter
+from html import escape
+from pathlib import Path
+
+STYLE = """
+body {font: 15px/1.5 system-ui, sans-serif; max-width: 1080px; margin: 2em auto; padding: 0 1em; color: #222}
+table {border-collapse: collapse; margin: 1em 0; font-size: 13px} th, td {border-bottom: 1px solid #ddd; padding: 3px 9px; text-align: left; vertical-align: top}
+th {background: #f3f3f3} td.number {text-align: right; font-variant-numeric: tabular-nums} .bad {color: #b00020; font-weight: 600} .good {color: #1b7837}
+figure {margin: 2em 0} img {max-width: 100%} figcaption {font-size: 13px; color: #444} details {margin: 1em 0} summary {cursor: pointer; font-weight: 600}
+"""
+
+
+def validation_page(checks: list[dict], tables: list[tuple[str, str, list[dict]]], figures: list[Path], folder: Path) -> str:
+    """Return the HTML page.
+
+    checks: rows of validation.csv; tables: (heading, sentence, rows) in their order; figures: PNG files, each with its caption beside it
+    as .txt; folder: the page's own, which links are relative to.
+    """
+    failed = [row for row in checks if row["pass"] not in (True, "True")]
+    parts = [f"<h1>Validation</h1><p>{len(checks)} comparisons with closed forms, exact laws, published numbers and other codes; "
+             f"{_verdict(len(failed))}.</p>", _summary(checks)]  # fmt: skip
+    if failed:
+        parts += ["<h2>What failed</h2>", _table(failed)]
+    for heading, sentence, rows in tables:
+        parts += [f"<h2>{escape(heading)}</h2><p>{escape(sentence)}</p>", _table(rows)]
+    parts.append("<h2>Figures</h2>")
+    for figure in figures:
+        caption = figure.with_suffix(".txt").read_text(encoding="utf-8")
+        parts.append(f'<figure><img src="{escape(figure.relative_to(folder).as_posix())}" alt="{escape(figure.stem)}">'
+                     f"<figcaption>{escape(caption)}</figcaption></figure>")  # fmt: skip
+    parts.append("<h2>Every comparison</h2>")
+    for case in dict.fromkeys(row["case"] for row in checks):
+        rows = [row for row in checks if row["case"] == case]
+        parts.append(f"<details><summary>{escape(str(case))}: {len(rows)}</summary>{_table(rows)}</details>")
+    body = "\n".join(parts)
+    return f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>Validation</title><style>{STYLE}</style>\n<body>\n{body}\n</body></html>\n'
+
+
+def _verdict(failed):
+    return '<span class="good">all within their tolerance</span>' if failed == 0 else f'<span class="bad">{failed} beyond their tolerance</span>'
+
+
+def _summary(checks):
+    total = Counter(row["case"] for row in checks)
+    passed = Counter(row["case"] for row in checks if row["pass"] in (True, "True"))
+    rows = [{"case": case, "comparisons": count, "within tolerance": passed[case],
+             "largest error / tolerance": max(_share(row) for row in checks if row["case"] == case)} for case, count in total.items()]  # fmt: skip
+    return _table(rows)
+
+
+def _share(row):
+    tolerance = float(row["tolerance"])
+    return float(row["error"]) / tolerance if tolerance > 0.0 else float("nan")
+
+
+def _table(rows):
+    if not rows:
+        return "<p>(empty)</p>"
+    head = "".join(f"<th>{escape(str(name)).replace('_', ' ')}</th>" for name in rows[0])
+    body = "".join("<tr>" + "".join(_cell(value) for value in row.values()) + "</tr>" for row in rows)
+    return f"<table><tr>{head}</tr>{body}</table>"
+
+
+def _cell(value):
+    if value in (True, "True"):
+        return '<td class="good">yes</td>'
+    if value in (False, "False") and not isinstance(value, (int, float)) or value is False:
+        return '<td class="bad">no</td>'
+    if isinstance(value, (int, float)):
+        return f'<td class="number">{value:.5g}</td>'
+    return f"<td>{escape(str(value))}</td>"
