@@ -14,13 +14,13 @@ RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 
 # From the lowest layer up. A module imports from its own layer and from those before it; a package counts as one entry.
 LAYERS = (
-    ("__init__", "config", "config_checks", "config_schema", "config_structure", "config_types", "settings", "stages", "cases",
+    ("__init__", "config", "config_checks", "config_name_checks", "config_place_checks", "config_schema", "config_excitation", "config_local", "config_structure", "config_types", "settings", "stages", "cases",
      "provenance", "centreline", "beam", "kernels", "laws", "model"),
     ("records",),
-    ("structure", "supports", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
+    ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
     ("ritz", "reduction", "linear", "antialias", "layout", "potential"),
     ("integrate", "trace", "simulate", "step_records", "identify", "synthetic_campaign"),
-    ("consistency", "f16"),
+    ("consistency", "statistics_table", "f16"),
     ("validation",),
     ("figures",),
 )

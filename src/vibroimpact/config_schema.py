@@ -6,34 +6,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from vibroimpact.config_structure import Damping, ModalDamping, Structure, Support
+from vibroimpact.config_excitation import Excitation
+from vibroimpact.config_local import Initial, LocalElement, Support
+from vibroimpact.config_structure import Damping, ModalDamping, Structure
 from vibroimpact.config_types import (Axis, Band_Hz, Duration_s, Force_N, Fraction_of_gap, Frequency_Hz, Gap_m, Name, Number, Overlap,
-                           Positive_factor, Section, Start_up_s, Stiffness_range, Stress_Pa, Study_name, Vector, choice, count, one_or_list, within)
+                           Positive_factor, Section, Start_up_s, Stiffness_range, Stress_Pa, Study_name, Vector, count, one_or_list, within)
 
 F16_DATA = "../shared/data/f16_ground_vibration"
-
-
-class BandLimited(Section):
-    """A Gaussian force with a flat one-sided PSD in a band, at one point along one direction."""
-
-    kind: Literal["band_limited"]
-    point: Name
-    direction: Vector
-    band_Hz: Band_Hz
-
-
-class Measured(Section):
-    """A measured force record (netCDF, CSV or MAT) at one point along one direction, scaled to the load of the case."""
-
-    kind: Literal["measured"]
-    point: Name
-    direction: Vector
-    file: str
-    variable: str
-    sampling_frequency_Hz: Frequency_Hz | None = None
-
-
-Excitation = choice(BandLimited, Measured)
 
 
 class Basis(Section):
@@ -83,14 +62,15 @@ class ShapeLine(Section):
 
 
 class RecordKeys(Section):
-    """What a case keeps, and how it is sampled."""
+    """What a case keeps, and how it is sampled; every_step: contacts and elements at each step, unfiltered, in place of all else."""
 
     duration_s: Duration_s = 49.0
     sampling_frequency_Hz: Frequency_Hz = 2048
-    sensors: Sensors
+    sensors: Sensors | None = None
     shape_line: ShapeLine = ShapeLine()
     stress_limit_Pa: Stress_Pa = 240.0e6
     keep_time_series: bool = False
+    every_step: bool = False
 
 
 class Spectra(Section):
@@ -144,13 +124,15 @@ class Config(Section):
     structure: Structure
     damping: Damping = ModalDamping(kind="modal", first_ratios=(0.015, 0.015), other_ratio=0.002)
     supports: tuple[Support, ...] = ()
-    points: dict[Name, Vector]
+    elements: tuple[LocalElement, ...] = ()
+    initial: Initial | None = None
+    points: dict[Name, Vector] = {}
     excitation: Excitation
     basis: Basis = Basis()
     integration: Integration = Integration()
     grid: Grid
     record: RecordKeys
     spectra: Spectra = Spectra()
-    identification: Identification
+    identification: Identification | None = None
     overlay: Overlay = Overlay()
     f16_data: str = F16_DATA

@@ -1,4 +1,4 @@
-"""What a configuration says about the structure: centreline, section, material, ends, damping, supports."""
+"""What a configuration says about the structure: centreline, section, material, ends, or masses and matrices; and its damping."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from vibroimpact.config_types import (Angle_deg, Coefficient, Damping_ratio, Density, Diameter_m, Height_m, Length_m, Name, Pair, Poisson_ratio,
+from vibroimpact.config_types import (Angle_deg, Axis, Coefficient, Damping_ratio, Density, Diameter_m, Length_m, Name, Poisson_ratio,
                            Positive_factor, Rotation_stiffness, Section, Shear_coefficient, Stiffness, Vector, Wall_m,
-                           Youngs_modulus_Pa, choice, count, one_or_list)
+                           Youngs_modulus_Pa, choice, count, row)
 
 
 class TubeSection(Section):
@@ -104,7 +104,43 @@ class Path(Section):
     end: choice(Clamped, Pinned, Springs, Free) = Clamped(kind="clamped")
 
 
-Structure = choice(UTube, Path)
+class Mass(Section):
+    """A mass of a chain; it moves along x."""
+
+    name: Name
+    mass_kg: Positive_factor
+
+
+class Spring(Section):
+    """A spring and damper of a chain, between two masses, or between one and the ground."""
+
+    between: row(Name, 2, "give two names: masses, or ground")
+    stiffness_N_per_m: Coefficient = 0.0
+    damping_N_s_per_m: Coefficient = 0.0
+
+
+class Chain(Section):
+    """Masses on a line, each a point of its name with the direction x."""
+
+    kind: Literal["chain"]
+    masses: Annotated[tuple[Mass, ...], Field(min_length=1)]
+    springs: tuple[Spring, ...] = ()
+
+
+class Matrices(Section):
+    """A structure given by its matrices, in files (.npz, .mat or MatrixMarket .mtx); points: name -> direction -> dof, from 0.
+
+    In .npz and .mat files with several arrays the one named mass, stiffness or damping is taken.
+    """
+
+    kind: Literal["matrices"]
+    mass: str
+    stiffness: str
+    damping: str | None = None
+    points: dict[Name, dict[Axis, count(0, 10**7, "dofs are counted from 0")]]
+
+
+Structure = choice(UTube, Path, Chain, Matrices)
 
 
 class ModalDamping(Section):
@@ -124,14 +160,3 @@ class RayleighDamping(Section):
 
 
 Damping = choice(ModalDamping, RayleighDamping)
-
-class Support(Section):
-    """A gap support: contact points evenly spaced over its height, both edges included (one point: its middle)."""
-
-    name: Name
-    at_m: Vector
-    height_m: Height_m
-    points: count(1, 200, "five points follow the contact layer over the whole range of stiffness") = 5
-    stiffness_N_per_m: one_or_list(Stiffness, tuple[Stiffness, ...])
-    gap_factor: one_or_list(Positive_factor, tuple[Positive_factor, ...]) = 1.0
-    centre_offset_m: one_or_list(Pair, tuple[Pair, ...], depth=2) = (0.0, 0.0)

@@ -63,14 +63,23 @@ def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> n
     return np.fft.irfft(resized, new_length)[first:last] * (new_length / length)
 
 
-def unit_force(excitation, generator, samples: int, rate: float, recorded: slice) -> np.ndarray:
-    """Force record (sample,) at rate [Hz] with an RMS of exactly 1 over the recorded samples.
+def unit_force(excitation, generator, samples: int, rate: float, recorded: slice, first_time_s: float = 0.0) -> np.ndarray:
+    """Force record (sample,) at rate [Hz]: RMS exactly 1 over the recorded samples, but for a sine or white noise, which are 1 by law.
 
-    excitation: the section of the configuration; generator: the seed's random stream (unused by a measured force).
+    excitation: the section of the configuration; generator: the seed's random stream (unused by a measured force or a sine);
+    first_time_s: time of the first sample, which a sine needs.
     Raises ForceError: a measured record is too short or has no force in it.
     """
-    if excitation.kind == "band_limited":
-        values = band_limited_noise(generator, samples, rate, excitation.band_Hz)
+    source = excitation.signal if excitation.kind == "base_motion" else excitation
+    if source.kind == "none":
+        return np.zeros(samples)
+    if source.kind == "harmonic":
+        time = first_time_s + np.arange(samples) / rate
+        return np.sqrt(2.0) * np.sin(2.0 * np.pi * source.frequency_Hz * time + np.deg2rad(source.phase_deg))
+    if source.kind == "white_noise":
+        return generator.standard_normal(samples)
+    if source.kind == "band_limited":
+        values = band_limited_noise(generator, samples, rate, source.band_Hz)
     else:
         measured, measured_rate = read_force(excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
         values = resample_measured(measured, measured_rate, rate)

@@ -3,12 +3,19 @@
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.centreline import SAME_PLACE_M, unit_vector
+from vibroimpact.centreline import SAME_PLACE_M
+from vibroimpact.loads import dead_load, force_row, with_base_mode
+from vibroimpact.local_elements import element_laws, element_rows, split_damping
 from vibroimpact.model import ModalModel
+from vibroimpact.point_structure import PointStructure, build_point_structure
 from vibroimpact.ritz import FAMILIES, basis_vectors, eigenmodes, orthonormal_basis, uncoupled_groups
 from vibroimpact.structure import build_structure
+from vibroimpact.supports import contact_laws
 
 AXES = dict(zip("xyz", np.eye(3), strict=True))
+TUBES = ("u_tube", "path")
+SMALL = 400  # degrees of freedom up to which a structure that is no tube keeps all its modes
+ZERO_SQUARE = 1.0e-14  # of the largest squared frequency: below it a mode is rigid-body motion
 REPORT_STIFFNESS = (*(10.0**power for power in range(7)), 4.0e6, 1.0e7, 1.0e8, 1.0e9)  # N/m per support
 REPORT_TO_HZ = 400.0
 # Name of a basis -> (families, fraction of the free modes' cut-off that is kept).
@@ -23,33 +30,75 @@ REPORT_BASES = {
 
 
 def build_model(config):
-    """Return the ModalModel of a configuration (parts structure, supports, damping, points, excitation, basis, record).
+    """Return the ModalModel of a configuration (parts structure, supports, elements, initial, damping, points, excitation, basis, record).
 
     Raises ValueError when a support or a named point is off the tube (farther than 5 mm), or a name is unknown.
     """
-    structure = build_structure(config)
+    tube = config.structure.kind in TUBES
+    structure = build_structure(config) if tube else build_point_structure(config)
+    place = _places(structure, config)
+    local_rows = np.vstack([element_rows(config.elements, place, structure.dofs), *(row[None] for row, _ in ([] if tube else structure.dampers))])
+    omega, shapes, full = _modes(structure, local_rows, config.basis)
+    damping, damper_shapes, coefficients = modal_damping(omega, config.damping), np.zeros((len(omega), 0)), []
+    if not tube:
+        own, damper_shapes, coefficients = split_damping(shapes.T @ structure.damping @ shapes)
+        damping = damping + own
+        coefficients = [*(coefficient for _, coefficient in structure.dampers), *coefficients]
+    names, laws = element_laws(config.elements, coefficients)
     contact = structure.contact
-    groups = uncoupled_groups(structure.mass, structure.stiffness, structure.contact_rows())
-    omega, shapes = modal_basis(structure, groups, config.basis)
-    free = [eigenmodes(group.stiffness, group.mass, config.basis.free_modes_to_Hz)[0] for group in groups]
-    return ModalModel(
-        omega=omega,
-        damping=modal_damping(omega, config.damping),
-        contact_shapes=np.einsum("cdn,nm->mcd", structure.contact_rows(), shapes),
-        contact_directions=contact.directions,
-        contact_weight=contact.weight,
-        support_of_point=contact.support,
-        support_names=tuple(support.name for support in config.supports),
-        contact_stiffness=contact.stiffness,
-        gap_factor=contact.gap_factor,
-        centre_offset=contact.centre_offset,
-        contact_position=contact.position,
-        full_mode_frequencies=np.sort(np.concatenate(free)) / (2.0 * np.pi),
-        **_drive_fields(structure, shapes, config),
-        **_sensor_fields(structure, shapes, config),
-        **_line_fields(structure, shapes, config),
-        **_stress_fields(structure, shapes, config),
-    )
+    fields = {
+        "omega": omega, "damping": damping,
+        "contact_shapes": np.einsum("cdn,nm->mcd", structure.contact_rows(), shapes),
+        "contact_directions": contact.directions, "contact_weight": contact.weight, "support_of_point": contact.support,
+        "support_names": tuple(support.name for support in config.supports), "contact_stiffness": contact.stiffness,
+        "gap_factor": contact.gap_factor, "centre_offset": contact.centre_offset, "contact_position": contact.position,
+        "contact_laws": contact_laws(config.supports, contact), "full_mode_frequencies": full,
+        "drive_shapes": (force_row(structure, place, config.excitation) @ shapes)[:, None],
+        "element_shapes": np.hstack([(local_rows @ shapes).T, damper_shapes]), "element_names": names, "local_laws": laws,
+        "constant_force": dead_load(structure, place, config.excitation) @ shapes,
+        "initial_displacement": _initial(structure, shapes, config.initial, "displacement_m"),
+        "initial_velocity": _initial(structure, shapes, config.initial, "velocity_m_per_s"),
+        **_sensor_fields(structure, shapes, config, place), **_line_fields(structure, shapes, config, tube), **_stress_fields(structure, shapes, config, tube),
+    }  # fmt: skip
+    if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
+        fields = with_base_mode(fields, config.excitation, config.initial)
+    return ModalModel(**fields)
+
+
+def _places(structure, config):
+    """Return the function name -> (3, dof): displacement rows of a named point."""
+    if config.structure.kind in TUBES:
+        return lambda name: structure.displacement_rows(named_arc_length(structure, config, name))
+    return structure.point_rows
+
+
+def _modes(structure, local_rows, basis):
+    """Return (omega (mode,) rad/s, shapes (dof, mode), full_frequencies (mode,) Hz): all modes of a small point structure, or the Ritz basis."""
+    rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
+    groups = uncoupled_groups(structure.mass, structure.stiffness, rows)
+    if not isinstance(structure, PointStructure) or structure.dofs > SMALL:
+        omega, shapes = modal_basis(structure, groups, basis)
+        free = [eigenmodes(group.stiffness, group.mass, basis.free_modes_to_Hz)[0] for group in groups]
+        return omega, shapes, np.sort(np.concatenate(free)) / (2.0 * np.pi)
+    omega, shapes = np.zeros(structure.dofs), np.zeros((structure.dofs, structure.dofs))
+    for group in groups:
+        squares, inside = linalg.eigh(group.stiffness, group.mass)
+        squares[squares < ZERO_SQUARE * max(squares[-1], 1.0e-300)] = 0.0
+        omega[group.dofs] = np.sqrt(squares)
+        shapes[np.ix_(group.dofs, group.dofs)] = inside
+    order = np.argsort(omega, kind="stable")
+    return omega[order], shapes[:, order], omega[order] / (2.0 * np.pi)
+
+
+def _initial(structure, shapes, initial, key):
+    """Return (mode,) the modal amplitudes of an initial field given at named points; zeros where nothing is given."""
+    field = np.zeros(structure.dofs)
+    for name, axes in (getattr(initial, key).items() if initial is not None else ()):
+        for axis, value in axes.items():
+            if axis not in structure.directions.get(name, {}):
+                raise ValueError(f"initial.{key}.{name}.{axis}: the structure has no such point or direction")
+            field[structure.directions[name][axis]] = value
+    return shapes.T @ (structure.mass @ field)
 
 
 def modal_basis(structure, groups, basis, families=FAMILIES):
@@ -92,6 +141,8 @@ def quality_report(config):
     basis has fewer modes), relative_error. Modes of the full model up to 400 Hz. A Ritz basis can only stiffen: relative_error is
     positive, but for the round-off of the full eigenvalues (about 1e-8).
     """
+    if config.structure.kind not in TUBES:
+        return []  # all modes are kept, or the user's matrices set the basis
     structure = build_structure(config)
     groups = uncoupled_groups(structure.mass, structure.stiffness, structure.contact_rows())
     share = np.sqrt(np.repeat(structure.contact.weight, 2))
@@ -139,28 +190,27 @@ def named_arc_length(structure, config, name):
     return structure.centreline.locate(config.points[name], f"point {name}")
 
 
-def _drive_fields(structure, shapes, config):
-    """Return the field drive_shapes (mode, force_channel): displacement along the force at its point."""
-    row = structure.displacement_rows(named_arc_length(structure, config, config.excitation.point))
-    return {"drive_shapes": (unit_vector(config.excitation.direction) @ row @ shapes)[:, None]}
+def _sensor_fields(structure, shapes, config, place):
+    """Return the fields of the sensors: every point of record.sensors in every direction, named "point.direction".
+
+    Without record.sensors: every direction of every named point of a structure that is no tube.
+    """
+    tube = config.structure.kind in TUBES
+    if config.record.sensors is not None:
+        wanted = [(name, axis) for name in config.record.sensors.points for axis in config.record.sensors.directions]
+    else:
+        wanted = [] if tube else [(name, axis) for name, axes in structure.directions.items() for axis in axes]
+    positions = [structure.centreline.position(named_arc_length(structure, config, name)) if tube else np.zeros(3) for name, _ in wanted]
+    rows = [AXES[axis] @ place(name) for name, axis in wanted]
+    return {"sensor_names": tuple(f"{name}.{axis}" for name, axis in wanted), "sensor_positions": np.array(positions).reshape(-1, 3),
+            "sensor_directions": np.array([AXES[axis] for _, axis in wanted]).reshape(-1, 3),
+            "sensor_shapes": (np.array(rows).reshape(-1, structure.dofs) @ shapes).T}  # fmt: skip
 
 
-def _sensor_fields(structure, shapes, config):
-    """Return the fields of the sensors: every point of record.sensors in every direction, named "point.direction"."""
-    names, positions, directions, rows = [], [], [], []
-    for name in config.record.sensors.points:
-        place = named_arc_length(structure, config, name)
-        for axis in config.record.sensors.directions:
-            names.append(f"{name}.{axis}")
-            positions.append(structure.centreline.position(place))
-            directions.append(AXES[axis])
-            rows.append(AXES[axis] @ structure.displacement_rows(place))
-    return {"sensor_names": tuple(names), "sensor_positions": np.array(positions), "sensor_directions": np.array(directions),
-            "sensor_shapes": (np.array(rows) @ shapes).T}
-
-
-def _line_fields(structure, shapes, config):
+def _line_fields(structure, shapes, config, tube):
     """Return the fields of the shape line: points evenly spaced in arc length from end to end, the ends left out."""
+    if not tube:
+        return {"line_shapes": np.zeros((shapes.shape[1], 0)), "line_arc_length": np.zeros(0), "line_positions": np.zeros((0, 3))}
     line = config.record.shape_line
     places = structure.centreline.length * np.arange(1, line.points + 1) / (line.points + 1)
     rows = np.array([AXES[line.direction] @ structure.displacement_rows(place) for place in places])
@@ -168,17 +218,20 @@ def _line_fields(structure, shapes, config):
             "line_positions": np.array([structure.centreline.position(place) for place in places])}
 
 
-def _stress_fields(structure, shapes, config):
+def _stress_fields(structure, shapes, config, tube):
     """Return stress_shapes and section_names: both ends, edges and middle of each support, drive and sensor points.
 
     Sections at the same place appear once, under the first name.
     """
+    if not tube:
+        return {"section_names": (), "stress_shapes": np.zeros((shapes.shape[1], 0, 2))}
     places = {"root_start": 0.0, "root_end": structure.centreline.length}
     for number, support in enumerate(config.supports):
         points = structure.contact.arc_length[structure.contact.support == number]
         for part, place in (("start", points[0]), ("middle", 0.5 * (points[0] + points[-1])), ("end", points[-1])):
             places[f"{support.name}_{part}"] = place
-    for name in (config.excitation.point, *config.record.sensors.points):
+    driven = [config.excitation.point] if hasattr(config.excitation, "point") else []
+    for name in (*driven, *(config.record.sensors.points if config.record.sensors is not None else ())):
         places[name] = named_arc_length(structure, config, name)
     names, kept = [], []
     for name, place in places.items():

@@ -9,14 +9,18 @@ from .integrate import ENERGY_TERMS, Lanes, Schedule, march_lanes
 from .kernels import LANES, RATIO
 from .model import ModalModel
 from .records import describe
+from .step_records import trace_cases
 
 
 def simulate_cases(config, model: ModalModel, cases: list[Case]):
     """Yield (case, record dataset) for every case, integrating LANES of them at a time.
 
     The record's variables, dimensions and units are those of records.VARIABLES. A case's record does not depend on
-    the other cases of the list. Raises IntegrationError, ForceError.
+    the other cases of the list. With record.every_step: see step_records. Raises IntegrationError, ForceError.
     """
+    if config.record.every_step:
+        yield from trace_cases(config, model, cases)
+        return
     schedule = Schedule(
         config.integration.steps_per_second,
         config.record.sampling_frequency_Hz,
@@ -38,7 +42,7 @@ def simulate_cases(config, model: ModalModel, cases: list[Case]):
 
 
 def seed_force(config, schedule: Schedule, seed: int) -> np.ndarray:
-    """The seed's force record (sample,) at every step of the run, RMS exactly 1 over the recorded window.
+    """The seed's force record (sample,) at every step of the run, of RMS 1 (exactly so over the recorded window, see unit_force).
 
     Loads scale it, gaps share it, so scaling load and gap by a power of two scales a record bit for bit.
     """
@@ -46,7 +50,8 @@ def seed_force(config, schedule: Schedule, seed: int) -> np.ndarray:
     first = round(schedule.start_up * rate) + 1
     recorded = slice(first, first + round(schedule.duration * rate))
     generator = random_stream(config.seed, seed, "force")
-    return unit_force(config.excitation, generator, schedule.steps + 2, rate, recorded)
+    first_time = -schedule.start_up - 1.0 / rate
+    return unit_force(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
 
 
 def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:

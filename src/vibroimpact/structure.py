@@ -15,7 +15,8 @@ class Structure:
     """The linear tube without contact.
 
     mass, stiffness (dof, dof) sparse, SI, in the dofs left free by the ends; held (node dof, dof) sparse: node displacements
-    (ux, uy, uz, rx, ry, rz per node, global axes) = held @ dofs; node_arc_length (node,) m; nodes (node, 3) m.
+    (ux, uy, uz, rx, ry, rz per node, global axes) = held @ dofs; node_arc_length (node,) m; nodes (node, 3) m; inertia (3, dof) kg: force
+    on the dofs, with the sign turned, per unit acceleration of all ends along x, y, z.
     """
 
     centreline: Centreline
@@ -26,6 +27,7 @@ class Structure:
     mass: sparse.csr_array
     stiffness: sparse.csr_array
     held: sparse.csr_array
+    inertia: np.ndarray
 
     @property
     def dofs(self):
@@ -109,6 +111,7 @@ def build_structure(config):
     held, springs = _hold_ends(config.structure, line, len(nodes))
     return Structure(
         centreline=line, beam=beam, contact=contact, node_arc_length=node_arc_length, nodes=nodes, held=held,
+        inertia=(np.tile(np.eye(3, DOF_PER_NODE), len(nodes)) @ mass) @ held,
         mass=(held.T @ mass @ held).tocsr(), stiffness=(held.T @ (stiffness + springs) @ held).tocsr(),
     )
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.centreline import SAME_PLACE_M, transverse_directions
+from vibroimpact.laws import ContactLaws
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,50 @@ def place_contact_points(centreline, supports):
         gap_factor=np.concatenate([_per_point(support, "gap_factor") for support in supports]) if stiffness else np.zeros(0),
         centre_offset=np.concatenate([_offsets(support) for support in supports]) if stiffness else np.zeros((0, 2)),
     )
+
+
+def place_at_points(supports):
+    """Return the ContactPoints of supports at named points, one contact point each; directions x and y, no position."""
+    stiffness = np.array([np.ravel(support.stiffness_N_per_m)[0] for support in supports])
+    return ContactPoints(
+        arc_length=np.full(len(supports), np.nan),
+        position=np.zeros((len(supports), 3)),
+        directions=np.tile(np.eye(3)[:2], (len(supports), 1, 1)),
+        weight=np.ones(len(supports)),
+        support=np.arange(len(supports)),
+        stiffness=stiffness,
+        gap_factor=np.array([np.ravel(support.gap_factor)[0] for support in supports]),
+        centre_offset=np.array([np.reshape(support.centre_offset_m, (-1, 2))[0] for support in supports]).reshape(-1, 2),
+    )
+
+
+def contact_laws(supports, contact):
+    """Return the ContactLaws of the `contact` points of `supports` (config entries): totals of a support are shared by its points."""
+    columns = {column: np.array([value(supports[number], contact.weight[point]) for point, number in enumerate(contact.support)], dtype=float)
+               for column, value in LAW_COLUMNS.items()}  # fmt: skip
+    columns["stick_stiffness"] = contact.stiffness * [supports[number].stick_stiffness_ratio for number in contact.support]
+    lands = [(point, np.deg2rad(angle)) for point, number in enumerate(contact.support) if supports[number].profile.kind == "planes"
+             for angle in supports[number].profile.normals_deg]  # fmt: skip
+    angles = np.array([angle for _, angle in lands])
+    return ContactLaws(**{name: np.reshape(values, len(contact.support)) for name, values in columns.items()},
+                       land_point=np.array([point for point, _ in lands], dtype=int),
+                       land_normal=np.round(np.column_stack([np.cos(angles), np.sin(angles)]), 15))  # exactly 0 across, so that planes stay uncoupled
+
+
+def _lobes(key, factor=1.0):
+    return lambda support, share: factor * getattr(support.profile, key) if support.profile.kind == "lobes" else 0.0
+
+
+LAW_COLUMNS = {  # column of ContactLaws -> its value from (support, share of the support that the point carries)
+    "gap": lambda support, share: np.nan if support.gap_m is None else support.gap_m,
+    "damping": lambda support, share: support.damping_N_s_per_m * share,
+    "hunt_crossley": lambda support, share: support.hunt_crossley_s_per_m,
+    "hertz": lambda support, share: support.hertz_N_per_m15 * share,
+    "friction": lambda support, share: support.friction,
+    "lobes": _lobes("count"),
+    "lobe_depth": _lobes("depth_m"),
+    "lobe_angle": _lobes("angle_deg", np.pi / 180.0),
+}
 
 
 def _per_point(support, key, share=False):

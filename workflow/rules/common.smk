@@ -63,7 +63,7 @@ def files_of_study(folder, suffix="nc"):
 
 def kept(files):
     """Time series: kept where the configuration says so, else removed as soon as their spectra are made."""
-    return files if STUDY.record.keep_time_series else temp(files)
+    return files if STUDY.record.keep_time_series or STUDY.record.every_step else temp(files)
 
 
 def figure_files(group):
@@ -83,7 +83,13 @@ def f16_records(wildcards):
 
 
 def targets():
-    """What a complete study holds: the tables, every figure, and the time series where they are kept."""
+    """What a complete study holds: the tables, every figure, and the time series where they are kept.
+
+    Without an identification: the statistics of every case, and its time series where they are kept.
+    """
+    if STUDY.identification is None:
+        series = files_of_study("timeseries") if STUDY.record.keep_time_series or STUDY.record.every_step else []
+        return [f"{RESULTS}/statistics.csv", *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
     series = files_of_study("timeseries") if STUDY.record.keep_time_series else []
     tables = [f"{RESULTS}/{name}" for name in ("consistency.csv", "consistency_summary.csv", "consistency_collapse.csv", "consistency.nc")]

@@ -46,3 +46,25 @@ rule spectra:
         f"Spectra at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
     script:
         "../scripts/spectra.py"
+
+
+rule statistics:
+    input:
+        library=library("statistics"),
+        records=files_of_study("records"),
+    output:
+        table=f"{RESULTS}/statistics.csv",
+    params:
+        config=settings("statistics"),
+    log:
+        f"{RESULTS}/logs/statistics.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/statistics.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Contact, wear and stress statistics of every case, as one table"
+    script:
+        "../scripts/statistics.py"

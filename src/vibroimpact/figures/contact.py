@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 
 from vibroimpact.figures.linear_limits import HELD, driven_frequencies
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY, gap_label, number, shown
 from vibroimpact.reduction import build_model
+from vibroimpact.settings import Settings
 
 POINTS = {1: PINK, 2: ORANGE, 3: GREEN, 5: BLUE, 9: BLACK}  # contact points per support -> colour
 LINES = {1: (0, (1, 1)), 2: (0, (4, 1)), 3: (0, (4, 1, 1, 1)), 5: "-", 9: (0, (6, 2))}
@@ -83,11 +82,9 @@ def _law(sheet, axes, gap, stiffness):
 
 def model_with_points(config, points):
     """Return the ModalModel of a configuration whose supports each have `points` contact points of equal stiffness."""
-    supports = tuple(SimpleNamespace(name=support.name, at_m=support.at_m, height_m=support.height_m, points=points, gap_factor=1.0,
-                                     stiffness_N_per_m=float(np.sum(support.stiffness_N_per_m)), centre_offset_m=(0.0, 0.0))
-                     for support in config.supports)
-    parts = ("structure", "damping", "points", "excitation", "basis", "record")
-    return build_model(SimpleNamespace(supports=supports, **{part: getattr(config, part) for part in parts}))
+    plain = {"points": points, "gap_factor": 1.0, "centre_offset_m": (0.0, 0.0)}
+    supports = tuple({**support, **plain, "stiffness_N_per_m": float(np.sum(support.stiffness_N_per_m))} for support in config.supports)
+    return build_model(Settings({**config, "supports": supports}))
 
 
 def figure_04_first_frequency(config):

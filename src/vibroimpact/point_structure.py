@@ -1,0 +1,150 @@
+"""A structure that is not a tube: masses on springs, or matrices from files, with named points."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy import io, sparse
+
+from vibroimpact.supports import ContactPoints, place_at_points
+
+AXES = {"x": 0, "y": 1, "z": 2}
+GROUND = "ground"
+LETTERS = {"mass": ("M", "m"), "stiffness": ("K", "k"), "damping": ("C", "c")}
+
+
+class MatrixFileError(ValueError):
+    """A matrix file that can not be used; the message names it, what it holds and the remedy."""
+
+
+@dataclass(frozen=True, eq=False)
+class PointStructure:
+    """A linear structure known by its matrices and named points.
+
+    mass, stiffness, damping (dof, dof) sparse, SI; directions {point: {axis: dof}}; dampers: list of ((dof,) row, coefficient N s/m)
+    that are not in `damping`, each between two dofs or a dof and the ground; contact: the ContactPoints of its supports.
+    """
+
+    mass: sparse.csr_array
+    stiffness: sparse.csr_array
+    damping: sparse.csr_array
+    dampers: list
+    directions: dict
+    contact: ContactPoints
+    contact_points: list
+
+    @property
+    def dofs(self):
+        """Return the number of degrees of freedom."""
+        return self.mass.shape[0]
+
+    def point_rows(self, name):
+        """Return (3, dof): displacement of a named point along x, y and z per unit dof; zeros where it has no dof. Raises ValueError."""
+        if name not in self.directions:
+            raise ValueError(f"point '{name}' is not among the structure's: {', '.join(sorted(self.directions))}")
+        rows = np.zeros((3, self.dofs))
+        for axis, dof in self.directions[name].items():
+            rows[AXES[axis], dof] = 1.0
+        return rows
+
+    def contact_rows(self):
+        """Return (contact_point, 2, dof): displacement of each contact point along its two directions, relative where it has two ends."""
+        rows = [self.point_rows(one) - (self.point_rows(other) if other else 0.0) for one, other in self.contact_points]
+        return np.array([directions @ row for directions, row in zip(self.contact.directions, rows, strict=True)]).reshape(-1, 2, self.dofs)
+
+    @property
+    def inertia(self):
+        """Return (3, dof): force in N per unit acceleration of the base along x, y, z, on each dof, with the sign turned."""
+        rigid = np.zeros((self.dofs, 3))
+        for axes in self.directions.values():
+            for axis, dof in axes.items():
+                rigid[dof, AXES[axis]] = 1.0
+        return (self.mass @ rigid).T
+
+
+def build_point_structure(config):
+    """Return the PointStructure of a configuration with structure.kind chain or matrices.
+
+    Raises ValueError: a spring or support names a mass or point that is not there; MatrixFileError.
+    """
+    parts = _chain(config.structure) if config.structure.kind == "chain" else _matrices(config.structure)
+    directions = parts["directions"]
+    for support in config.supports:
+        for name in filter(None, (support.point, support.other_point)):
+            if name not in directions:
+                raise ValueError(f"support {support.name}: point '{name}' is not among the structure's: {', '.join(sorted(directions))}")
+    return PointStructure(**parts, contact=place_at_points(config.supports), contact_points=[(each.point, each.other_point) for each in config.supports])
+
+
+def _chain(chain):
+    place = {mass.name: dof for dof, mass in enumerate(chain.masses)}
+    stiffness, dampers = np.zeros((len(place), len(place))), []
+    for spring in chain.springs:
+        row = np.zeros(len(place))
+        for name, sign in zip(spring.between, (1.0, -1.0), strict=True):
+            if name != GROUND:
+                row[place[name]] += sign
+        stiffness += spring.stiffness_N_per_m * np.outer(row, row)
+        if spring.damping_N_s_per_m:
+            dampers.append((row, spring.damping_N_s_per_m))
+    return {"mass": sparse.diags_array([mass.mass_kg for mass in chain.masses], format="csr"), "stiffness": sparse.csr_array(stiffness),
+            "damping": sparse.csr_array(stiffness.shape), "dampers": dampers, "directions": {name: {"x": dof} for name, dof in place.items()}}  # fmt: skip
+
+
+def _matrices(structure):
+    mass, stiffness = read_matrix(structure.mass, "mass"), read_matrix(structure.stiffness, "stiffness")
+    damping = read_matrix(structure.damping, "damping") if structure.damping else sparse.csr_array(mass.shape)
+    for path, matrix in ((structure.stiffness, stiffness), (structure.damping, damping)):
+        if matrix.shape != mass.shape:
+            raise MatrixFileError(f"{path}: is {matrix.shape}, but {structure.mass} is {mass.shape}: give matrices of the same dofs")
+    directions = {name: dict(axes.items()) for name, axes in structure.points.items()}
+    for name, axes in directions.items():
+        for axis, dof in axes.items():
+            if dof >= mass.shape[0]:
+                raise MatrixFileError(f"structure.points.{name}.{axis} = {dof}: {structure.mass} has {mass.shape[0]} dofs, counted from 0")
+    return {"mass": mass, "stiffness": stiffness, "damping": damping, "dampers": [], "directions": directions}
+
+
+def read_matrix(path, name):
+    """Return the square, symmetric matrix (dof, dof) of a .npz, .mat or .mtx file as sparse; `name` chooses among several arrays.
+
+    A MatrixMarket file or a scipy.sparse .npz holds one matrix. Raises MatrixFileError.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise MatrixFileError(f"{path}: no such file: give its path from the folder where the study is run")
+    try:
+        matrix = sparse.csr_array(READERS[path.suffix.lower()](path, name), dtype=float)
+    except KeyError as error:
+        raise MatrixFileError(f"{path}: {error.args[0] if path.suffix.lower() in READERS else 'ends in none of .npz, .mat, .mtx'}") from error
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
+        raise MatrixFileError(f"{path}: {name} is {matrix.shape}, a square matrix is needed")
+    largest = abs(matrix).max()
+    if abs(matrix - matrix.T).max() > 1e-8 * largest:
+        raise MatrixFileError(f"{path}: {name} is not symmetric: give both halves, in SI units")
+    return (0.5 * (matrix + matrix.T)).tocsr()
+
+
+def _npz(path, name):
+    with np.load(path, allow_pickle=False) as arrays:
+        if "format" in arrays.files:
+            return sparse.load_npz(path)
+        return arrays[_choose(arrays.files, name)]
+
+
+def _mat(path, name):
+    arrays = {key: value for key, value in io.loadmat(path).items() if not key.startswith("__")}
+    return arrays[_choose(list(arrays), name)]
+
+
+def _choose(names, name):
+    """The array called mass (or M, m) and the like, or the only one."""
+    for wanted in (name, *LETTERS[name]):
+        if wanted in names:
+            return wanted
+    if len(names) == 1:
+        return names[0]
+    raise KeyError(f"holds {', '.join(names)}: name the {name} matrix '{name}'")
+
+
+READERS = {".npz": _npz, ".mat": _mat, ".mtx": lambda path, name: io.mmread(path)}
