@@ -42,7 +42,9 @@ def select(values: dict, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _value_at(values: Any, parts: list[str]) -> Any:
-    """Return the value at a dotted key."""
+    """Return the value at a dotted key, None inside a section that is left out or of a kind without the key."""
     for part in parts:
+        if values is None or "kind" in values and part not in values:
+            return None
         values = values[part]
     return values
