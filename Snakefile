@@ -15,6 +15,8 @@ include: "workflow/rules/identify.smk"
 include: "workflow/rules/campaign.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/f16.smk"
+include: "workflow/rules/validation_convergence.smk"
+include: "workflow/rules/validation.smk"
 
 
 localrules:

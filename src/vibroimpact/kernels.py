@@ -470,6 +470,7 @@ class Output(NamedTuple):
 
     weights: np.ndarray  # (RATIO, SLOTS) first-stage filter, by phase and slot
     channel_start: np.ndarray  # (group + 1,) first entry of each group in channel
+    stress_entry: np.ndarray  # (group,) first entry of each group that is a stress, a whole number of blocks from channel_start
     channel: np.ndarray  # (entry,) output channel that the entry adds to; displacements first, then stresses; the last
     # channel takes the entries that fill a group's last block of CHANNEL_BLOCK
     shapes: np.ndarray  # flat, for each entry the shape over the modes of its group
@@ -1011,12 +1012,11 @@ def filter_forces(modal, contact, state, output, force, drive, end, forces, touc
 
 
 @njit(**INLINE)
-def project_channels(modal, g, output, average, channels):
-    """Add the modes of group g, averaged (from vector 0 of its slot at ``average[1]``), to the output channels."""
-    array, base = average
+def project_channels(modal, g, output, array, base, entries, channels):
+    """Add the modes of group g, in ``array`` from vector ``base`` on, to output channels, one block after the other of ``entries``."""
     first = modal.mode_start[g]
     width = modal.mode_start[g + 1] - first
-    for e in range(output.channel_start[g], output.channel_start[g + 1], CHANNEL_BLOCK):
+    for e in range(entries[0], entries[1], CHANNEL_BLOCK):
         a, b, c, d = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
         at = output.shape_start[e]
         for i in range(0, width, PANEL):
@@ -1033,7 +1033,7 @@ def project_channels(modal, g, output, average, channels):
 
 @njit(**INLINE)
 def emit(modal, state, tally, output, tick, at_tick, channels):
-    """Finish the oldest output of the first stage: channels to output.values, stress to the tally; clear it."""
+    """Finish the oldest output of the first stage: channels to output.values; the present stress to the tally; clear it."""
     zero = spread(0.0)
     modes = modal.mode_start[-1]
     extras = state.average.size // (SLOTS * LANES)
@@ -1041,7 +1041,10 @@ def emit(modal, state, tally, output, tick, at_tick, channels):
     column = output.column + at_tick
     clear(channels)
     for g in range(modal.mode_start.size - 1):
-        project_channels(modal, g, output, (state.average, base), channels)
+        start, middle, end = output.channel_start[g], output.stress_entry[g], output.channel_start[g + 1]
+        project_channels(modal, g, output, state.average, base, (start, middle), channels)
+        # Stresses as they are at this step: their statistics are not for the record's filter to take the impacts from.
+        project_channels(modal, g, output, state.displacement, (RATIO - 1) * modes, (middle, end), channels)
     for c in range(output.stress_start):
         store(output.values, c * output.columns + column, load(channels, c))
     for x in range(extras - modes):

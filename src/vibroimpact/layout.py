@@ -210,20 +210,23 @@ class ModalLayout:
             [model.sensor_shapes, model.line_shapes, model.stress_shapes.reshape(model.omega.size, 2 * sections)], axis=1
         )
         stress_start = channels.shape[1] - 2 * sections
-        start, entries, shapes, shape_start = [0], [], [], []
+        start, stress_entry, entries, shapes, shape_start = [0], [], [], [], []
         for g, (modes, _) in enumerate(self.groups):
             width = self.mode_start[g + 1] - self.mode_start[g]
-            seen = [int(c) for c in np.flatnonzero(np.any(channels[modes], axis=0))]
-            for c in seen + [-1] * (-len(seen) % CHANNEL_BLOCK):  # whole blocks; a filler adds zeros to a spare channel
-                entries.append(c if c >= 0 else channels.shape[1])
-                shape_start.append(sum(map(np.size, shapes)))
-                shapes.append(np.pad(channels[modes, c] if c >= 0 else np.zeros(len(modes)), (0, width - len(modes))))
+            seen = np.flatnonzero(np.any(channels[modes], axis=0))
+            for part in (seen[seen < stress_start], seen[seen >= stress_start]):
+                for c in [int(c) for c in part] + [-1] * (-len(part) % CHANNEL_BLOCK):  # whole blocks; a filler adds zeros to a spare channel
+                    entries.append(c if c >= 0 else channels.shape[1])
+                    shape_start.append(sum(map(np.size, shapes)))
+                    shapes.append(np.pad(channels[modes, c] if c >= 0 else np.zeros(len(modes)), (0, width - len(modes))))
+                stress_entry.append(len(entries))
             start.append(len(entries))
         _, supports = self._sizes()
         extras = 2 * supports + self.drive_shapes.shape[1]
         return Output(
             weights=weights,
             channel_start=np.array(start, np.int64),
+            stress_entry=np.array(stress_entry[::2], np.int64),  # behind the first of the two parts
             channel=np.array(entries, np.int64),
             shapes=np.concatenate([*shapes, np.zeros(1)]),
             shape_start=np.array(shape_start, np.int64),

@@ -20,8 +20,8 @@ VARIABLES = {
     "line_displacement": (("line_point", "time"), "f4", "m", "displacement along the shape line"),
     "support_force": (("support", "direction", "time"), "f4", "N", "force of the structure on the support"),
     "force": (("time",), "f4", "N", "drive force"),
-    "stress_rms": (("section",), "f8", "Pa", "RMS of the outer-fibre bending stress (10240 Hz for 51200 steps per second)"),
-    "stress_peak": (("section",), "f8", "Pa", "largest outer-fibre bending stress"),
+    "stress_rms": (("section",), "f8", "Pa", "RMS of the outer-fibre bending stress, every fifth step, unfiltered"),
+    "stress_peak": (("section",), "f8", "Pa", "largest outer-fibre bending stress, every fifth step"),
     "stress_flag": ((), "i1", "1", "1 when the peak stress exceeds record.stress_limit_Pa"),
     "contact_fraction": (("support",), "f8", "1", "fraction of time in contact"),
     "impact_count": (("support",), "i4", "1", "number of contacts begun"),
@@ -179,6 +179,15 @@ def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_text(text: str, path) -> None:
+    """Write a text file, atomic like write_record."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, path)
 
 
 def read_table(path) -> list[dict]:

@@ -10,11 +10,13 @@ from vibroimpact.reduction import build_model
 from vibroimpact.simulate import simulate_cases
 from vibroimpact.validation import reference_cases
 from vibroimpact.validation.check import Check
+from vibroimpact.validation.frequencies import frequency_checks
 from vibroimpact.validation.random_stops import law_checks
 from vibroimpact.validation.variant import changed
 
 STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
 ORDER_TOLERANCE = 0.3  # the place of a touch inside a step is random, and the order of four steps scatters with it
+ORDER_COLUMNS = ("steps_per_second", "step_s", "contact_time_error_s")
 WHITE_SIGMA = {"r11_stops_10": (0.5, 1.0), "r11_stops_100": (1.0, 2.0)}  # s0 of the loads of each configuration
 
 
@@ -51,3 +53,15 @@ def random_stop_checks(folder: Path, name: str) -> list[Check]:
         seeds = [record for record in records if record.attrs["load_rms_N"] == load]
         checks += law_checks(seeds, sigma, config.supports[0].stiffness_N_per_m / omega**2, omega, config.supports[0].gap_m)
     return checks
+
+
+def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[dict]]:
+    """Return (Checks, rows of R3's order) of "frequencies", "impacts", "r11_stops_10" or "r11_stops_100".
+
+    study: the configuration of the stand-in tube; folder: of the reference configurations.
+    """
+    if group == "frequencies":
+        return frequency_checks(study), []
+    if group == "impacts":
+        return impact_checks(folder)
+    return random_stop_checks(folder, group), []

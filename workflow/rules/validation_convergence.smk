@@ -1,0 +1,115 @@
+# Convergence: frequencies with mesh and contact points, runs with step and modes, spectra with buffers. The default study's tube.
+CONVERGENCE = {
+    "frequencies": ("mesh", "contact_points", "contact_points_refined"),
+    "statistics": ("period", "statistics"),
+    "spectra": ("averages", "leakage", "impacts"),
+}
+CONVERGENCE_FIGURES = {
+    "frequencies": ("mesh", "contact_points"),
+    "statistics": ("step", "statistics_step", "statistics_modes"),
+    "spectra": ("spectra",),
+}
+CONVERGENCE_AXES = ("step", "modes", "modes_alone")
+
+
+# A topic's tables, its checks last; its figures, their data and captions.
+CONVERGENCE_TABLES = {
+    topic: [*(f"results/validation/convergence_{name}.csv" for name in names), f"results/validation/checks_convergence_{topic}.csv"]
+    for topic, names in CONVERGENCE.items()
+}
+CONVERGENCE_FIGURE_FILES = {
+    topic: [f"results/validation/figures/validation_convergence_{name}.{suffix}" for name in names for suffix in ("png", "pdf", "csv", "txt")]
+    for topic, names in CONVERGENCE_FIGURES.items()
+}
+
+
+wildcard_constraints:
+    axis="|".join(CONVERGENCE_AXES),
+
+
+rule validation_convergence_frequencies:
+    input:
+        library=library("validation_convergence_frequencies"),
+    output:
+        tables=CONVERGENCE_TABLES["frequencies"],
+        figures=CONVERGENCE_FIGURE_FILES["frequencies"],
+    params:
+        config=settings("validation"),
+    log:
+        "results/validation/logs/convergence_frequencies.log",
+    benchmark:
+        "results/validation/benchmarks/convergence_frequencies.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Convergence of frequencies with mesh and contact points"
+    script:
+        "../scripts/validation_convergence_frequencies.py"
+
+
+rule validation_convergence_runs:
+    input:
+        library=library("validation_convergence_runs"),
+    output:
+        table="results/validation/convergence_runs_{axis}.csv",
+    params:
+        config=settings("validation"),
+    log:
+        "results/validation/logs/convergence_runs_{axis}.log",
+    benchmark:
+        "results/validation/benchmarks/convergence_runs_{axis}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=30,
+    message:
+        "Impacting runs along the axis {wildcards.axis}"
+    script:
+        "../scripts/validation_convergence_runs.py"
+
+
+rule validation_convergence_statistics:
+    input:
+        library=library("validation_convergence_statistics"),
+        runs=expand("results/validation/convergence_runs_{axis}.csv", axis=CONVERGENCE_AXES),
+    output:
+        tables=CONVERGENCE_TABLES["statistics"],
+        figures=CONVERGENCE_FIGURE_FILES["statistics"],
+    params:
+        config=settings("validation"),
+    log:
+        "results/validation/logs/convergence_statistics.log",
+    benchmark:
+        "results/validation/benchmarks/convergence_statistics.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        "Convergence of linear modes, energy and response statistics with step and modes"
+    script:
+        "../scripts/validation_convergence_statistics.py"
+
+
+rule validation_convergence_spectra:
+    input:
+        library=library("validation_convergence_spectra"),
+    output:
+        tables=CONVERGENCE_TABLES["spectra"],
+        figures=CONVERGENCE_FIGURE_FILES["spectra"],
+    params:
+        config=settings("validation"),
+    log:
+        "results/validation/logs/convergence_spectra.log",
+    benchmark:
+        "results/validation/benchmarks/convergence_spectra.tsv"
+    threads: 1
+    resources:
+        mem_mb=2500,
+        runtime=20,
+    message:
+        "Effective averages and leakage of spectra, scatter over seeds with impacts"
+    script:
+        "../scripts/validation_convergence_spectra.py"
