@@ -66,11 +66,12 @@ def gaussian_linearisation(sigma: float, ratio: float) -> tuple[float, float]:
 
 
 def step_error(ratio: float, omega_step: float) -> float:
-    """Return the relative error of the statistics that the step is responsible for: (omega_c dt)² / 12, omega_c on the stop.
+    """Return the relative error of the statistics that the step is responsible for: (omega_c dt)² / 3, omega_c on the stop.
 
-    Average acceleration lowers a frequency by this fraction; stated, not fitted.
+    Average acceleration lowers the frequency by (omega_c dt)² / 12; the mean of the noise at both ends of a step has the power
+    cos²(omega_c dt / 2) of white noise, (omega_c dt)² / 4 less. Stated, not fitted.
     """
-    return (1.0 + ratio) * omega_step**2 / 12.0
+    return (1.0 + ratio) * omega_step**2 / 3.0
 
 
 def law_checks(records, sigma: float, ratio: float, omega: float, gap: float, stop: int = 0) -> list[Check]:
