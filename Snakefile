@@ -16,6 +16,7 @@ include: "workflow/rules/campaign.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/f16.smk"
 include: "workflow/rules/validation_convergence.smk"
+include: "workflow/rules/validation_judges.smk"
 include: "workflow/rules/validation.smk"
 
 

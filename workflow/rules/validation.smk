@@ -11,12 +11,12 @@ def validation_figures(*names):
 
 def page_checks():
     """The tables of comparisons that the page gathers."""
-    return [f"{VALIDATION}/checks_{group}.csv" for group in REFERENCE_GROUPS] + [files[-1] for files in CONVERGENCE_TABLES.values()]
+    return [f"{VALIDATION}/checks_{group}.csv" for group in REFERENCE_GROUPS] + [files[-1] for files in CONVERGENCE_TABLES.values()] + [f"{VALIDATION}/checks_judges.csv"]
 
 
 def page_figures():
     """The figures that the page shows."""
-    return [file for files in CONVERGENCE_FIGURE_FILES.values() for file in files] + validation_figures("claims_peak", "claims_shape", "prediction", "prediction_gain")
+    return [file for files in CONVERGENCE_FIGURE_FILES.values() for file in files] + validation_figures("judges", "claims_peak", "claims_shape", "prediction", "prediction_gain")
 
 
 wildcard_constraints:

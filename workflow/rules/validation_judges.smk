@@ -1,0 +1,23 @@
+# Third-party codes as judges; those that are not installed are named in judges_present.txt. `make judges` installs the Python ones.
+rule validation_judges:
+    input:
+        library=library("validation_judges"),
+    output:
+        checks="results/validation/checks_judges.csv",
+        oval_bend="results/validation/oval_bend.csv",
+        presence="results/validation/judges_present.txt",
+        figures=[f"results/validation/figures/validation_judges.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
+    params:
+        config=settings("validation"),
+    log:
+        "results/validation/logs/judges.log",
+    benchmark:
+        "results/validation/benchmarks/judges.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    message:
+        "Third-party codes judge frequencies, impacts, poles and spectra"
+    script:
+        "../scripts/validation_judges.py"

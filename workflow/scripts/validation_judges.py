@@ -1,0 +1,19 @@
+"""What third-party codes say of the tube, its impacts, poles and spectra: Checks of those installed, and which were absent."""
+
+import sys
+from pathlib import Path
+
+from vibroimpact.config import check_config
+from vibroimpact.figures.validation_judges import judged_impacts
+from vibroimpact.records import write_table, write_text
+from vibroimpact.validation.judges import all_verdicts
+from vibroimpact.validation.judges_modes import oval_bend_rows
+
+sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+config = check_config(snakemake.params.config, "the study's configuration")
+verdicts = all_verdicts(config)
+write_table([check.row() for check in verdicts.checks], snakemake.output.checks)
+write_table(oval_bend_rows(config), snakemake.output.oval_bend)
+write_text(verdicts.presence(), snakemake.output.presence)
+judged_impacts(verdicts, min(config.grid.gap_m)).save(Path(snakemake.output.figures[0]).parent)
+print(verdicts.presence())
