@@ -63,8 +63,9 @@ def test_the_first_frequency_converges_with_the_points_at_order_1_and_trapezoida
 
 def test_five_points_follow_the_layer_where_the_contact_is_and_one_never_clamps(study_config):
     rows = contact_points.contact_point_rows(study_config, sharing=(("equal", 1), ("equal", 5)), stiffness=np.array([1.0, 1e5, 4e6, 1e8, 1e9]))
-    to_contact, everywhere = contact_points.five_points_checks(study_config, rows)
+    to_contact, = contact_points.five_points_checks(study_config, rows)
     assert to_contact.passed, to_contact.row()
-    assert 0.015 < everywhere.ours < 0.025  # the layer is left by 2 % at 1e8 N/m: the equal points turn 1.5 times too stiff
+    farthest = max((row["from_layer"] for row in rows if row["points"] == 5), key=abs)
+    assert 0.015 < farthest < 0.025  # the layer is left by 2 % at 1e8 N/m: the equal points turn 1.5 times too stiff
     one = next(row["from_layer"] for row in rows if (row["points"], row["stiffness_N_per_m"]) == (1, 1e9))
     assert one < -0.14

@@ -4,19 +4,15 @@ REFERENCE_GROUPS = ("frequencies", "impacts", "r11_stops_10", "r11_stops_100")
 PREDICTION_CASES = ("left_out", "gaps", "second_tube")
 
 
-def validation_figures(*names):
-    """The files of figures of the validation."""
-    return [f"{VALIDATION}/figures/validation_{name}.{suffix}" for name in names for suffix in ("png", "pdf", "csv", "txt")]
-
-
-def page_checks():
-    """The tables of comparisons that the page gathers."""
-    return [f"{VALIDATION}/checks_{group}.csv" for group in REFERENCE_GROUPS] + [files[-1] for files in CONVERGENCE_TABLES.values()] + [f"{VALIDATION}/checks_judges.csv"]
-
-
-def page_figures():
-    """The figures that the page shows."""
-    return [file for files in CONVERGENCE_FIGURE_FILES.values() for file in files] + validation_figures("judges", "claims_peak", "claims_shape", "prediction", "prediction_gain")
+CLAIM_FIGURES = [f"{VALIDATION}/figures/validation_claims_{name}.{suffix}" for name in ("peak", "shape") for suffix in ("png", "pdf", "csv", "txt")]
+PREDICTION_FIGURES = [f"{VALIDATION}/figures/validation_{name}.{suffix}" for name in ("prediction", "prediction_gain") for suffix in ("png", "pdf", "csv", "txt")]
+JUDGES_FIGURE = [f"{VALIDATION}/figures/validation_judges.{suffix}" for suffix in ("png", "pdf", "csv", "txt")]
+CONVERGENCE_PICTURES = [file for files in CONVERGENCE_FIGURE_FILES.values() for file in files]
+PAGE_CHECKS = [
+    *(f"{VALIDATION}/checks_{group}.csv" for group in REFERENCE_GROUPS),
+    *(files[-1] for files in CONVERGENCE_TABLES.values()),
+    f"{VALIDATION}/checks_judges.csv",
+]
 
 
 wildcard_constraints:
@@ -33,7 +29,6 @@ rule validation_reference:
         rows=f"{VALIDATION}/order_{{group}}.csv",
     params:
         config=settings("validation"),
-        folder="config/reference",
     log:
         f"{VALIDATION}/logs/reference_{{group}}.log",
     benchmark:
@@ -61,7 +56,7 @@ rule validation_claims:
         modes=f"{VALIDATION}/convergence_runs_modes.csv",
     output:
         table=f"{VALIDATION}/claims.csv",
-        figures=validation_figures("claims_peak", "claims_shape"),
+        figures=CLAIM_FIGURES,
     params:
         config=settings("validation"),
     log:
@@ -111,7 +106,7 @@ rule validation_prediction:
     output:
         table=f"{VALIDATION}/prediction.csv",
         summary=f"{VALIDATION}/prediction_summary.csv",
-        figures=validation_figures("prediction", "prediction_gain"),
+        figures=PREDICTION_FIGURES,
     params:
         config=settings("statistics"),
     log:
@@ -131,15 +126,15 @@ rule validation_prediction:
 rule validation:
     input:
         library=library("validation"),
-        checks=page_checks(),
+        checks=PAGE_CHECKS,
         order=f"{VALIDATION}/order_impacts.csv",
         claims=f"{VALIDATION}/claims.csv",
         prediction=f"{VALIDATION}/prediction_summary.csv",
-        figures=page_figures(),
+        figures=CONVERGENCE_PICTURES + JUDGES_FIGURE + CLAIM_FIGURES + PREDICTION_FIGURES,
     output:
         table=f"{VALIDATION}/validation.csv",
         page=f"{VALIDATION}/index.html",
-        figures=validation_figures("reference"),
+        figures=[f"{VALIDATION}/figures/validation_reference.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
     params:
         config=settings("statistics"),
     log:

@@ -10,7 +10,7 @@ from vibroimpact.validation.reference_runs import ORDER_COLUMNS, reference_group
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 study = check_config(snakemake.params.config, "the study's configuration")
-checks, rows = reference_group(snakemake.wildcards.group, study, Path(snakemake.params.folder))
+checks, rows = reference_group(snakemake.wildcards.group, study, Path(snakemake.input.configs[0]).parent)
 write_table([check.row() for check in checks], snakemake.output.checks, COLUMNS)
 write_table(rows, snakemake.output.rows, ORDER_COLUMNS)
 print(f"{sum(check.passed for check in checks)} of {len(checks)} within tolerance")
