@@ -176,12 +176,13 @@ class _Run:
         samples, shapes = schedule.samples, layout_output.stress_start
         outputs = np.empty((self.cases, layout_output.values.shape[0], samples), np.float32)
         acceleration = np.empty((self.cases, sensors, samples), np.float32)
-        first, buffer = 0, np.zeros(LANES)
+        taps, curvature_taps = (np.pad(taps, 3 * schedule.filter.step) for taps in (schedule.filter.second, schedule.filter.second_derivative))
+        first, buffer = 0, np.zeros((4, LANES))
         for ticks in _chunks(samples * schedule.filter.step, self.chunk):
             self.advance(ticks, self.tail, recorded=True)
             values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
-            kernels.decimate(values, schedule.filter.second, outputs, first, schedule.filter.step, buffer)
-            kernels.decimate(values[:sensors], schedule.filter.second_derivative, acceleration, first, schedule.filter.step, buffer)
+            kernels.decimate(values, taps, outputs, first, schedule.filter.step, buffer)
+            kernels.decimate(values[:sensors], curvature_taps, acceleration, first, schedule.filter.step, buffer)
             layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
             first += ticks // schedule.filter.step
         return Lanes(
@@ -212,9 +213,14 @@ class _Run:
 
     def forces(self, first, count):
         """Drive forces (count, force_channel, LANES) N at steps first, first + 1, ..."""
-        channels = self.model.drive_shapes.shape[1]
-        out = np.zeros((count, self.layout.drive_shapes.shape[1], LANES))
-        out[:, :channels, : self.cases] = self.drive(first, count)
+        channels, total = self.model.drive_shapes.shape[1], self.layout.drive_shapes.shape[1]
+        given = self.drive(first, count)
+        if given.shape == (count, total, LANES):
+            return np.ascontiguousarray(given)
+        out = np.zeros((count, total, LANES))
+        for channel in range(channels):
+            for lane in range(self.cases):  # long strided copies: many times faster than one of blocks of a few lanes
+                out[:, channel, lane] = given[:, channel, lane]
         out[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
         return out
 
