@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.oracle import newmark_contact
+from tests.oracle import exact_contact, newmark_contact
 from vibroimpact import integrate, layout
 from vibroimpact.excitation import band_limited_noise
 from vibroimpact.integrate import ENERGY_TERMS, IntegrationError, Schedule, march_lanes
@@ -44,9 +44,11 @@ def impacting(study_model, short):
     return lanes, force, gap, offset
 
 
+@pytest.mark.parametrize("scheme", ["newmark", "exact"])
 @pytest.mark.parametrize("lane", [0, LANES - 1])
-def test_agrees_with_the_textbook_scheme(study_model, short, impacting, lane, monkeypatch):
-    """Contact displacements and forces of every chunk's last step against a dense (q, v, a) Newmark with iterated contact."""
+def test_agrees_with_the_textbook_scheme(study_model, impacting, lane, scheme, monkeypatch):
+    """Contact displacements and forces of every chunk's last step against dense twins with iterated contact."""
+    short, twin = Schedule(RATE, 2048, 0.0, 0.06, scheme), {"newmark": newmark_contact, "exact": exact_contact}[scheme]
     _, force, gap, offset = impacting
     seen = []
 
@@ -59,7 +61,7 @@ def test_agrees_with_the_textbook_scheme(study_model, short, impacting, lane, mo
     monkeypatch.setattr(integrate, "CHUNK_TICKS", 100)
     monkeypatch.setattr(layout, "FIXED_POINT_TOLERANCE", 1e-13)  # as the twin; impacts amplify any difference
     lanes = march_lanes(study_model, short, gap, offset, lambda first, count: force[first : first + count])
-    u, f = newmark_contact(study_model, gap[lane], offset[:, :, lane], force[: short.steps + 1, :, lane], 1.0 / RATE)
+    u, f = twin(study_model, gap[lane], offset[:, :, lane], force[: short.steps + 1, :, lane], 1.0 / RATE)
     assert len(seen) > 5
     for done, row_displacement, row_force in seen:
         assert np.max(np.abs(row_displacement[lanes.contact_rows, lane] - u[done - 1])) < 1e-6 * np.max(np.abs(u))
