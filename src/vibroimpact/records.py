@@ -222,14 +222,20 @@ def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
 
     columns: the header of a table that may have no rows.
     """
+    columns = tuple(rows[0]) if rows else tuple(columns)
+    write_cells(columns, ([_plain(row[column]) for column in columns] for row in rows), path)
+
+
+def write_cells(columns, rows, path) -> None:
+    """Write rows of plain Python values (columns,) under a header as CSV. Atomic like write_record."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with open(temporary, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else list(columns))
-            writer.writeheader()
-            writer.writerows({key: _plain(value) for key, value in row.items()} for row in rows)
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            writer.writerows(rows)
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
@@ -254,7 +260,7 @@ def read_table(path) -> list[dict]:
 
 
 def _plain(value):
-    return repr(float(value)) if isinstance(value, (float, np.floating)) else value
+    return float(value) if isinstance(value, np.floating) else value  # csv writes a float in full, a float32 in its own few digits
 
 
 def _number(text):

@@ -11,7 +11,8 @@ from vibroimpact.settings import Settings
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 config = Settings(snakemake.params.config)
 model = read_model(snakemake.input.model)
-responses = psd_table.gather(config, model, map(read_record, snakemake.input.spectra))
+spectra = (read_record(path, psd_table.variables_shown(config, path)) for path in snakemake.input.spectra)
+responses = psd_table.gather(config, model, spectra)
 sheets = overlay.figure_05_overlay(config, model, responses, read_campaign(snakemake.input.campaign)) + response.in_plane_share(config, responses)
 for draw in (response.figure_06_levels, response.figure_07_overlay_of_loads, response.figure_08_load_and_stiffness):
     sheets += draw(config, model, responses)

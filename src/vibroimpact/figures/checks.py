@@ -72,6 +72,7 @@ STATISTICS = (
     ("wear", "wear_work_rate", "wear_work_rate_W", "wear work rate"),
     ("stress", "stress_peak", "stress_Pa", "largest bending stress"),
 )
+VARIABLES = ("energy", *RESIDUALS, *(variable for _, variable, _, _ in STATISTICS), "peak_force")  # of a record, that are drawn here
 
 
 def contact_statistics(config, records):
