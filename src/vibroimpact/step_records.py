@@ -3,7 +3,7 @@
 import numpy as np
 
 from .cases import Case, random_stream
-from .excitation import unit_force
+from .force_stream import unit_force
 from .kernels import LANES
 from .model import ModalModel
 from .records import describe
