@@ -6,7 +6,7 @@ from .cases import Case, random_stream
 from .force_stream import unit_force
 from .kernels import LANES
 from .model import ModalModel
-from .records import describe
+from .variables import describe
 from .trace import Traces, trace_lanes
 
 

@@ -38,6 +38,7 @@ def checked_config():
 STUDY = checked_config()
 RESULTS = f"results/{STUDY.study}"
 CASES = [case.id for case in all_cases(STUDY.grid)]
+KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
 CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
 
 
@@ -61,9 +62,9 @@ def files_of_study(folder, suffix="nc"):
     return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in CASES]
 
 
-def kept(files):
-    """Time series: kept where the configuration says so, else removed as soon as their spectra are made."""
-    return files if STUDY.record.keep_time_series or STUDY.record.every_step else temp(files)
+def series_of_load():
+    """The time series that a simulation writes: none where neither the study keeps them nor anything could be made of them."""
+    return files_of_load("timeseries") if KEPT or STUDY.identification is not None else []
 
 
 def figure_files(group):
@@ -87,11 +88,10 @@ def targets():
 
     Without an identification: the statistics of every case, and its time series where they are kept.
     """
+    series = files_of_study("timeseries") if KEPT else []
     if STUDY.identification is None:
-        series = files_of_study("timeseries") if STUDY.record.keep_time_series or STUDY.record.every_step else []
         return [f"{RESULTS}/statistics.csv", *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
-    series = files_of_study("timeseries") if STUDY.record.keep_time_series else []
     tables = [f"{RESULTS}/{name}" for name in ("consistency.csv", "consistency_summary.csv", "consistency_collapse.csv", "consistency.nc")]
     return [*tables, *figures, *series]
 

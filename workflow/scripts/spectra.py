@@ -5,7 +5,7 @@ import sys
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_record, write_record
 from vibroimpact.settings import Settings
-from vibroimpact.spectra import case_spectra
+from vibroimpact.spectra_of_case import case_spectra
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 config = Settings(snakemake.params.config)
