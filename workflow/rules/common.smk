@@ -9,7 +9,7 @@ sys.path.insert(0, SOURCE)
 # Jobs inherit these: the library needs no installation, and -j jobs of one thread each do not crowd one another out.
 os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
-from vibroimpact.cases import all_cases, ids_of_load, load_values, nearest_loads
+from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads
 from vibroimpact.config import ConfigError, check_config, read_yaml
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
@@ -55,6 +55,11 @@ def settings(stage):
 def files_of_load(folder, suffix="nc"):
     """The files of the cases of wildcard {load}, one per gap and seed."""
     return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in ids_of_load(STUDY.grid, "{load}")]
+
+
+def files_of_loads(folder, loads, suffix="nc"):
+    """The files of the cases of some loads."""
+    return [f"{RESULTS}/{folder}/{case}.{suffix}" for load in loads for case in ids_of_load(STUDY.grid, load)]
 
 
 def files_of_study(folder, suffix="nc"):
