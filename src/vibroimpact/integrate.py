@@ -1,7 +1,6 @@
 """Marching a batch of cases through time: checks before, the kernel, statistics and energies after."""
 
 from dataclasses import dataclass, field
-from time import process_time
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from .kernels import BEHIND, LANES, RATIO
 from .layout import ModalLayout
 from .model import ModalModel
 from .potential import stored_energy
+from .stopwatch import Stopwatch
 
 CHUNK_TICKS = 2000  # steps between visits to Python, in units of RATIO: its forces fit the second-level cache
 CONTRACTION_LIMIT = 0.5
@@ -26,7 +26,7 @@ class Lanes:
 
     displacement (case, channel, sample) m: sensors, then the shape line; acceleration (case, sensor, sample) m/s²;
     force (case, channel, sample) N: two resultants per support (on the structure), then the drive forces. None, all three, where they
-    were handed over piece by piece. kernel_s: CPU seconds in the kernel.
+    were handed over piece by piece. stopwatch: CPU seconds of kernel and output filter.
     tally: sums over the recorded steps (see kernels.Tally); steps: how many; energy (case, term, chunk) J at
     energy_time (chunk,) s; terms ENERGY_TERMS, all accumulated from the start of the simulation.
     fixed_point_residual (case,): largest relative change of the contact forces in the last pass of a step; times
@@ -44,7 +44,7 @@ class Lanes:
     contraction: float
     contact_rows: np.ndarray
     element_rows: np.ndarray
-    kernel_s: float
+    stopwatch: Stopwatch
 
 
 ENERGY_TERMS = ("input_work", "dissipated", "contact_work", "kinetic", "elastic", "contact_potential")
@@ -162,7 +162,7 @@ class _Run:
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
         self.output = self.layout.output(schedule.filter.phase_weights(), tail + self.chunk)
         self.tail = tail
-        self.done, self.kernel_s = 0, 0.0
+        self.done, self.stopwatch = 0, Stopwatch()
         self.totals = {name: np.zeros(LANES) for name in ("input_work", "dissipated", "contact_work")}
         self.sums = None
         self.residual = np.zeros(LANES)
@@ -185,10 +185,11 @@ class _Run:
         first, buffer = 0, np.zeros(LANES)
         for ticks in _chunks(samples * schedule.filter.step, self.chunk):
             self.advance(ticks, self.tail, recorded=True)
-            values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
-            kernels.decimate(values, schedule.filter.second, pieces[0], 0, schedule.filter.step, buffer)
-            kernels.decimate(values[:sensors], schedule.filter.second_derivative, pieces[1], 0, schedule.filter.step, buffer)
-            layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
+            with self.stopwatch("output filter"):
+                values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
+                kernels.decimate(values, schedule.filter.second, pieces[0], 0, schedule.filter.step, buffer)
+                kernels.decimate(values[:sensors], schedule.filter.second_derivative, pieces[1], 0, schedule.filter.step, buffer)
+                layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
             count = ticks // schedule.filter.step
             outputs, acceleration = (piece[..., :count] for piece in pieces)
             if receive is None:
@@ -208,7 +209,7 @@ class _Run:
             contraction=contraction,
             contact_rows=self.layout.contact_rows(),
             element_rows=self.layout.element_rows(),
-            kernel_s=self.kernel_s,
+            stopwatch=self.stopwatch,
         )
 
     def advance(self, ticks, column, recorded):
@@ -217,9 +218,8 @@ class _Run:
             array[...] = 0.0
         force = self.forces(self.done + 1, ticks * RATIO)
         output = self.output._replace(column=column)
-        start = process_time()
-        steps = kernels.march(self.modal, self.contact, self.laws, self.state, self.tally, output, self.layout.trace(0), self.work, force)
-        self.kernel_s += process_time() - start
+        with self.stopwatch("kernel"):
+            steps = kernels.march(self.modal, self.contact, self.laws, self.state, self.tally, output, self.layout.trace(0), self.work, force)
         if steps < ticks * RATIO:
             self.fail(steps)
         self.done += steps

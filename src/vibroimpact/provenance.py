@@ -31,6 +31,7 @@ def source_digest(files: Iterable[Path | str]) -> str:
     return digest.hexdigest()[:DIGEST_LENGTH]
 
 
+@lru_cache(maxsize=1)
 def versions() -> dict[str, str]:
     """Return {name: version} of Python and of the packages that results depend on."""
     found = {"python": platform.python_version()}

@@ -220,6 +220,14 @@ def write_text(text: str, path) -> None:
     os.replace(temporary, path)
 
 
+def read_text(path) -> str:
+    """The text of a file. Raises RecordError when there is no such file."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read ({error.strerror})") from error
+
+
 def read_table(path) -> list[dict]:
     """Rows of a CSV table; what reads as a number is one. Raises RecordError when there is no such file."""
     try:

@@ -1,8 +1,4 @@
-"""What becomes of the time series of a batch while it is integrated: files of series, files of spectra, or nothing.
-
-Each is a `keep` of simulate.simulate_cases: keep(schedule, batch), entered with `with`, gives put(first sample, {variable: (case, ..., sample)}).
-Memory holds a piece of the record (series) or one segment of it (spectra), whatever its duration.
-"""
+"""The time series of a batch, written while it is integrated: memory holds a piece of them, whatever their duration."""
 
 from contextlib import ExitStack, contextmanager
 
@@ -11,7 +7,6 @@ import xarray as xr
 
 from .records import RecordFile, write_record
 from .simulate import case_attributes, sample_times
-from .spectra_of_case import SpectraOfCase
 from .variables import VARIABLES, split_record
 
 PIECE = 8192  # samples written at a time: many small writes cost more than the samples
@@ -19,7 +14,7 @@ SERIES = ("displacement", "acceleration", "line_displacement", "support_force", 
 
 
 def series_files(config, model, paths: dict, attributes: dict):
-    """The `keep` that writes the series of each case to its path {case: path}, with attributes beside those of the case.
+    """The `keep` of simulate_cases that writes the series of each case to its path {case: path}, with attributes beside those of the case.
 
     Without any path the series are dropped.
     """
@@ -61,28 +56,3 @@ def write_parts(record, path, series_path=None):
     write_record(statistics, path)
     if series.data_vars:
         write_record(series, series_path)
-
-
-def spectra_files(config, model, paths: dict, attributes: dict, stopwatch):
-    """The `keep` that writes the spectra of each case to its path {case: path}, with attributes beside those of the case."""
-
-    @contextmanager
-    def keep(schedule, batch):
-        with ExitStack() as open_files:
-            made = []
-            for case in batch:
-                spectra = SpectraOfCase(config, model.sensor_names, len(model.line_arc_length), schedule.samples, np.float32)
-                head = spectra.head.assign_attrs(case_attributes(config, schedule, case) | spectra.head.attrs | attributes)
-                spectra.keep = open_files.enter_context(RecordFile(paths[case], head, spectra.parts, spectra.sizes)).put
-                made.append(spectra)
-
-            def put(first, series):
-                with stopwatch("spectra"):
-                    for spectra, *values in zip(made, *(series[name] for name in SERIES[:3]), strict=True):
-                        spectra.put(*values)
-
-            yield put
-            for spectra in made:
-                spectra.finish()
-
-    return keep

@@ -21,7 +21,7 @@ def simulate_cases(config, model: ModalModel, cases: list[Case], keep=None, stop
     The record's variables, dimensions and units are those of variables.VARIABLES. A case's record does not depend on the other cases of
     the list. keep: where given the records hold no time series; those go piece by piece to keep(schedule, batch), which is entered for
     each batch of cases and gives a function put(first sample, {variable: (case, ..., sample)}), see series_files. stopwatch: is told
-    the CPU seconds of kernel and force. With record.every_step: see step_records; keep is not asked.
+    the CPU seconds of kernel, output filter and force. With record.every_step: see step_records; keep is not asked.
     Raises IntegrationError, ForceError.
     """
     stopwatch = Stopwatch() if stopwatch is None else stopwatch
@@ -48,7 +48,7 @@ def simulate_cases(config, model: ModalModel, cases: list[Case], keep=None, stop
                 drive=_drive(batch, forces, stopwatch),
                 receive=None if put is None else lambda at, *pieces, put=put: put(at, series_of(model, *pieces)),
             )
-        stopwatch["kernel"] = stopwatch.get("kernel", 0.0) + lanes.kernel_s
+        stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
 

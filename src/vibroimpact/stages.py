@@ -30,6 +30,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "figures_response": ("structure.section", "excitation", "grid.gap_m", "spectra", "identification"),
     "figures_identification": ("structure.section", "excitation", "grid.gap_m", "record.shape_line", "spectra", "identification"),
     "figures_checks": ("structure.section", "record.stress_limit_Pa", "identification.stiffness_range_N_per_m"),
+    "timing": ("study",),
     "f16": ("f16_data",),
     "validation": tuple(Config.model_fields),
 }

@@ -9,7 +9,7 @@ sys.path.insert(0, SOURCE)
 # Jobs inherit these: the library needs no installation, and -j jobs of one thread each do not crowd one another out.
 os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
-from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads
+from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
 from vibroimpact.config import ConfigError, check_config, read_yaml
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
@@ -75,6 +75,20 @@ def series_of_load():
 def figure_files(group):
     """The files of a group of figures."""
     return [f"{RESULTS}/figures/{name}.{suffix}" for name in FIGURES[group] for suffix in ("png", "pdf", "csv", "txt")]
+
+
+def jobs_of_study():
+    """The jobs of a complete study, as their benchmark files and logs are named."""
+    loads = [value_text(load) for load in load_values(STUDY.grid)]
+    jobs = ["basis", *(f"simulate_load_{load}" for load in loads)]
+    if STUDY.identification is None:
+        jobs.append("statistics")
+    else:
+        jobs += [f"spectra_load_{load}" for load in loads] if KEPT else []
+        jobs += [f"identify_{start}" for start in loads_by_half_decade(STUDY.grid)]
+        jobs += ["consistency", *(f"figures_{group}" for group in FIGURES)]
+        jobs += ["synthetic_campaign"] if not STUDY.overlay.campaign else []
+    return jobs
 
 
 def f16_records(wildcards):

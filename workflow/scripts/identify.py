@@ -10,13 +10,11 @@ from vibroimpact.settings import Settings
 from vibroimpact.stopwatch import Stopwatch
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
-source, stopwatch = origin(snakemake.params.config, snakemake.input.library), Stopwatch()
+config, model, stopwatch = Settings(snakemake.params.config), read_model(snakemake.input.model), Stopwatch()
 for record, spectra, table, curves in zip(snakemake.input.records, snakemake.input.spectra, snakemake.output.tables, snakemake.output.curves, strict=True):
     record, spectra = read_record(record, RECORD_READ), read_record(spectra, SPECTRA_READ)
-    with stopwatch("identification"):
-        estimates, shown = identify_case(config, model, record, spectra)
+    estimates, shown = stopwatch.time("identification", identify_case, config, model, record, spectra)
     write_table(table_rows(estimates, record.attrs), table)
-    write_record(shown.assign_attrs(record.attrs | source), curves)
+    write_record(shown.assign_attrs(record.attrs | origin(snakemake.params.config, snakemake.input.library)), curves)
     print(record.attrs["case"], *(f"{item.method}: {item.k:.3g} N/m {item.quality} {item.note}" for item in estimates), sep="\n  ")
 print(stopwatch.line())

@@ -5,9 +5,9 @@ import sys
 from vibroimpact.cases import cases_of_load
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_model, write_record
-from vibroimpact.series_files import spectra_files
 from vibroimpact.settings import Settings
 from vibroimpact.simulate import simulate_cases
+from vibroimpact.spectra_files import spectra_files
 from vibroimpact.stopwatch import Stopwatch
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")

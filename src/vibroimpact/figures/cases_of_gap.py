@@ -40,6 +40,11 @@ class CasesOnDemand(Mapping):
         return len(self._paths)
 
 
+def cases_of_gap(paths, config, read):
+    """Return the CasesOnDemand of the paths of the gap shown."""
+    return CasesOnDemand(paths_of_gap(paths, shown_gap(config)), read)
+
+
 def spread_loads(rows, count):
     """Return up to `count` loads in N RMS, ascending, whose main peaks are spread evenly in frequency (LSCF, median over seeds).
 

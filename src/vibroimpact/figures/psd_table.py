@@ -30,10 +30,12 @@ class Responses:
     share: list
 
 
-def variables_shown(config, path):
-    """Return the variables that gather reads of the spectra of a case (path named after it): few, for gaps that are not shown."""
+def spectra_shown(config, paths, read):
+    """Yield the spectra of files named after cases, by read(path, names) with what gather needs: little, for gaps that are not shown."""
     names = [f"psd_{quantity}_{statistic}" for quantity in QUANTITIES for statistic in STATISTICS]
-    return names if paths_of_gap([path], shown_gap(config)) else ["psd_displacement_mean"]
+    shown = set(paths_of_gap(paths, shown_gap(config)))
+    for path in paths:
+        yield read(path, names if path in shown else ["psd_displacement_mean"])
 
 
 def gather(config, model, spectra):

@@ -54,6 +54,7 @@ COLUMNS = {
     "contact_fraction": ("Time in contact (%)", 1e2), "impact_rate_per_s": ("Impacts per second (1/s)", 1.0),
     "force_N": ("Support force (N)", 1.0), "impact_velocity_m_per_s": ("Impact velocity (mm/s)", 1e3),
     "wear_work_rate_W": ("Wear work rate (W)", 1.0), "stress_Pa": ("Bending stress (MPa)", 1e-6),
+    "cpu_s": ("CPU time (s)", 1.0),
 }
 
 METHODS = {
