@@ -15,17 +15,17 @@ RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 # From the lowest layer up. A module imports from its own layer and from those before it; a package counts as one entry.
 LAYERS = (
     ("__init__", "config", "config_checks", "config_name_checks", "config_place_checks", "config_schema", "config_excitation", "config_local", "config_structure", "config_types", "settings", "stages", "cases",
-     "provenance", "centreline", "beam", "kernels", "laws", "model"),
-    ("records",),
-    ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
-    ("ritz", "reduction", "linear", "antialias", "schemes", "layout", "potential"),
-    ("integrate", "trace", "simulate", "step_records", "identify", "synthetic_campaign"),
-    ("consistency", "statistics_table", "f16"),
+     "provenance", "stopwatch", "centreline", "beam", "kernels", "laws", "model"),
+    ("records", "variables"),
+    ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "force_stream", "spectra", "spectra_of_case", "spectral_kernel", "campaign"),
+    ("ritz", "reduction", "linear", "schemes", "antialias", "layout", "potential"),
+    ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "identify", "synthetic_campaign"),
+    ("consistency", "statistics_table", "timing", "f16"),
     ("validation",),
     ("figures",),
 )
 ANATOMY = ["input", "output", "params", "log", "benchmark", "threads", "resources", "message", "script"]
-ALLOWED_BETWEEN = {"priority"}  # optional, after threads
+ALLOWED_BETWEEN = {"name", "priority"}  # optional: the name of one of many rules made in a loop; priority, after threads
 
 
 def module_of(file):
@@ -166,10 +166,10 @@ def test_the_snakefile_is_short():
 
 
 def rules():
-    """(name, keys in their order) of every rule in workflow/rules."""
+    """(name, keys in their order) of every rule in workflow/rules, those inside a loop among them."""
     for file in RULES:
-        for name, body in re.findall(r"^rule (\w+):\n((?:(?:    .*)?\n)+)", file.read_text(), flags=re.M):
-            yield name, re.findall(r"^    (\w+):", body, flags=re.M)
+        for indent, name, body in re.findall(r"^( *)rule (\w+):\n((?:(?:\1    .*)?\n)+)", file.read_text(), flags=re.M):
+            yield name, re.findall(rf"^{indent}    (\w+):", body, flags=re.M)
 
 
 def test_there_is_a_script_for_every_rule():

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from vibroimpact.records import read_record, write_record
+from vibroimpact.records import read_dataset, write_record
 
 KINDS = ("acceleration", "velocity", "displacement", "contact_force", "generic")
 TO_SI = {"m s-2": 1.0, "m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "m.s-2": 1.0, "m s^-2": 1.0, "mm s-2": 1e-3, "mm/s2": 1e-3, "g": 9.80665,
@@ -88,7 +88,7 @@ def read_campaign(path):
 
     Raises RecordError when there is no such file or it is not netCDF, CampaignError with every breach of the contract.
     """
-    campaign = read_record(path)
+    campaign = read_dataset(path)
     _require(campaign, path)
     return campaign
 

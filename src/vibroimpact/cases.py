@@ -7,6 +7,7 @@ An id is made of values, not of places in a list, so that an added load, gap or 
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from dataclasses import dataclass
 from itertools import product
@@ -60,6 +61,17 @@ def load_values(grid) -> list[float]:
         return [float(load) for load in loads]
     spaced = np.geomspace(loads.first, loads.last, loads.count)
     return [float(f"{load:.{SIGNIFICANT_DIGITS}g}") for load in spaced]
+
+
+def loads_by_half_decade(grid) -> dict[str, list[str]]:
+    """Return {name of a half decade: texts of the loads in it}, both ascending: batches of which an added load changes one.
+
+    A half decade holds loads from 10^(n/2) N on, below 10^((n+1)/2) N; its name, e.g. from_0.316, is its lower end.
+    """
+    batches: dict[int, list[float]] = {}
+    for load in sorted(load_values(grid)):
+        batches.setdefault(math.floor(2.0 * math.log10(load) + 1e-9), []).append(load)
+    return {f"from_{10 ** (half / 2):.3g}": [value_text(load) for load in loads] for half, loads in batches.items()}
 
 
 def nearest_loads(grid, wanted) -> list[float]:

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from .force_files import read_force
-
 EDGE_S = 0.25  # odd reflection added at both ends of a measured record before resampling
 
 
@@ -14,8 +12,19 @@ class ForceError(Exception):
 def band_limited_noise(generator: np.random.Generator, samples: int, rate: float, band) -> np.ndarray:
     """Gaussian noise (sample,) with a flat PSD inside band (low, high) [Hz] and nothing outside, at rate [Hz]; RMS near 1.
 
-    Synthesised by inverse FFT of independent complex Gaussian lines (Shinozuka & Deodatis 1991, random amplitudes).
     Raises ForceError when the band holds no line.
+    """
+    lines, first, length = noise_lines(generator, samples, rate, band)
+    spectrum = np.zeros(length // 2 + 1, complex)
+    spectrum[first : first + lines.size] = lines
+    return np.fft.irfft(spectrum, length)[:samples] * length
+
+
+def noise_lines(generator: np.random.Generator, samples: int, rate: float, band) -> tuple[np.ndarray, int, int]:
+    """(lines (line,), number of the first one, length of the period in samples): Fourier lines of noise as in band_limited_noise.
+
+    The noise is the real part of the sum of 2 lines exp(2 pi i number n / length) over n. Independent complex Gaussian lines (Shinozuka &
+    Deodatis 1991, random amplitudes). Raises ForceError when the band holds no line.
     """
     length = fast_length(samples)
     low, high = (int(np.ceil(band[0] * length / rate)), int(np.floor(band[1] * length / rate)))
@@ -24,9 +33,8 @@ def band_limited_noise(generator: np.random.Generator, samples: int, rate: float
             f"band {band[0]:g}-{band[1]:g} Hz holds no line between 0 and {rate / 2:g} Hz: give band_Hz as [low, high] in Hz"
         )
     count = high - low + 1
-    lines = np.zeros(length // 2 + 1, complex)
-    lines[low : high + 1] = generator.standard_normal(count) + 1j * generator.standard_normal(count)
-    return np.fft.irfft(lines, length)[:samples] * (0.5 * length / np.sqrt(count))
+    lines = generator.standard_normal(count) + 1j * generator.standard_normal(count)
+    return lines * (0.5 / np.sqrt(count)), low, length
 
 
 def fast_length(samples: int) -> int:
@@ -61,35 +69,3 @@ def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> n
     first = round(edge * to_rate / from_rate)
     last = first + round(values.size * to_rate / from_rate)
     return np.fft.irfft(resized, new_length)[first:last] * (new_length / length)
-
-
-def unit_force(excitation, generator, samples: int, rate: float, recorded: slice, first_time_s: float = 0.0) -> np.ndarray:
-    """Force record (sample,) at rate [Hz]: RMS exactly 1 over the recorded samples, but for a sine or white noise, which are 1 by law.
-
-    excitation: the section of the configuration; generator: the seed's random stream (unused by a measured force or a sine);
-    first_time_s: time of the first sample, which a sine needs.
-    Raises ForceError: a measured record is too short or has no force in it.
-    """
-    source = excitation.signal if excitation.kind == "base_motion" else excitation
-    if source.kind == "none":
-        return np.zeros(samples)
-    if source.kind == "harmonic":
-        time = first_time_s + np.arange(samples) / rate
-        return np.sqrt(2.0) * np.sin(2.0 * np.pi * source.frequency_Hz * time + np.deg2rad(source.phase_deg))
-    if source.kind == "white_noise":
-        return generator.standard_normal(samples)
-    if source.kind == "band_limited":
-        values = band_limited_noise(generator, samples, rate, source.band_Hz)
-    else:
-        measured, measured_rate = read_force(excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
-        values = resample_measured(measured, measured_rate, rate)
-        if values.size < samples:
-            raise ForceError(
-                f"{excitation.file}: {excitation.variable} lasts {measured.size / measured_rate:.3f} s, but start-up and record "
-                f"need {samples / rate:.3f} s: lower integration.start_up_s or record.duration_s"
-            )
-        values = values[:samples]
-    rms = np.sqrt(np.mean(np.square(values[recorded])))
-    if not rms > 0.0:
-        raise ForceError("the force is zero over the record: check excitation.variable")
-    return values / rms

@@ -10,6 +10,7 @@ from .kernels import BEHIND, LANES, RATIO
 from .layout import ModalLayout
 from .model import ModalModel
 from .potential import stored_energy
+from .stopwatch import Stopwatch
 
 CHUNK_TICKS = 2000  # steps between visits to Python, in units of RATIO: its forces fit the second-level cache
 CONTRACTION_LIMIT = 0.5
@@ -24,16 +25,17 @@ class Lanes:
     """What a batch of up to LANES cases leaves behind; the last axis of every sum is the case.
 
     displacement (case, channel, sample) m: sensors, then the shape line; acceleration (case, sensor, sample) m/s²;
-    force (case, channel, sample) N: two resultants per support (on the structure), then the drive forces.
+    force (case, channel, sample) N: two resultants per support (on the structure), then the drive forces. None, all three, where they
+    were handed over piece by piece. stopwatch: CPU seconds of kernel and output filter.
     tally: sums over the recorded steps (see kernels.Tally); steps: how many; energy (case, term, chunk) J at
     energy_time (chunk,) s; terms ENERGY_TERMS, all accumulated from the start of the simulation.
     fixed_point_residual (case,): largest relative change of the contact forces in the last pass of a step; times
     contraction it bounds the error left. contact_rows (contact_point, 2), element_rows (element,): rows in the tally.
     """
 
-    displacement: np.ndarray
-    acceleration: np.ndarray
-    force: np.ndarray
+    displacement: np.ndarray | None
+    acceleration: np.ndarray | None
+    force: np.ndarray | None
     tally: dict[str, np.ndarray]
     steps: int
     energy: np.ndarray
@@ -42,6 +44,7 @@ class Lanes:
     contraction: float
     contact_rows: np.ndarray
     element_rows: np.ndarray
+    stopwatch: Stopwatch
 
 
 ENERGY_TERMS = ("input_work", "dissipated", "contact_work", "kinetic", "elastic", "contact_potential")
@@ -123,15 +126,17 @@ def checked_contraction(model, steps_per_second, scheme="newmark"):
     return contraction
 
 
-def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive) -> Lanes:
+def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive, receive=None) -> Lanes:
     """Integrate up to LANES cases side by side.
 
     gap (case,) m; imperfection (contact_point, 2, case) m, added to the obstacles' centres; drive: function
     (first, count) -> (count, force_channel, case) force in N at steps first, first + 1, ... (0 to schedule.steps).
+    receive: function (first, displacement, acceleration, force) that takes the time series as they come: those of Lanes, float32, from
+    sample first on, in arrays that are used again; Lanes then holds none, and no array grows with the duration.
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the run diverged.
     """
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
-    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap), contraction).finish()
+    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap), contraction).finish(receive)
 
 
 def to_lanes(values, padding):
@@ -157,14 +162,14 @@ class _Run:
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
         self.output = self.layout.output(schedule.filter.phase_weights(), tail + self.chunk)
         self.tail = tail
-        self.done = 0
+        self.done, self.stopwatch = 0, Stopwatch()
         self.totals = {name: np.zeros(LANES) for name in ("input_work", "dissipated", "contact_work")}
         self.sums = None
         self.residual = np.zeros(LANES)
         self.energies, self.times = [], []
         self.take_energies()
 
-    def finish(self) -> Lanes:
+    def finish(self, receive=None) -> Lanes:
         """Start-up, filling of the filter, record."""
         schedule, layout_output = self.schedule, self.output
         for ticks in _chunks(schedule.start_ticks, self.chunk):
@@ -174,21 +179,29 @@ class _Run:
         self.advance(self.tail - at_rest, at_rest, recorded=False)
         sensors = self.model.sensor_shapes.shape[1]
         samples, shapes = schedule.samples, layout_output.stress_start
-        outputs = np.empty((self.cases, layout_output.values.shape[0], samples), np.float32)
-        acceleration = np.empty((self.cases, sensors, samples), np.float32)
+        pieces = [np.empty((self.cases, channels, self.chunk // schedule.filter.step), np.float32)
+                  for channels in (layout_output.values.shape[0], sensors)]  # fmt: skip
+        whole = [np.empty((*piece.shape[:2], samples), np.float32) for piece in pieces] if receive is None else None
         taps, curvature_taps = (np.pad(taps, 3 * schedule.filter.step) for taps in (schedule.filter.second, schedule.filter.second_derivative))
         first, buffer = 0, np.zeros((4, LANES))
         for ticks in _chunks(samples * schedule.filter.step, self.chunk):
             self.advance(ticks, self.tail, recorded=True)
-            values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
-            kernels.decimate(values, taps, outputs, first, schedule.filter.step, buffer)
-            kernels.decimate(values[:sensors], curvature_taps, acceleration, first, schedule.filter.step, buffer)
-            layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
-            first += ticks // schedule.filter.step
+            with self.stopwatch("output filter"):
+                values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
+                kernels.decimate(values, taps, pieces[0], 0, schedule.filter.step, buffer)
+                kernels.decimate(values[:sensors], curvature_taps, pieces[1], 0, schedule.filter.step, buffer)
+                layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
+            count = ticks // schedule.filter.step
+            outputs, acceleration = (piece[..., :count] for piece in pieces)
+            if receive is None:
+                whole[0][..., first : first + count], whole[1][..., first : first + count] = outputs, acceleration
+            else:
+                receive(first, outputs[:, :shapes], acceleration, outputs[:, shapes:])
+            first += count
         return Lanes(
-            displacement=outputs[:, :shapes],
-            acceleration=acceleration,
-            force=outputs[:, shapes:],
+            displacement=whole and whole[0][:, :shapes],
+            acceleration=whole and whole[1],
+            force=whole and whole[0][:, shapes:],
             tally={name: value[..., : self.cases] for name, value in self.sums.items()},
             steps=samples * schedule.filter.step * RATIO,
             energy=np.array(self.energies).transpose(2, 1, 0)[: self.cases],
@@ -197,6 +210,7 @@ class _Run:
             contraction=self.contraction,
             contact_rows=self.layout.contact_rows(),
             element_rows=self.layout.element_rows(),
+            stopwatch=self.stopwatch,
         )
 
     def advance(self, ticks, column, recorded):
@@ -205,7 +219,8 @@ class _Run:
             array[...] = 0.0
         force = self.forces(self.done + 1, ticks * RATIO)
         output = self.output._replace(column=column)
-        steps = kernels.march(self.modal, self.contact, self.laws, self.state, self.tally, output, self.layout.trace(0), self.work, force)
+        with self.stopwatch("kernel"):
+            steps = kernels.march(self.modal, self.contact, self.laws, self.state, self.tally, output, self.layout.trace(0), self.work, force)
         if steps < ticks * RATIO:
             self.fail(steps)
         self.done += steps

@@ -7,6 +7,7 @@ import hashlib
 import json
 import platform
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,7 @@ def source_digest(files: Iterable[Path | str]) -> str:
     return digest.hexdigest()[:DIGEST_LENGTH]
 
 
+@lru_cache(maxsize=1)
 def versions() -> dict[str, str]:
     """Return {name: version} of Python and of the packages that results depend on."""
     found = {"python": platform.python_version()}
@@ -60,12 +62,17 @@ def imported_files(script: Path | str, source: Path | str) -> list[Path]:
     waiting = [Path(script)]
     while waiting:
         file = waiting.pop()
-        for name in _imported_names(file, source):
-            for module in _files_of(name, source):
-                if module not in found:
-                    found.add(module)
-                    waiting.append(module)
+        for module in _imports(file, source, file.stat().st_mtime_ns):
+            if module not in found:
+                found.add(module)
+                waiting.append(module)
     return sorted(found)
+
+
+@lru_cache(maxsize=None)
+def _imports(file: Path, source: Path, _changed_at: int) -> frozenset[Path]:
+    """Return the library files that a file imports itself. Remembered: the scripts share most of what they import."""
+    return frozenset(module for name in _imported_names(file, source) for module in _files_of(name, source))
 
 
 def _imported_names(file: Path, source: Path) -> set[str]:

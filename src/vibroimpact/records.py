@@ -13,58 +13,6 @@ import xarray as xr
 from .laws import ContactLaws, LocalLaws
 from .model import ModalModel
 
-# name: (dimensions, dtype, units, long name)
-VARIABLES = {
-    "displacement": (("sensor", "time"), "f4", "m", "displacement"),
-    "acceleration": (("sensor", "time"), "f4", "m s-2", "acceleration"),
-    "line_displacement": (("line_point", "time"), "f4", "m", "displacement along the shape line"),
-    "support_force": (("support", "direction", "time"), "f4", "N", "force of the structure on the support"),
-    "force": (("time",), "f4", "N", "drive force"),
-    "stress_rms": (("section",), "f8", "Pa", "RMS of the outer-fibre bending stress, every fifth step, unfiltered"),
-    "stress_peak": (("section",), "f8", "Pa", "largest outer-fibre bending stress, every fifth step"),
-    "stress_flag": ((), "i1", "1", "1 when the peak stress exceeds record.stress_limit_Pa"),
-    "contact_fraction": (("support",), "f8", "1", "fraction of time in contact"),
-    "impact_count": (("support",), "i4", "1", "number of contacts begun"),
-    "impact_rate": (("support",), "f8", "s-1", "contacts begun per unit time"),
-    "peak_force": (("support",), "f8", "N", "largest resultant support force"),
-    "rms_force": (("support",), "f8", "N", "RMS of the resultant support force"),
-    "mean_impulse": (("support",), "f8", "N s", "mean impulse of a contact"),
-    "impact_velocity_rms": (("support",), "f8", "m s-1", "RMS radial velocity at the begin of a contact"),
-    "impact_velocity_max": (("support",), "f8", "m s-1", "largest radial velocity at the begin of a contact"),
-    "wear_work_rate": (("support",), "f8", "W", "normal force times sliding speed, mean over time"),
-    "force_displacement": (("contact_point", "direction"), "f8", "N m", "mean of restoring force times displacement"),
-    "displacement_square": (("contact_point", "direction"), "f8", "m2", "mean square displacement"),
-    "energy": (("energy_term", "energy_time"), "f8", "J", "energies since the start of the simulation"),
-    "energy_residual": ((), "f8", "1", "energy identity of the scheme, relative to the input work"),
-    "potential_energy_residual": ((), "f8", "1", "energy balance with the contact's potential energy, relative to the input work"),
-    "contact_dissipation": ((), "f8", "J", "energy that contacts and elements took beyond what their springs hold"),
-    "element_displacement_square": (("element",), "f8", "m2", "mean square displacement of a local element"),
-    "element_force_displacement": (("element",), "f8", "N m", "mean of the element's restoring force times displacement"),
-    "element_power": (("element",), "f8", "W", "mean power that an element takes"),
-    "slip_power": (("element",), "f8", "W", "mean of slider force times slip speed"),
-    "contact_displacement": (("contact_point", "direction", "step"), "f8", "m", "displacement at every step"),
-    "contact_force": (("contact_point", "direction", "step"), "f8", "N", "force on the structure at every step"),
-    "element_displacement": (("element", "step"), "f8", "m", "displacement of a local element at every step"),
-    "element_force": (("element", "step"), "f8", "N", "force of an element on the structure at every step"),
-    "run_energy": (("run_term",), "f8", "J", "energies of the whole run"),
-    "sliding_work": (("support",), "f8", "J", "normal force times slip over the whole run"),
-    "slip_work": (("element",), "f8", "J", "slider force times slip over the whole run"),
-    "fixed_point_residual": ((), "f8", "1", "bound of the relative error of the implicit contact forces, worst step"),
-}
-COORDINATES = {
-    "time": (("time",), "s"),
-    "sensor": (("sensor",), None),
-    "line_arc_length": (("line_point",), "m"),
-    "support": (("support",), None),
-    "section": (("section",), None),
-    "element": (("element",), None),
-    "step_time": (("step",), "s"),
-    "run_term": (("run_term",), None),
-    "energy_term": (("energy_term",), None),
-    "energy_time": (("energy_time",), "s"),
-}
-
-
 class RecordError(Exception):
     """A file that can not be read or written; the message names it."""
 
@@ -72,46 +20,122 @@ class RecordError(Exception):
 LAWS = {"contact_laws": ContactLaws, "local_laws": LocalLaws}  # fields of the model that are tables themselves
 
 
-def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
-    """A dataset of declared variables with their dimensions, units and names. Raises KeyError for an undeclared one."""
-    data = {}
-    for name, value in values.items():
-        dims, dtype, units, long_name = VARIABLES[name]
-        data[name] = (dims, np.asarray(value, dtype), {"units": units, "long_name": long_name})
-    coords = {name: (COORDINATES[name][0], value, {"units": COORDINATES[name][1]} if COORDINATES[name][1] else {})
-              for name, value in coordinates.items()}  # fmt: skip
+def write_record(dataset: xr.Dataset, path) -> None:
+    """Write a dataset of numbers and texts as netCDF-4, whole or not at all. Raises TypeError for other contents."""
+    with RecordFile(path, dataset):
+        pass
+
+
+class RecordFile:
+    """A netCDF-4 file, filled piece by piece: under a temporary name in the same folder until the end of `with`, then renamed.
+
+    dataset: what is known from the start (numbers and texts, else TypeError); parts {name: (dimensions, type, attributes)}: what comes
+    later through `put`, of dimensions with sizes {dimension: length}. Left with an error no file remains.
+    float32 time series are stored as they are: their noise does not compress, and deflating it costs more than the simulation.
+    Written without Dataset.to_netcdf, which takes twice as long for files of many small variables.
+    """
+
+    def __init__(self, path, dataset: xr.Dataset, parts=None, sizes=None):
+        self._path = Path(path)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._temporary = self._path.with_name(f".{self._path.name}.{os.getpid()}")
+        self._file = netCDF4.Dataset(self._temporary, "w", format="NETCDF4")
+        try:
+            self._file.set_fill_off()
+            for name, size in (dict(dataset.sizes) | (sizes or {})).items():
+                self._file.createDimension(name, size)
+            unnamed = _put_variables(self._file, dataset, parts or {})
+            self._file.setncatts({"title": "vibroimpact record", **dataset.attrs, "Conventions": "CF-1.11",
+                                  "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
+                                  **({"coordinates": " ".join(unnamed)} if unnamed else {})})  # fmt: skip
+        except BaseException:
+            self._close(keep=False)
+            raise
+
+    def put(self, name, place, values) -> None:
+        """Write values of a part at a place (index or slices)."""
+        self._file[name][place] = values
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        self._close(keep=kind is None)
+
+    def _close(self, keep):
+        try:
+            self._file.close()
+            if keep:
+                os.replace(self._temporary, self._path)
+        finally:
+            self._temporary.unlink(missing_ok=True)
+
+
+def _put_variables(file, dataset, parts) -> list[str]:
+    """Create all variables and write those of the dataset; return the coordinates off the dimensions that no variable names."""
+    beside = {name: set(dataset[name].dims) for name in dataset.coords if name not in dataset.sizes}
+    named = set()
+    for name, variable in dataset.variables.items():
+        values = variable.values
+        text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
+        if not text and values.dtype.kind not in "fiu":
+            raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
+        mine = {} if name in dataset.coords else _coordinates_attribute(variable.dims, beside, named)
+        stored = _create(file, name, str if text else values.dtype, variable.dims, variable.attrs | mine)
+        if values.size:
+            stored[...] = values.astype(object) if text else values
+    for name, (dims, dtype, attributes) in parts.items():
+        _create(file, name, dtype, dims, attributes | _coordinates_attribute(dims, beside, named))
+    return [name for name in beside if name not in named]
+
+
+def _create(file, name, dtype, dims, attributes):
+    stored = file.createVariable(name, dtype, dims)
+    stored.setncatts(attributes)
+    stored.set_auto_maskandscale(False)
+    return stored
+
+
+def _coordinates_attribute(dims, beside, named):
+    """The attribute that names a variable's coordinates off its dimensions, by the CF conventions; they are added to the set `named`."""
+    mine = [name for name, needed in beside.items() if needed <= set(dims)]
+    named.update(mine)
+    return {"coordinates": " ".join(mine)} if mine else {}
+
+
+def read_record(path, names=None) -> xr.Dataset:
+    """The dataset of a file of write_record, loaded, file closed; names: the variables wanted, all where left out.
+
+    Raises RecordError when there is no such file or it is not netCDF, KeyError when a variable is missing.
+    """
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_maskandscale(False)
+            beside = set(getattr(file, "coordinates", "").split())
+            data = {}
+            for name in file.variables if names is None else names:
+                data[name], others = _variable(file.variables[name])
+                beside.update(others)
+            if names is not None:
+                coordinates = {*beside, *(dim for variable in data.values() for dim in variable.dims)} & set(file.variables)
+                data.update({name: _variable(file.variables[name])[0] for name in coordinates - set(data)})
+            attributes = {name: file.getncattr(name) for name in file.ncattrs() if name != "coordinates"}
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read as netCDF ({error}): delete it and run again") from error
+    sizes = {dim for variable in data.values() for dim in variable.dims}
+    coords = {name: data.pop(name) for name in list(data) if name in beside | sizes}
     return xr.Dataset(data, coords, attributes)
 
 
-def split_record(record: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
-    """(statistics and energies, time series) of a record; both keep the attributes."""
-    series = [name for name, variable in record.data_vars.items() if {"time", "step"} & set(variable.dims)]
-    return record.drop_vars(series).drop_dims(["time", "step"], errors="ignore"), record[series]
+def _variable(stored):
+    """(variable, names of its coordinates off the dimensions) of a netCDF variable."""
+    attributes = {name: stored.getncattr(name) for name in stored.ncattrs()}
+    beside = attributes.pop("coordinates", "").split()
+    return xr.Variable(stored.dimensions, stored[...], attributes, fastpath=True), beside
 
 
-def write_record(dataset: xr.Dataset, path) -> None:
-    """Write a dataset as netCDF-4: to a temporary name in the same folder, then renamed, so no half-written file is left.
-
-    float32 time series are stored as they are: their noise does not compress, and deflating it costs more than the simulation.
-    """
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    dataset = dataset.assign_attrs(
-        Conventions="CF-1.11",
-        title=dataset.attrs.get("title", "vibroimpact record"),
-        history=f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
-    )
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    encoding = {name: {"_FillValue": None} for name in [*dataset.data_vars, *dataset.coords]}
-    try:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def read_record(path) -> xr.Dataset:
-    """The dataset of a file, loaded, file closed. Raises RecordError when there is no such file or it is not netCDF."""
+def read_dataset(path) -> xr.Dataset:
+    """The dataset of a netCDF file of any origin, decoded by the CF conventions, loaded, file closed. Raises RecordError."""
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
@@ -168,14 +192,20 @@ def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
 
     columns: the header of a table that may have no rows.
     """
+    columns = tuple(rows[0]) if rows else tuple(columns)
+    write_cells(columns, ([_plain(row[column]) for column in columns] for row in rows), path)
+
+
+def write_cells(columns, rows, path) -> None:
+    """Write rows of plain Python values (columns,) under a header as CSV. Atomic like write_record."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with open(temporary, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else list(columns))
-            writer.writeheader()
-            writer.writerows({key: _plain(value) for key, value in row.items()} for row in rows)
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            writer.writerows(rows)
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
@@ -190,6 +220,14 @@ def write_text(text: str, path) -> None:
     os.replace(temporary, path)
 
 
+def read_text(path) -> str:
+    """The text of a file. Raises RecordError when there is no such file."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read ({error.strerror})") from error
+
+
 def read_table(path) -> list[dict]:
     """Rows of a CSV table; what reads as a number is one. Raises RecordError when there is no such file."""
     try:
@@ -200,7 +238,7 @@ def read_table(path) -> list[dict]:
 
 
 def _plain(value):
-    return repr(float(value)) if isinstance(value, (float, np.floating)) else value
+    return float(value) if isinstance(value, np.floating) else value  # csv writes a float in full, a float32 in its own few digits
 
 
 def _number(text):

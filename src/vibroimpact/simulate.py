@@ -1,23 +1,30 @@
 """Simulating the cases of a study: forces in, one record dataset per case out."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import xarray as xr
 
 from .cases import Case, random_stream
-from .excitation import unit_force
+from .force_stream import ForceStream
 from .integrate import ENERGY_TERMS, Lanes, Schedule, march_lanes
 from .kernels import LANES, RATIO
 from .model import ModalModel
-from .records import describe
 from .step_records import trace_cases
+from .stopwatch import Stopwatch
+from .variables import describe
 
 
-def simulate_cases(config, model: ModalModel, cases: list[Case]):
+def simulate_cases(config, model: ModalModel, cases: list[Case], keep=None, stopwatch: Stopwatch | None = None):
     """Yield (case, record dataset) for every case, integrating LANES of them at a time.
 
-    The record's variables, dimensions and units are those of records.VARIABLES. A case's record does not depend on
-    the other cases of the list. With record.every_step: see step_records. Raises IntegrationError, ForceError.
+    The record's variables, dimensions and units are those of variables.VARIABLES. A case's record does not depend on the other cases of
+    the list. keep: where given the records hold no time series; those go piece by piece to keep(schedule, batch), which is entered for
+    each batch of cases and gives a function put(first sample, {variable: (case, ..., sample)}), see series_files. stopwatch: is told
+    the CPU seconds of kernel, output filter and force. With record.every_step: see step_records; keep is not asked.
+    Raises IntegrationError, ForceError.
     """
+    stopwatch = Stopwatch() if stopwatch is None else stopwatch
     if config.record.every_step:
         yield from trace_cases(config, model, cases)
         return
@@ -28,22 +35,26 @@ def simulate_cases(config, model: ModalModel, cases: list[Case]):
         config.record.duration_s,
         config.integration.scheme,
     )
-    forces = {seed: seed_force(config, schedule, seed) for seed in sorted({case.seed for case in cases})}
+    with stopwatch("force"):
+        forces = {seed: seed_force(config, schedule, seed) for seed in sorted({case.seed for case in cases})}
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
-        lanes = march_lanes(
-            model,
-            schedule,
-            gap=np.array([case.gap_m for case in batch]),
-            imperfection=np.stack([imperfection(config, model, case) for case in batch], axis=-1),
-            drive=_drive(batch, forces),
-        )
+        with nullcontext() if keep is None else keep(schedule, batch) as put:
+            lanes = march_lanes(
+                model,
+                schedule,
+                gap=np.array([case.gap_m for case in batch]),
+                imperfection=np.stack([imperfection(config, model, case) for case in batch], axis=-1),
+                drive=_drive(batch, forces, stopwatch),
+                receive=None if put is None else lambda at, *pieces, put=put: put(at, series_of(model, *pieces)),
+            )
+        stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
 
 
-def seed_force(config, schedule: Schedule, seed: int) -> np.ndarray:
-    """The seed's force record (sample,) at every step of the run, of RMS 1 (exactly so over the recorded window, see unit_force).
+def seed_force(config, schedule: Schedule, seed: int) -> ForceStream:
+    """The seed's force at every step of the run, of RMS 1 (exactly so over the recorded window).
 
     Loads scale it, gaps share it, so scaling load and gap by a power of two scales a record bit for bit.
     """
@@ -52,7 +63,7 @@ def seed_force(config, schedule: Schedule, seed: int) -> np.ndarray:
     recorded = slice(first, first + round(schedule.duration * rate))
     generator = random_stream(config.seed, seed, "force")
     first_time = -schedule.start_up - 1.0 / rate
-    return unit_force(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
+    return ForceStream(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
 
 
 def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
@@ -64,28 +75,35 @@ def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
     return draw * (config.integration.imperfection * case.gap_m)
 
 
-def _drive(batch, forces):
-    loads = np.array([case.load_rms_N for case in batch])
-
+def _drive(batch, forces, stopwatch):
     def drive(first, count):
-        return np.stack([forces[case.seed][first : first + count] for case in batch], axis=-1)[:, None, :] * loads
+        with stopwatch("force"):
+            unit = {seed: forces[seed].values(first, count) for seed in {case.seed for case in batch}}
+            out = np.empty((count, 1, len(batch)))
+            for lane, case in enumerate(batch):
+                np.multiply(unit[case.seed], case.load_rms_N, out=out[:, 0, lane])
+        return out
 
     return drive
 
 
-def record_dataset(config, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case) -> xr.Dataset:
-    """The record of one lane of a batch."""
+def series_of(model: ModalModel, displacement, acceleration, force) -> dict[str, np.ndarray]:
+    """The time series of a record by variable, (..., sample) each, from those of integrate.Lanes, (..., channel, sample)."""
     sensors, supports = model.sensor_shapes.shape[1], len(model.support_names)
-    force = lanes.force[lane]
-    series = {
-        "displacement": lanes.displacement[lane, :sensors],
-        "acceleration": lanes.acceleration[lane],
-        "line_displacement": lanes.displacement[lane, sensors:],
-        "support_force": -force[: 2 * supports].reshape(supports, 2, -1),
-        "force": force[2 * supports],
+    return {
+        "displacement": displacement[..., :sensors, :],
+        "acceleration": acceleration,
+        "line_displacement": displacement[..., sensors:, :],
+        "support_force": -force[..., : 2 * supports, :].reshape(*force.shape[:-2], supports, 2, force.shape[-1]),
+        "force": force[..., 2 * supports, :],
     }
+
+
+def record_dataset(config, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case) -> xr.Dataset:
+    """The record of one lane of a batch; without time series where the lanes hold none."""
+    series = {} if lanes.force is None else series_of(model, lanes.displacement[lane], lanes.acceleration[lane], lanes.force[lane])
     coordinates = {
-        "time": np.arange(schedule.samples) / schedule.sampling_frequency,
+        **({"time": sample_times(schedule)} if series else {}),
         "sensor": list(model.sensor_names),
         "line_arc_length": model.line_arc_length,
         "support": list(model.support_names),
@@ -96,7 +114,17 @@ def record_dataset(config, model: ModalModel, schedule: Schedule, lanes: Lanes, 
     }
     values = series | statistics(lanes, lane, schedule) | energy_balance(lanes, lane, model.conservative)
     values["stress_flag"] = np.int8(values["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa)
-    attributes = {
+    return describe(values, coordinates, case_attributes(config, schedule, case))
+
+
+def sample_times(schedule: Schedule) -> np.ndarray:
+    """Times (time,) s of the samples of a record."""
+    return np.arange(schedule.samples) / schedule.sampling_frequency
+
+
+def case_attributes(config, schedule: Schedule, case: Case) -> dict:
+    """What every file of a case says of it."""
+    return {
         "study": config.study,
         "case": case.id,
         "load_rms_N": case.load_rms_N,
@@ -106,7 +134,6 @@ def record_dataset(config, model: ModalModel, schedule: Schedule, lanes: Lanes, 
         "steps_per_second": float(schedule.steps_per_second),
         "start_up_s": float(schedule.start_up),
     }
-    return describe(values, coordinates, attributes)
 
 
 def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:

@@ -16,6 +16,9 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
               "record.shape_line"),
     "simulate": ("study", "seed", "excitation", "integration", "grid.gap_m", "grid.seeds", "record.duration_s",
                  "record.sampling_frequency_Hz", "record.stress_limit_Pa", "record.every_step"),
+    "simulate_to_spectra": ("study", "seed", "excitation", "integration", "grid.gap_m", "grid.seeds", "record.duration_s",
+                            "record.sampling_frequency_Hz", "record.stress_limit_Pa", "record.every_step", "spectra", "identification.lscf",
+                            "identification.broadband"),
     "statistics": ("study",),
     "spectra": ("study", "excitation.direction", "record.sampling_frequency_Hz", "spectra", "identification.lscf",
                 "identification.broadband"),
@@ -27,6 +30,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "figures_response": ("structure.section", "excitation", "grid.gap_m", "spectra", "identification"),
     "figures_identification": ("structure.section", "excitation", "grid.gap_m", "record.shape_line", "spectra", "identification"),
     "figures_checks": ("structure.section", "record.stress_limit_Pa", "identification.stiffness_range_N_per_m"),
+    "timing": ("study",),
     "f16": ("f16_data",),
     "validation": tuple(Config.model_fields),
 }

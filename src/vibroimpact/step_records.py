@@ -3,10 +3,10 @@
 import numpy as np
 
 from .cases import Case, random_stream
-from .excitation import unit_force
+from .force_stream import unit_force
 from .kernels import LANES
 from .model import ModalModel
-from .records import describe
+from .variables import describe
 from .trace import Traces, trace_lanes
 
 

@@ -9,16 +9,16 @@ from vibroimpact.cases import Case, random_stream
 from vibroimpact.simulate import simulate_cases
 
 
-def synthetic_campaign(config, model, loads):
+def synthetic_campaign(config, model, loads, stopwatch=None):
     """Return the campaign Dataset: accelerations at all sensors of `model`, one record per load (N RMS, ascending), at the largest gap
     times overlay.gap_ratio.
 
-    The force is that of seed overlay.seed, which no case of the study has. Noise: white, Gaussian, overlay.noise times the largest
+    The force is that of seed overlay.seed, which no case of the study has. stopwatch: see simulate_cases. Noise: white, Gaussian, overlay.noise times the largest
     channel RMS of the lowest level, the same for all channels and records, as a measuring chain has it.
     """
     gap = max(config.grid.gap_m) * config.overlay.gap_ratio
     cases = [Case(load, gap, config.overlay.seed) for load in loads]
-    records = [record for _, record in simulate_cases(config, model, cases)]
+    records = [record for _, record in simulate_cases(config, model, cases, stopwatch=stopwatch)]
     response = np.array([record["acceleration"].values for record in records], dtype=float)
     level = config.overlay.noise * np.sqrt(np.mean(np.square(response[0]), axis=-1)).max()
     response += level * random_stream(config.seed, config.overlay.seed, "measuring noise").standard_normal(response.shape)

@@ -12,7 +12,7 @@ from vibroimpact import linear
 from vibroimpact.cases import random_stream
 from vibroimpact.excitation import band_limited_noise
 from vibroimpact.identify.case import identify_case
-from vibroimpact.spectra import case_spectra
+from vibroimpact.spectra_of_case import case_spectra
 from vibroimpact.spectral_kernel import spectral_kernel
 
 DOUBLING = {1.0e3: 28.0656, 1.0e4: 30.5613, 1.0e5: 62.0525, 1.0e6: 1017.93, 4.0e6: 10015.5}  # k (N/m): c (N s/m)

@@ -8,7 +8,8 @@ import xarray as xr
 from scipy.io import savemat
 
 from vibroimpact.cases import random_stream
-from vibroimpact.excitation import ForceError, band_limited_noise, fast_length, resample_measured, unit_force
+from vibroimpact.excitation import ForceError, band_limited_noise, fast_length, resample_measured
+from vibroimpact.force_stream import ForceStream, unit_force
 from vibroimpact.force_files import ForceFileError, read_force
 
 BAND = (5.0, 200.0)

@@ -22,7 +22,7 @@ from vibroimpact.identify.estimate import table_rows
 from vibroimpact.reduction import build_model, quality_report
 from vibroimpact.settings import Settings
 from vibroimpact.simulate import simulate_cases
-from vibroimpact.spectra import case_spectra
+from vibroimpact.spectra_of_case import case_spectra
 from vibroimpact.stages import stage_params
 from vibroimpact.structure import build_structure
 from vibroimpact.synthetic_campaign import synthetic_campaign

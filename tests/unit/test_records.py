@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from vibroimpact import records
+from vibroimpact import records, variables
 
 
 def test_the_model_comes_back_bit_for_bit(study_model, tmp_path):
@@ -20,8 +20,8 @@ def test_the_model_comes_back_bit_for_bit(study_model, tmp_path):
 def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
     values = {"displacement": np.ones((2, 5)), "impact_count": [3], "energy_residual": 1e-12}
     coordinates = {"sensor": ["apex.x", "apex.y"], "time": np.arange(5.0), "support": ["left"]}
-    record = records.describe(values, coordinates, {"case": "one"})
-    statistics, series = records.split_record(record)
+    record = variables.describe(values, coordinates, {"case": "one"})
+    statistics, series = variables.split_record(record)
     assert set(series.data_vars) == {"displacement"}
     assert set(statistics.data_vars) == {"impact_count", "energy_residual"}
     assert "time" not in statistics.sizes
@@ -35,7 +35,7 @@ def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
 
 def test_an_undeclared_variable_is_refused():
     with pytest.raises(KeyError, match="nonsense"):
-        records.describe({"nonsense": 1.0}, {}, {})
+        variables.describe({"nonsense": 1.0}, {}, {})
 
 
 def test_a_failed_write_leaves_no_file(tmp_path):

@@ -7,7 +7,8 @@ import pytest
 import scipy.signal
 import xarray as xr
 
-from vibroimpact.spectra import (case_spectra, complex_values, cross_spectra, effective_averages, psd_statistics, segment_layout, segment_spectra)
+from vibroimpact.spectra import (complex_values, cross_spectra, effective_averages, psd_statistics, segment_layout, segment_spectra)
+from vibroimpact.spectra_of_case import SpectraOfCase, case_spectra
 from vibroimpact.spectral_kernel import correlated_sum, spectral_kernel, window_autocorrelation
 
 RATE = 256.0

@@ -19,7 +19,7 @@ import os, sys
 from pathlib import Path
 if False:
 {imports}
-if os.environ.get("STUDY_FAILS_AT") == snakemake.rule:
+if snakemake.rule.split("_from_")[0] == os.environ.get("STUDY_FAILS_AT"):
     sys.exit("stopped on purpose")
 for path in snakemake.output:
     Path(path).write_text(snakemake.rule)
@@ -53,11 +53,12 @@ class Study:
         return subprocess.run(command, cwd=self.folder, env=clean | environment, capture_output=True, text=True)
 
     def plan(self, *arguments, values=None):
-        """{rule: number of jobs} that a run would do; {} when nothing is to be done."""
+        """{rule: number of jobs} that a run would do; {} when nothing is to be done. The rules identify_from_... count as one."""
         run = self.snakemake("--dry-run", *arguments, values=values)
         assert run.returncode == 0, run.stdout + run.stderr
-        counts = re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M)
-        return {rule: int(count) for rule, count in counts if rule != "total"}
+        counts = re.findall(r"^([\w.]+) +(\d+)$", run.stdout + run.stderr, flags=re.M)
+        counts = [(rule.split("_from_")[0], int(count)) for rule, count in dict(counts).items() if rule != "total"]
+        return {rule: sum(count for other, count in counts if other == rule) for rule, _ in counts}
 
     def changed(self, **sections):
         """The configuration with keys of some sections replaced."""
@@ -87,7 +88,13 @@ def study(tmp_path_factory):
 def test_the_default_study_is_planned_with_one_job_per_load(study):
     plan = study.plan(values=yaml.safe_load((ROOT / "config" / "study.yaml").read_text()))
     once = {"basis", "synthetic_campaign", "consistency", "all"} | FIGURES
-    assert plan == {"simulate": 24, "spectra": 24, "identify": 24, **dict.fromkeys(once, 1)}
+    assert plan == {"simulate_to_spectra": 24, "identify": 6, **dict.fromkeys(once, 1)}
+
+
+def test_loads_are_identified_by_half_decade(study):
+    plan = study.plan(values=study.changed(grid={"load_rms_N": [0.5, 1.5, 3.1, 3.2, 4.0]}))
+    assert plan["simulate"] == plan["spectra"] == 3
+    assert plan["identify"] == 2  # 1.5 and 3.1 N are new; 3.2 N joins 4 N; that of 0.5 N stays
 
 
 def test_an_interrupted_study_continues_where_it_stopped(study):
@@ -127,12 +134,33 @@ def test_an_added_load_simulates_only_what_is_new(study):
     assert "basis" not in plan
 
 
+def test_an_added_gap_or_load_of_a_study_without_series_simulates_only_what_is_new(study):
+    values = {**study.changed(record={"keep_time_series": False}), "study": "added"}
+    assert study.snakemake("-j2", values=values).returncode == 0
+    assert study.plan(values=values) == {}
+    plan = study.plan(values={**values, "grid": {**values["grid"], "load_rms_N": [0.5, 3.5, 4.0]}})
+    assert plan["simulate_to_spectra"] == plan["identify"] == 1 and not {"basis", "simulate", "spectra"} & set(plan)
+
+
 def test_a_changed_key_reruns_the_stages_that_use_it(study):
     assert set(study.plan(values=study.changed(spectra={"overlap": 0.5}))) == {"spectra"} | AFTER_SPECTRA
     assert set(study.plan("--config", "seed=7")) == {"simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA
 
 
-def test_time_series_are_removed_unless_they_are_kept(study):
+def test_the_timing_is_made_on_request_from_all_jobs(study):
+    assert study.plan("timing") == {"timing": 1}
+    run = study.snakemake("-j2", "timing")
+    assert run.returncode == 0, run.stderr
+    assert (study.results / "timing.csv").is_file() and (study.results / "figures" / "timing.png").is_file()
+    assert study.plan() == {}
+
+
+def test_an_edited_figure_reruns_its_figures_and_an_edited_method_no_simulation(study):
+    assert study.plan_after_edit("figures/shapes.py") == {"figures_identification", "all"}
+    assert study.plan_after_edit("identify/lscf.py") == {"identify", "consistency", "figures_identification", "figures_checks", "all"}
+
+
+def test_time_series_are_written_only_where_they_are_kept(study):
     assert len(list((study.results / "timeseries").glob("*.nc"))) == 4
     values = {**study.changed(record={"keep_time_series": False}), "study": "short"}
     series = "results/short/timeseries"
@@ -140,6 +168,7 @@ def test_time_series_are_removed_unless_they_are_kept(study):
     assert run.returncode == 0, run.stderr
     assert (study.folder / "results/short/records/load_4_gap_0.0001_seed_0.nc").is_file()
     assert list((study.folder / series).glob("*.nc")) == []
+    assert "simulate_to_spectra" in run.stderr + run.stdout
 
 
 def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):

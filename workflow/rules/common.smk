@@ -9,7 +9,7 @@ sys.path.insert(0, SOURCE)
 # Jobs inherit these: the library needs no installation, and -j jobs of one thread each do not crowd one another out.
 os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
-from vibroimpact.cases import all_cases, ids_of_load, load_values, nearest_loads
+from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
 from vibroimpact.config import ConfigError, check_config, read_yaml
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
@@ -38,6 +38,7 @@ def checked_config():
 STUDY = checked_config()
 RESULTS = f"results/{STUDY.study}"
 CASES = [case.id for case in all_cases(STUDY.grid)]
+KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
 CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
 
 
@@ -56,19 +57,38 @@ def files_of_load(folder, suffix="nc"):
     return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in ids_of_load(STUDY.grid, "{load}")]
 
 
+def files_of_loads(folder, loads, suffix="nc"):
+    """The files of the cases of some loads."""
+    return [f"{RESULTS}/{folder}/{case}.{suffix}" for load in loads for case in ids_of_load(STUDY.grid, load)]
+
+
 def files_of_study(folder, suffix="nc"):
     """The files of all cases."""
     return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in CASES]
 
 
-def kept(files):
-    """Time series: kept where the configuration says so, else removed as soon as their spectra are made."""
-    return files if STUDY.record.keep_time_series or STUDY.record.every_step else temp(files)
+def series_of_load():
+    """The time series that a simulation writes: none where neither the study keeps them nor anything could be made of them."""
+    return files_of_load("timeseries") if KEPT or STUDY.identification is not None else []
 
 
 def figure_files(group):
     """The files of a group of figures."""
     return [f"{RESULTS}/figures/{name}.{suffix}" for name in FIGURES[group] for suffix in ("png", "pdf", "csv", "txt")]
+
+
+def jobs_of_study():
+    """The jobs of a complete study, as their benchmark files and logs are named."""
+    loads = [value_text(load) for load in load_values(STUDY.grid)]
+    jobs = ["basis", *(f"simulate_load_{load}" for load in loads)]
+    if STUDY.identification is None:
+        jobs.append("statistics")
+    else:
+        jobs += [f"spectra_load_{load}" for load in loads] if KEPT else []
+        jobs += [f"identify_{start}" for start in loads_by_half_decade(STUDY.grid)]
+        jobs += ["consistency", *(f"figures_{group}" for group in FIGURES)]
+        jobs += ["synthetic_campaign"] if not STUDY.overlay.campaign else []
+    return jobs
 
 
 def f16_records(wildcards):
@@ -87,11 +107,10 @@ def targets():
 
     Without an identification: the statistics of every case, and its time series where they are kept.
     """
+    series = files_of_study("timeseries") if KEPT else []
     if STUDY.identification is None:
-        series = files_of_study("timeseries") if STUDY.record.keep_time_series or STUDY.record.every_step else []
         return [f"{RESULTS}/statistics.csv", *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
-    series = files_of_study("timeseries") if STUDY.record.keep_time_series else []
     tables = [f"{RESULTS}/{name}" for name in ("consistency.csv", "consistency_summary.csv", "consistency_collapse.csv", "consistency.nc")]
     return [*tables, *figures, *series]
 

@@ -1,29 +1,33 @@
-# Equivalent stiffness and damping per case by every method, then the table that compares the methods.
+# Equivalent stiffness and damping per case by every method, then the table that compares the methods. One identification for the loads
+# of a half decade, as rules identify_from_0.316 and so on: starting and preparing the linear tube takes longer than the cases of one load.
+for START, LOADS in loads_by_half_decade(STUDY.grid).items():
 
-
-rule identify:
-    input:
-        library=library("identify"),
-        model=f"{RESULTS}/model.nc",
-        records=files_of_load("records"),
-        spectra=files_of_load("spectra"),
-    output:
-        curves=files_of_load("estimates"),
-        tables=files_of_load("estimates", "csv"),
-    params:
-        config=settings("identify"),
-    log:
-        f"{RESULTS}/logs/identify_load_{{load}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/identify_load_{{load}}.tsv"
-    threads: 1
-    resources:
-        mem_mb=1000,
-        runtime=30,
-    message:
-        f"Identification at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
-    script:
-        "../scripts/identify.py"
+    rule identify:
+        name:
+            f"identify_{START}"
+        input:
+            library=library("identify"),
+            model=f"{RESULTS}/model.nc",
+            records=files_of_loads("records", LOADS),
+            spectra=files_of_loads("spectra", LOADS),
+        output:
+            curves=files_of_loads("estimates", LOADS),
+            tables=files_of_loads("estimates", LOADS, "csv"),
+        params:
+            config=settings("identify"),
+        log:
+            f"{RESULTS}/logs/identify_{START}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/identify_{START}.tsv"
+        threads: 1
+        priority: 1  # spread over the simulations, not after them
+        resources:
+            mem_mb=500,
+            runtime=30,
+        message:
+            f"Identification at {' to '.join(dict.fromkeys((LOADS[0], LOADS[-1])))} N RMS: {len(LOADS) * CASES_PER_LOAD} of {len(CASES)} cases"
+        script:
+            "../scripts/identify.py"
 
 
 rule consistency:

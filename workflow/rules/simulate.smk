@@ -1,4 +1,14 @@
-# One job per load: its gaps and seeds are integrated side by side; one pair of files per case. Then the spectra of those files.
+# One job per load: its gaps and seeds are integrated side by side; one file of each kind per case. Where the time series are kept the
+# spectra are made of those files, by a rule of their own; else in the simulation itself, which then writes no series.
+if KEPT:
+
+    ruleorder: simulate > simulate_to_spectra
+    ruleorder: spectra > simulate_to_spectra
+
+else:
+
+    ruleorder: simulate_to_spectra > spectra
+    ruleorder: simulate_to_spectra > simulate
 
 
 rule simulate:
@@ -8,7 +18,7 @@ rule simulate:
         force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
     output:
         records=files_of_load("records"),
-        series=kept(files_of_load("timeseries")),
+        series=series_of_load(),
     params:
         config=settings("simulate"),
     log:
@@ -17,12 +27,36 @@ rule simulate:
         f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
+        mem_mb=500,
         runtime=60,
     message:
         f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
     script:
         "../scripts/simulate.py"
+
+
+rule simulate_to_spectra:
+    input:
+        library=library("simulate_to_spectra"),
+        model=f"{RESULTS}/model.nc",
+        force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
+    output:
+        records=files_of_load("records"),
+        spectra=files_of_load("spectra"),
+    params:
+        config=settings("simulate_to_spectra"),
+    log:
+        f"{RESULTS}/logs/simulate_load_{{load}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=60,
+    message:
+        f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
+    script:
+        "../scripts/simulate_to_spectra.py"
 
 
 rule spectra:
@@ -38,7 +72,6 @@ rule spectra:
     benchmark:
         f"{RESULTS}/benchmarks/spectra_load_{{load}}.tsv"
     threads: 1
-    priority: 1  # before the next simulation: frees the time series
     resources:
         mem_mb=1000,
         runtime=20,

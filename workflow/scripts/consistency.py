@@ -5,6 +5,7 @@ import sys
 from vibroimpact.consistency import COLLAPSE_COLUMNS, collapse_rows, consistency_dataset, consistency_rows, summary_rows
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_table, write_record, write_table
+from vibroimpact.stopwatch import Stopwatch
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 rows = consistency_rows([read_table(path) for path in snakemake.input.tables])
@@ -15,3 +16,4 @@ write_table(collapse_rows(summary), snakemake.output.collapse, COLLAPSE_COLUMNS)
 dataset = consistency_dataset(rows, summary)
 write_record(dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), snakemake.output.dataset)
 print(f"{len(rows)} estimates")
+print(Stopwatch().line())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +21,28 @@ def paths_of_gap(paths, gap_m):
     return [path for path in paths if case_from_id(Path(path).stem).gap_m == gap_m]
 
 
-def by_case(paths, read):
-    """Return {Case: read(path)} of paths named after cases, ordered by case."""
-    return {case: read(path) for case, path in sorted((case_from_id(Path(path).stem), path) for path in paths)}
+class CasesOnDemand(Mapping):
+    """{Case: read(path)} of paths named after cases, ordered by case; a file is read when its case is asked for first, then kept."""
+
+    def __init__(self, paths, read):
+        self._paths = dict(sorted((case_from_id(Path(path).stem), path) for path in paths))
+        self._read, self._kept = read, {}
+
+    def __getitem__(self, case):
+        if case not in self._kept:
+            self._kept[case] = self._read(self._paths[case])
+        return self._kept[case]
+
+    def __iter__(self):
+        return iter(self._paths)
+
+    def __len__(self):
+        return len(self._paths)
+
+
+def cases_of_gap(paths, config, read):
+    """Return the CasesOnDemand of the paths of the gap shown."""
+    return CasesOnDemand(paths_of_gap(paths, shown_gap(config)), read)
 
 
 def spread_loads(rows, count):

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from vibroimpact.cases import case_from_id
+from vibroimpact.figures.cases_of_gap import CasesOnDemand
 from vibroimpact.figures.scatter import over_seeds
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GAP_COLOURS, GAP_MARKERS, GREEN, GREY, ORANGE, PINK, RED, gap_label
@@ -19,12 +23,17 @@ TERMS = {"input_work": ("work of the drive", BLACK, "-"), "dissipated": ("dissip
 FLOOR = 1.0e-18  # exact zeros (no contact) are drawn here: a logarithmic axis has no zero
 
 
+def case_of_energies(cases):
+    """Return the Case whose energies are drawn: of the largest load and gap, the first seed."""
+    return max(cases, key=lambda case: (case.load_rms_N, case.gap_m, -case.seed))
+
+
 def energy_balance(config, records):
     """Return the Sheet of the residuals of all cases and of the energies of one case.
 
     records: {Case: Dataset} of statistics.
     """
-    case = max(records, key=lambda case: (case.load_rms_N, case.gap_m, -case.seed))
+    case = case_of_energies(records)
     caption = (
         "Left: energy balance of every case against load, relative to the work of the drive: the discrete identity of the integration "
         "scheme (its limit is round-off), the balance with the potential energy of the contacts in place of their discrete work (it "
@@ -72,6 +81,13 @@ STATISTICS = (
     ("wear", "wear_work_rate", "wear_work_rate_W", "wear work rate"),
     ("stress", "stress_peak", "stress_Pa", "largest bending stress"),
 )
+VARIABLES = (*RESIDUALS, *(variable for _, variable, _, _ in STATISTICS), "peak_force")  # of every record
+
+
+def records_shown(paths, read):
+    """Return {Case: Dataset} of record files, read by read(path, names) when asked for, with what the figures here draw of each."""
+    drawn = case_of_energies(CasesOnDemand(paths, None))
+    return CasesOnDemand(paths, lambda path: read(path, (*VARIABLES, "energy") if case_from_id(Path(path).stem) == drawn else VARIABLES))
 
 
 def contact_statistics(config, records):

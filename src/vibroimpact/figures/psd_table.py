@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.force_files import read_force
-from vibroimpact.figures.cases_of_gap import shown_gap
+from vibroimpact.figures.cases_of_gap import paths_of_gap, shown_gap
 from vibroimpact.figures.linear_limits import shown_band
 from vibroimpact.spectra import driven_axis, psd_statistics, segment_spectra
 
 QUANTITIES = ("displacement", "acceleration")
+STATISTICS = {"mean": np.add, "min": np.minimum, "max": np.maximum}  # and how those of several seeds are put together
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,14 @@ class Responses:
     frequency: np.ndarray
     psd: dict
     share: list
+
+
+def spectra_shown(config, paths, read):
+    """Yield the spectra of files named after cases, by read(path, names) with what gather needs: little, for gaps that are not shown."""
+    names = [f"psd_{quantity}_{statistic}" for quantity in QUANTITIES for statistic in STATISTICS]
+    shown = set(paths_of_gap(paths, shown_gap(config)))
+    for path in paths:
+        yield read(path, names if path in shown else ["psd_displacement_mean"])
 
 
 def gather(config, model, spectra):
@@ -46,11 +55,13 @@ def gather(config, model, spectra):
         frequency = frequency[kept]
         counts[load] = counts.get(load, 0) + 1
         for quantity in QUANTITIES:
-            for sensor in (str(name) for name in dataset["sensor"].values if str(name).endswith("." + driven)):
-                for statistic, combine in (("mean", np.add), ("min", np.minimum), ("max", np.maximum)):
-                    values = dataset[f"psd_{quantity}_{statistic}"].sel(sensor=sensor).values[kept].astype(float)
-                    key = (quantity, sensor, statistic)
-                    known = sums.setdefault(key, {})
+            for statistic, combine in STATISTICS.items():
+                psds = dataset[f"psd_{quantity}_{statistic}"].values
+                for index, sensor in enumerate(map(str, dataset["sensor"].values)):
+                    if not sensor.endswith("." + driven):
+                        continue
+                    values = psds[index, kept].astype(float)
+                    known = sums.setdefault((quantity, sensor, statistic), {})
                     known[load] = combine(known[load], values) if load in known else values
     if not counts:
         raise ValueError(f"no spectra of the gap {gap_m} m: the figures need the cases of the configuration's largest gap")

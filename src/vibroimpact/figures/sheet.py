@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from itertools import repeat
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 
 from vibroimpact.figures.style import label_of, shown, tidy_log_axis
-from vibroimpact.records import write_table
+from vibroimpact.records import write_cells
 
 DIGITS = 7  # significant digits in the CSV
 WIDTH_IN, PNG_DPI = 7.6, 160
@@ -119,7 +120,8 @@ class Sheet:
         self._write(folder, "png", FigureCanvasAgg(self.figure).print_png, metadata={"Software": None})
         self.figure.set_layout_engine("none")
         self._write(folder, "pdf", FigureCanvasPdf(self.figure).print_pdf, metadata={"CreationDate": None, "Title": self.name})
-        write_table(self.rows(), folder / f"{self.name}.csv")
+        columns = self.columns()
+        write_cells(columns, self.cells(columns), folder / f"{self.name}.csv")
         (folder / f"{self.name}.txt").write_text(self.caption + "\n", encoding="utf-8")
 
     def _write(self, folder, suffix, write, **options):
@@ -131,14 +133,20 @@ class Sheet:
         finally:
             temporary.unlink(missing_ok=True)
 
-    def rows(self):
-        """Return the table as a list of {column: value}; cells that do not apply are empty texts."""
-        columns = list(dict.fromkeys(column for _, _, table in self.tables for column in table))
-        rows = []
+    def columns(self):
+        """Return the names of the table's columns."""
+        return ["panel", "curve", *dict.fromkeys(column for _, _, table in self.tables for column in table)]
+
+    def cells(self, columns):
+        """Yield the rows of the table, tuples in the order of columns (as columns() gives); cells that do not apply are empty texts."""
         for panel, curve, table in self.tables:
-            values = [rounded(table[column]) if column in table else [""] * length_of(table) for column in columns]
-            rows += [dict(zip(("panel", "curve", *columns), (panel, curve, *row), strict=True)) for row in zip(*values, strict=True)]
-        return rows
+            values = [rounded(table[column]) if column in table else repeat("") for column in columns[2:]]
+            yield from zip(repeat(panel, length_of(table)), repeat(curve), *values)
+
+    def rows(self):
+        """Return the table as a list of {column: value}."""
+        columns = self.columns()
+        return [dict(zip(columns, row, strict=True)) for row in self.cells(columns)]
 
     def _label(self, axes, x_column, y_column):
         if not axes.get_xlabel():

@@ -26,6 +26,8 @@ PARAMETERS = {
 matplotlib.rcParams.update(PARAMETERS)
 ORDERED = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.9, 256)))  # without the lightest tenth, too pale for lines
 
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 # column of the data -> (axis label, display units per SI unit)
 COLUMNS = {
     "x_m": ("x (m)", 1.0), "y_m": ("y, out of plane (m)", 1.0), "z_m": ("z (m)", 1.0),
@@ -52,6 +54,7 @@ COLUMNS = {
     "contact_fraction": ("Time in contact (%)", 1e2), "impact_rate_per_s": ("Impacts per second (1/s)", 1.0),
     "force_N": ("Support force (N)", 1.0), "impact_velocity_m_per_s": ("Impact velocity (mm/s)", 1e3),
     "wear_work_rate_W": ("Wear work rate (W)", 1.0), "stress_Pa": ("Bending stress (MPa)", 1e-6),
+    "cpu_s": ("CPU time (s)", 1.0),
 }
 
 METHODS = {
@@ -93,7 +96,12 @@ def number(value):
     if "e" not in text:
         return text
     digits, power = text.split("e")
-    return rf"{digits}$\times$10$^{{{int(power)}}}$" if digits != "1" else rf"10$^{{{int(power)}}}$"
+    return f"{digits}×{power_of_ten(int(power))}" if digits != "1" else power_of_ten(int(power))
+
+
+def power_of_ten(power):
+    """Return 10 to a whole power as text with raised digits, which is drawn at once; mathematical text would be parsed, at some cost."""
+    return "10" + str(power).translate(RAISED)
 
 
 def tidy_log_axis(axis):
@@ -105,6 +113,8 @@ def tidy_log_axis(axis):
     if high <= 1e3 * low and low >= 1e-3 and high <= 1e4:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter(lambda value, _: f"{value:g}")
+    else:
+        axis.set_major_formatter(lambda value, _: power_of_ten(round(np.log10(value))))
     axis.set_minor_locator(NullLocator())
 
 

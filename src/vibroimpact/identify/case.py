@@ -16,6 +16,8 @@ from vibroimpact.identify.segments import effective_duration, left_out_changes, 
 from vibroimpact.identify.update import support_from_pole
 from vibroimpact.spectra import complex_values
 
+RECORD_READ = ("force_displacement", "displacement_square")  # of the files, all that identify_case asks for
+SPECTRA_READ = ("sensor_spectra_re", "sensor_spectra_im", "line_spectra_re", "line_spectra_im", "effective_averages")
 DAMPING_RATIO_LIMIT = 0.5  # c is not resolved when its error is more than this part of the pole's damping ratio
 ONE_SHAPE = 0.9  # MAC below which the motion around the peak is no longer one shape of the family
 FEWEST_SHAPE_BINS = 3

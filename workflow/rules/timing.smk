@@ -1,0 +1,25 @@
+# Where the time of a study went: `snakemake timing`, on request, since it is out of date after every job.
+
+
+rule timing:
+    input:
+        library=library("timing"),
+        benchmarks=[f"{RESULTS}/benchmarks/{job}.tsv" for job in jobs_of_study()],
+    output:
+        table=f"{RESULTS}/timing.csv",
+        figures=[f"{RESULTS}/figures/timing.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
+    params:
+        config=settings("timing"),
+        logs=[f"{RESULTS}/logs/{job}.log" for job in jobs_of_study()],
+    log:
+        f"{RESULTS}/logs/timing.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/timing.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=10,
+    message:
+        f"Timing of the study: {RESULTS}/timing.csv"
+    script:
+        "../scripts/timing.py"
