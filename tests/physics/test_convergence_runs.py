@@ -35,7 +35,7 @@ def test_a_seed_has_the_same_force_at_every_step(study_config):
         run, _ = convergence_runs.step_variant(study_config, rate)
         schedule = Schedule(rate, run.record.sampling_frequency_Hz, run.integration.start_up_s, run.record.duration_s)
         first = round(schedule.start_up * rate) + 1
-        forces.append(seed_force(run, schedule, 0)[first :: rate // 25600][: 16 * 25600])
+        forces.append(seed_force(run, schedule, 0).values(first, 16 * rate)[:: rate // 25600])
     assert all(np.sqrt(np.mean((force - forces[-1]) ** 2)) < 0.03 for force in forces)
 
 

@@ -1,12 +1,20 @@
 """A simulated case: exact load, independence of the batch, published orders of magnitude, the stress flag."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
 from vibroimpact.cases import Case
+from vibroimpact.records import read_record
+from vibroimpact.series_files import series_files
 from vibroimpact.settings import Settings
 from vibroimpact.simulate import simulate_cases
+from vibroimpact.spectra_files import spectra_files
+from vibroimpact.spectra_of_case import case_spectra
+from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.validation.variant import changed
+from vibroimpact.variables import split_record
 
 GAP = 2.8886e-4
 
@@ -18,6 +26,7 @@ def short_config(study_config):
     values["integration"]["start_up_s"] = 0.5
     values["record"]["duration_s"] = 3.0
     values["record"]["stress_limit_Pa"] = 60.0e6
+    values["spectra"]["segment_s"] = 1.0
     return Settings(values)
 
 
@@ -49,6 +58,34 @@ def test_scaling_load_and_gap_scales_the_record_bit_for_bit(short_config, study_
     for name in ("displacement", "acceleration", "line_displacement", "support_force"):
         assert np.array_equal(doubled[name], 2 * single[name]), name
     assert np.array_equal(doubled.contact_fraction, single.contact_fraction)
+
+
+def test_files_written_on_the_way_hold_what_the_whole_record_does(short_config, study_model, records, cases, tmp_path):
+    batch = cases[:2]
+    paths = {case: tmp_path / f"{case.id}.nc" for case in batch}
+    for case, record in simulate_cases(short_config, study_model, batch, series_files(short_config, study_model, paths, {"mark": "x"})):
+        series = read_record(paths[case])
+        assert series.attrs["mark"] == "x" and series.attrs["case"] == case.id
+        assert series.equals(records[case][[*series.data_vars]].drop_vars(set(records[case].coords) - set(series.coords), errors="ignore"))
+        assert record.equals(split_record(records[case])[0])
+    stopwatch = Stopwatch()
+    keep = spectra_files(short_config, study_model, paths, {"mark": "y"}, stopwatch)
+    for case, record in simulate_cases(short_config, study_model, batch, keep, stopwatch):
+        assert read_record(paths[case]).equals(case_spectra(short_config, records[case]))
+    assert set(stopwatch) == {"force", "kernel", "output filter", "spectra"}
+
+
+def test_memory_does_not_grow_with_the_duration(short_config, study_model, tmp_path):
+    most = []
+    for duration in (2.0, 6.0):
+        values = dict(short_config)
+        run = Settings({**values, "record": {**values["record"], "duration_s": duration}})
+        keep = spectra_files(run, study_model, {Case(0.5, GAP, seed): tmp_path / f"{seed}.nc" for seed in range(8)}, {}, Stopwatch())
+        tracemalloc.start()
+        list(simulate_cases(run, study_model, [Case(0.5, GAP, seed) for seed in range(8)], keep))
+        most.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert most[1] < 1.05 * most[0]  # the series alone would have added 13 MB
 
 
 def test_below_contact_nothing_moves_in_plane(records):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.cases import Case, all_cases, case_from_id, cases_of_load, ids_of_load, load_values, random_stream, value_text
+from vibroimpact.cases import Case, all_cases, case_from_id, cases_of_load, ids_of_load, load_values, loads_by_half_decade, random_stream, value_text
 from vibroimpact.config import load_config
 
 STUDY = Path(__file__).parents[2] / "config" / "study.yaml"
@@ -31,6 +31,12 @@ def test_loads_are_log_spaced_to_the_digits_of_their_ids():
     steps = np.diff(np.log(loads))
     assert steps == pytest.approx(np.log(400.0) / 23, rel=1e-4)
     assert all(float(value_text(load)) == load for load in loads)
+
+
+def test_loads_fall_into_half_decades_whatever_the_other_loads_are():
+    batches = loads_by_half_decade(grid((20.0, 0.05, 1.0, 3.1, 3.17, 10.0, 0.999)))
+    assert batches == {"from_0.0316": ["0.05"], "from_0.316": ["0.999"], "from_1": ["1", "3.1"], "from_3.16": ["3.17"], "from_10": ["10", "20"]}
+    assert [len(loads) for loads in loads_by_half_decade(load_config(STUDY).grid).values()] == [3, 5, 4, 4, 5, 3]
 
 
 def test_an_id_reads_back_as_exactly_its_case():

@@ -1,5 +1,6 @@
 """Forces: band, RMS, Gaussian amplitude, independence of seeds; measured records come back at another rate."""
 
+import tracemalloc
 from types import SimpleNamespace
 
 import numpy as np
@@ -44,6 +45,42 @@ def test_rms_over_the_record_is_exact():
     section = SimpleNamespace(kind="band_limited", band_Hz=BAND)
     values = unit_force(section, np.random.default_rng(3), 60000, 51200.0, slice(10000, 50000))
     assert np.sqrt(np.mean(values[10000:50000] ** 2)) == pytest.approx(1.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(("samples", "rate", "band"), [(400_000, 51200.0, BAND), (60_007, 51200.0, (100.0, 3000.0)), (5000, 1000.0, (5.0, 400.0))])
+def test_a_streamed_force_is_the_inverse_transform_of_its_lines(samples, rate, band):
+    section, recorded = SimpleNamespace(kind="band_limited", band_Hz=band), slice(100, samples - 2)
+    values = band_limited_noise(np.random.default_rng(8), samples, rate, band)
+    expected = values / np.sqrt(np.mean(values[recorded] ** 2))
+    assert np.max(np.abs(unit_force(section, np.random.default_rng(8), samples, rate, recorded) - expected)) < 1e-12
+
+
+@pytest.mark.parametrize("section", [
+    SimpleNamespace(kind="band_limited", band_Hz=BAND), SimpleNamespace(kind="white_noise"), SimpleNamespace(kind="none"),
+    SimpleNamespace(kind="harmonic", frequency_Hz=7.3, phase_deg=20.0),
+], ids=lambda section: section.kind)
+def test_a_step_has_the_same_bits_in_whatever_stretch_it_is_asked_for(section):
+    def stream():
+        return ForceStream(section, np.random.default_rng(9), 90_000, 51200.0, slice(1000, 80_000), first_time_s=-0.5)
+
+    whole = stream().values(0, 90_000)
+    pieces = stream()
+    for first, count in [(0, 1), (0, 7001), (7000, 30_000), (37_000, 53_000), (25_599, 2), (88_000, 2000), (100, 10)]:
+        assert np.array_equal(pieces.values(first, count), whole[first : first + count])
+
+
+def test_white_noise_in_pieces_is_one_draw():
+    stream = ForceStream(SimpleNamespace(kind="white_noise"), np.random.default_rng(10), 70_000, 51200.0, slice(0, 70_000))
+    assert np.array_equal(stream.values(0, 70_000), np.random.default_rng(10).standard_normal(70_000))
+
+
+def test_a_force_of_a_long_record_takes_little_memory():
+    """Of 400 s, 160 MB as a whole, the Fourier lines and one block are held."""
+    tracemalloc.start()
+    stream = ForceStream(SimpleNamespace(kind="band_limited", band_Hz=BAND), np.random.default_rng(11), 400 * 51200, 51200.0, slice(0, 51200))
+    stream.values(0, 25000)
+    assert tracemalloc.get_traced_memory()[1] < 40e6
+    tracemalloc.stop()
 
 
 def test_empty_band_is_refused():

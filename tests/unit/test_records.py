@@ -33,6 +33,37 @@ def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
     assert again.attrs["Conventions"].startswith("CF-")
 
 
+def test_a_file_filled_in_pieces_is_the_file_of_the_whole(tmp_path):
+    values = np.arange(12.0, dtype="f4").reshape(2, 6)
+    coordinates = {"time": ("time", np.arange(6.0)), "place": ("point", [0.5, 1.5], {"units": "m"})}
+    whole = xr.Dataset({"series": (("point", "time"), values, {"units": "m"}), "name": ("point", ["a", "b"])}, coordinates, {"case": "one"})
+    parts = {"series": (("point", "time"), "f4", {"units": "m"})}
+    with records.RecordFile(tmp_path / "pieces.nc", whole.drop_vars("series"), parts) as file:
+        for place in (slice(0, 4), slice(4, 6)):
+            file.put("series", np.s_[:, place], values[:, place])
+        assert not (tmp_path / "pieces.nc").exists()
+    for read in (records.read_record, records.read_dataset):
+        again = read(tmp_path / "pieces.nc")
+        assert again.equals(whole) and again.attrs["case"] == "one" and again["place"].attrs == {"units": "m"}
+
+
+def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
+    dataset = xr.Dataset({"a": ("x", [1.0, 2.0]), "b": ("y", [3.0]), "c": ((), 4)}, {"x": [5, 6], "y": ["seven"], "beside": ("x", [8.0, 9.0])})
+    records.write_record(dataset, tmp_path / "some.nc")
+    some = records.read_record(tmp_path / "some.nc", ["a", "c"])
+    assert some.equals(dataset[["a", "c"]]) and set(some.coords) == {"x", "beside"}
+    assert records.read_record(tmp_path / "some.nc").equals(records.read_dataset(tmp_path / "some.nc"))
+    with pytest.raises(KeyError):
+        records.read_record(tmp_path / "some.nc", ["none"])
+
+
+def test_an_abandoned_file_leaves_nothing(tmp_path):
+    with pytest.raises(RuntimeError, match="stopped"):
+        with records.RecordFile(tmp_path / "half.nc", xr.Dataset({"a": 1.0})):
+            raise RuntimeError("stopped")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_an_undeclared_variable_is_refused():
     with pytest.raises(KeyError, match="nonsense"):
         variables.describe({"nonsense": 1.0}, {}, {})

@@ -146,3 +146,27 @@ def test_case_spectra_keep_what_figures_and_methods_read():
     np.testing.assert_allclose((np.abs(values) ** 2).mean(axis=1), spectra["psd_displacement_mean"].values[[1, 3], :low], rtol=1.0e-4)
     np.testing.assert_allclose(spectra["psd_acceleration_max"], 4.0 * spectra["psd_displacement_max"], rtol=1.0e-4)
     assert float(spectra["effective_averages"]) == effective_averages(20.0, 256.0, config.spectra)
+
+
+def test_spectra_of_a_record_in_pieces_are_those_of_the_whole():
+    generator = np.random.default_rng(12)
+    config = SimpleNamespace(
+        record=SimpleNamespace(sampling_frequency_Hz=128.0), spectra=settings(4.0, 0.65), excitation=SimpleNamespace(direction=(0.0, 1.0, 0.0)),
+        identification=SimpleNamespace(lscf=SimpleNamespace(band_Hz=(8.0, 20.0)), broadband=SimpleNamespace(band_Hz=(6.0, 30.0))))
+    series = [generator.standard_normal((count, 2500)).astype(np.float32) for count in (2, 2, 3)]
+    record = xr.Dataset({name: ((dim, "time"), values) for name, dim, values in zip(
+        ("displacement", "acceleration", "line_displacement"), ("sensor", "sensor", "line_point"), series)}, {"sensor": ["a.x", "a.y"]})
+    whole, parts = case_spectra(config, record), {}
+    made = SpectraOfCase(config, ["a.x", "a.y"], 3, 2500, np.float32)
+    made.keep = lambda name, place, values: parts.setdefault(name, np.empty(whole[name].shape, "f4")).__setitem__(place, values)
+    edges = [0, 1, 5, 700, 701, 2040, 2500]
+    for first, last in zip(edges, edges[1:]):
+        made.put(*(values[:, first:last] for values in series))
+    made.finish()
+    assert set(parts) == set(whole.data_vars) - {"effective_averages"}
+    assert all(np.array_equal(parts[name], whole[name].values) for name in parts)
+    short = SpectraOfCase(config, ["a.x", "a.y"], 3, 2500, np.float32)
+    short.keep = made.keep
+    short.put(*(values[:, :1000] for values in series))
+    with pytest.raises(ValueError, match="the record ended after"):
+        short.finish()

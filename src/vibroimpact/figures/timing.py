@@ -21,7 +21,7 @@ def timing(config, rows):
     share = sum(row["share"] for row in rows if row["rule"] == "all" and row["part"] in METHOD)
     caption = (
         f"CPU time of the {whole['jobs']} jobs of the study '{config.study}' by rule, summed over jobs: {whole['cpu_s']:.0f} s in all, "
-        f"{share:.0%} of it in {', '.join(METHOD[:-1])} and {METHOD[-1]}. Rest: starting Python and its imports, files, drawing. At the end of "
+        f"{100 * share:.0f} % of it in {', '.join(METHOD[:-1])} and {METHOD[-1]}. Rest: starting Python and its imports, files, drawing. At the end of "
         "each bar the number of jobs and the largest memory of one. From the logs and benchmark files of the last run of each job.")
     rules = [row for row in rows if row["part"] == "" and row["rule"] != "all"]
     sheet = Sheet("timing", "Where the time goes", caption, size=(7.6, 1.4 + 0.34 * len(rules)))
