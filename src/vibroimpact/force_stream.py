@@ -145,7 +145,9 @@ class _Interpolated:
         spectrum[first : highest + 1] = lines
         values = np.fft.irfft(spectrum, short) * short
         self._rows = max(1, BLOCK_STEPS // factor)
-        self._short = np.resize(np.roll(values, TAPS // 2 - 1), -(-short // self._rows) * self._rows + TAPS) if factor > 1 else values
+        if factor > 1:  # in front what the first steps' taps reach, behind what fills the last block: the record is periodic
+            values = values[np.arange(1 - TAPS // 2, -(-short // self._rows) * self._rows + TAPS // 2 + 1) % short]
+        self._short = values
         self._weights = interpolation_weights(factor)
         self.block_steps = self._rows * factor
 
