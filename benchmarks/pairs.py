@@ -1,0 +1,105 @@
+"""Times measured in pairs: ours and a peer's next to each other, again and again, so that a machine's moods fall on both."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from benchmarks.ours import march_ours, schedule_of
+from benchmarks.peak import PeakRate, flops_per_step
+from benchmarks.problem import RATE, SEED
+
+ONE_RUN, BATCH = "one run", "batch of {}, per run"
+PEAK = "FMA peak of one core"
+
+
+@dataclass(frozen=True)
+class Clock:
+    """How long and how often is measured: repeats; seconds simulated by ours alone and in a batch; batches: runs side by side."""
+
+    repeats: int = 5
+    one_run_s: float = 5.0
+    batch_s: float = 2.0
+    batches: tuple = (8, 16)
+    peer_scale: float = 1.0  # of the simulated seconds of the peers
+    slow_s: float = 3.0  # a peer whose timed run takes longer is measured slow_repeats times at most
+    slow_repeats: int = 3
+
+
+@dataclass
+class Pair:
+    """CPU seconds per simulated second and run, pair by pair. quantity: how ours ran; bound: the peer is arithmetic at the FMA peak."""
+
+    case: str
+    quantity: str
+    peer: str
+    same_step: bool
+    bound: bool = False
+    ours: list = field(default_factory=list)
+    theirs: list = field(default_factory=list)
+
+
+def cpu_seconds(work):
+    """Return the CPU time in s of a call, all threads of this process together: unlike the wall clock it does not see other processes."""
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
+def our_cost(problem, batch, seconds, touching=True):
+    """Return the function () -> CPU s per simulated s and run of `batch` runs side by side, each with a force of its own."""
+    forces = np.stack([problem.force(seconds, SEED + case) for case in range(batch)], axis=1)
+    schedule = schedule_of(seconds)
+    return lambda: cpu_seconds(lambda: march_ours(problem, forces, schedule, touching)) / seconds / batch
+
+
+def peer_cost(peer, problem, scale=1.0):
+    """Return (function () -> CPU s per simulated s and run of a peer, CPU s of its first run, which compiles)."""
+    marcher = peer.start(problem, True)
+    force = peer_force(peer, problem, scale)
+    seconds = (len(force) - 1) / RATE
+    warm = cpu_seconds(lambda: marcher.march(force))
+    return (lambda: cpu_seconds(lambda: marcher.march(force)) / seconds / peer.batch), warm
+
+
+def peer_force(peer, problem, scale=1.0):
+    """Return the force (step + 1,), or (step + 1, batch) with a record of its own for each run, that a peer is timed with."""
+    first = problem.force(scale * peer.seconds)
+    return first if peer.batch == 1 else np.stack([problem.force(scale * peer.seconds, SEED + run) for run in range(peer.batch)], axis=1)
+
+
+def peak_cost(problem, touching):
+    """Return the function () -> CPU s per simulated s and run, were the step's arithmetic all that there is, at the FMA peak."""
+    peak = PeakRate()
+    share = flops_per_step(problem.model, touching) * RATE / peak.flops
+    return lambda: share * cpu_seconds(peak.run)
+
+
+def measure_pairs(problem, peers, clock, touches=True, say=print):
+    """Return [Pair] of one case: every peer against ours alone and in batches; a batched peer against our batches only.
+
+    touches: whether the load reaches the obstacles (for the count of operations).
+    """
+    ours = {ONE_RUN: our_cost(problem, 1, clock.one_run_s)}
+    ours |= {BATCH.format(batch): our_cost(problem, batch, clock.batch_s) for batch in clock.batches}
+    for cost in ours.values():
+        cost()  # compiles, and fills the caches
+    others = [(peer.name, peer.same_step, *peer_cost(peer, problem, clock.peer_scale), [*ours][peer.batch > 1:]) for peer in peers]
+    others.append((PEAK, True, peak_cost(problem, touches), 0.0, [*ours]))
+    pairs = []
+    for name, same_step, cost, warm, quantities in others:
+        found = {quantity: Pair(problem.name, quantity, name, same_step, name == PEAK) for quantity in quantities}
+        for repeat in range(min(clock.repeats, clock.slow_repeats) if warm > clock.slow_s else clock.repeats):
+            # Ours before and after, in turns, so that neither has the cooler core.
+            order = quantities if repeat % 2 else quantities[::-1]
+            for quantity in order[:1]:
+                found[quantity].ours.append(ours[quantity]())
+            theirs = cost()
+            for quantity in order[1:]:
+                found[quantity].ours.append(ours[quantity]())
+            for pair in found.values():
+                pair.theirs.append(theirs)
+        pairs += found.values()
+        say(f"{problem.name}: {name} {np.median(theirs):.4g} s/s, times ours: "
+            + ", ".join(f"{np.median(np.divide(pair.theirs, pair.ours)):.3g} ({pair.quantity})" for pair in found.values()))  # fmt: skip
+    return pairs
