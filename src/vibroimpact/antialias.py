@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .kernels import RATIO, SLOTS
+from .kernels import BEHIND, RATIO, SLOTS
 
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
-KAISER_ATTENUATION_DB = 94.0
-DIFFERENCE_ORDER = 5  # central differences of order 10: relative error below 1e-6 up to 800 Hz at 10240 Hz
+KAISER_ATTENUATION_DB = 100.0
+DIFFERENCE_ERROR = 1e-6  # of the second derivative, relative, up to the end of the passband
+DROOP_TERMS = 5  # of the polynomial in 1 - cos that undoes the first stage's droop
 
 
 @dataclass(frozen=True)
@@ -35,12 +36,12 @@ class OutputFilter:
         return (self.second.size - 1) // 2
 
     def phase_weights(self) -> np.ndarray:
-        """First stage by (phase, slot): weight of step n = RATIO * tick + phase in output tick - 1 + slot."""
+        """First stage by (phase, slot): weight of step n = RATIO * tick + phase in output tick - BEHIND + slot."""
         half = (self.first.size - 1) // 2
         weights = np.zeros((RATIO, SLOTS))
         for phase in range(RATIO):
             for slot in range(SLOTS):
-                lag = phase - RATIO * (slot - 1)
+                lag = phase - RATIO * (slot - BEHIND)
                 if abs(lag) <= half:
                     weights[phase, slot] = self.first[half + lag]
         return weights
@@ -65,36 +66,47 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
         )
     middle_rate = steps_per_second / RATIO
     stop = 0.5 * sampling_frequency
-    first, droop = _first_stage(stop / steps_per_second)
-    second = _kaiser_lowpass(PASS_FRACTION * stop / middle_rate, stop / middle_rate)
-    lift = droop / RATIO**2  # 1 - lift (cos(2 pi f) - 1) at the middle rate undoes the droop to first order
-    second = np.convolve(second, [-0.5 * lift, 1.0 + lift, -0.5 * lift])
-    difference = _second_difference(DIFFERENCE_ORDER) * middle_rate**2
+    first = _first_stage(stop / steps_per_second)
+    passband = PASS_FRACTION * stop / middle_rate
+    second = np.convolve(_kaiser_lowpass(passband, stop / middle_rate), _lift(first, passband))
+    order = next(order for order in range(3, 40) if _difference_error(order, passband) < DIFFERENCE_ERROR)
+    difference = _second_difference(order) * middle_rate**2
     return OutputFilter(
         first=first,
-        second=np.pad(second, DIFFERENCE_ORDER),
+        second=np.pad(second, order),
         second_derivative=np.convolve(second, difference),
         step=round(ratio / RATIO),
     )
 
 
 def _first_stage(band):
-    """(taps, droop): stop the images of 0..band around multiples of 1 / RATIO (cycles per step), pass about 1 below.
+    """Taps that stop the images of 0..band around multiples of 1 / RATIO (cycles per step) and pass about 1 below.
 
     A polynomial in x = cos(2 pi f) with Chebyshev-spaced zeros in each image band, the nearest band one more. Its length
-    is the largest that SLOTS outputs can share. droop: slope of the response in x at x = 1, for the second stage to undo.
+    is the largest that SLOTS outputs can share.
     """
     pairs = (RATIO * SLOTS - 2) // 2
     images = RATIO // 2
-    zeros = []
+    taps = np.ones(1)
     for image in range(1, images + 1):
         count = pairs // images + (1 if image <= pairs % images else 0)
         nodes = np.cos((2 * np.arange(count) + 1) * np.pi / (2 * count))
-        zeros += list(np.cos(2 * np.pi * (image / RATIO + band * nodes)))
-    taps = np.ones(1)
-    for zero in zeros:
-        taps = np.convolve(taps, [0.5, -zero, 0.5]) / (1.0 - zero)
-    return taps, sum(1.0 / (1.0 - zero) for zero in zeros)
+        for zero in np.cos(2 * np.pi * (image / RATIO + band * nodes)):
+            taps = np.convolve(taps, [0.5, -zero, 0.5]) / (1.0 - zero)
+    return taps
+
+
+def _lift(first, passband):
+    """Taps at the middle rate that undo the first stage's droop up to passband (cycles per middle sample); exactly 1 at 0."""
+    frequency = np.linspace(0.0, passband, 200)[1:]
+    x = 1.0 - np.cos(2 * np.pi * frequency)
+    powers = x[:, None] ** np.arange(1, DROOP_TERMS + 1)
+    weights = np.linalg.lstsq(powers, 1.0 / _amplitude(first, frequency / RATIO) - 1.0, rcond=None)[0]
+    taps, power = np.ones(1), np.ones(1)
+    for weight in weights:
+        power = np.convolve(power, [-0.5, 1.0, -0.5])
+        taps = np.pad(taps, 1) + weight * power
+    return taps
 
 
 def _kaiser_lowpass(passband, stopband):
@@ -114,6 +126,11 @@ def _second_difference(order):
     powers = n[None, :].astype(float) ** (2 * n[:, None])
     side = np.linalg.solve(powers, np.where(n == 1, 1.0, 0.0))
     return np.concatenate([side[::-1], [-2.0 * side.sum()], side])
+
+
+def _difference_error(order, passband):
+    """Relative error of the second difference at the end of the passband (cycles per sample)."""
+    return abs(_amplitude(_second_difference(order), np.array([passband]))[0] / (2 * np.pi * passband) ** 2 + 1.0)
 
 
 def _amplitude(taps, frequency):

@@ -26,6 +26,7 @@ class Basis(Section):
 class Integration(Section):
     """Step, start-up before the record, and the seeded initial offset as a fraction of the gap."""
 
+    scheme: Literal["newmark", "exact"] = "newmark"
     steps_per_second: count(100, 10**8, "the paper's 2e-5 s is 50000 steps per second") = 51200
     start_up_s: Start_up_s = 6.0
     imperfection: Fraction_of_gap = 1.0e-6

@@ -6,12 +6,12 @@ import numpy as np
 
 from . import kernels
 from .antialias import OutputFilter, output_filter
-from .kernels import LANES, RATIO
+from .kernels import BEHIND, LANES, RATIO
 from .layout import ModalLayout
 from .model import ModalModel
 from .potential import stored_energy
 
-CHUNK_TICKS = 5000  # steps between visits to Python, in units of RATIO: half a second at 51200 Hz
+CHUNK_TICKS = 2000  # steps between visits to Python, in units of RATIO: its forces fit the second-level cache
 CONTRACTION_LIMIT = 0.5
 
 
@@ -49,12 +49,13 @@ ENERGY_TERMS = ("input_work", "dissipated", "contact_work", "kinetic", "elastic"
 
 @dataclass(frozen=True)
 class Schedule:
-    """Rates [Hz] and durations [s] of a run, and the output filter between the two rates."""
+    """Rates [Hz] and durations [s] of a run, its scheme (see schemes.py), and the output filter between the two rates."""
 
     steps_per_second: float
     sampling_frequency: float
     start_up: float
     duration: float
+    scheme: str = "newmark"
     filter: OutputFilter = field(init=False)
 
     def __post_init__(self):
@@ -71,47 +72,47 @@ class Schedule:
 
         Negative where the filter reaches back before the start of the run, when the structure was at rest.
         """
-        return round(self.start_up * self.steps_per_second / RATIO) - self.filter.delay + 1
+        return round(self.start_up * self.steps_per_second / RATIO) - self.filter.delay + BEHIND
 
     @property
     def steps(self) -> int:
-        """Steps of the whole run; the drive force needs two values more (its value 0 is one step before time 0)."""
+        """Steps of the whole run; the drive force needs one value more (its value 0 is one step before time 0)."""
         ticks = self.start_ticks + self.filter.second.size + (self.samples - 1) * self.filter.step
         return ticks * RATIO
 
 
-def contact_contraction(model: ModalModel, dt: float) -> float:
+def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -> float:
     """Upper bound of the factor by which one pass of the contact fixed point shrinks its error.
 
-    The largest eigenvalue of the tangent stiffness of all contacts and elements, dampers counting as 2 c / dt, times the compliance of
+    The largest eigenvalue of the tangent stiffness of all contacts and elements, dampers counting by the scheme's velocity, times the compliance of
     one step, all of them engaged at once. Terms that grow with the motion (cubic, drag, Hunt-Crossley) are left out: the residual of the
     fixed point, kept with every record, tells of them.
     """
-    layout = ModalLayout(model)
+    layout = ModalLayout(model, scheme)
     modal, own, local = layout.modal(dt), model.contact_laws, model.local_laws
     stiffness = np.zeros(modal.row_force_channel.size)
-    radial = np.where(own.hertz > 0.0, 0.0, model.contact_stiffness) + 2.0 / dt * own.damping
+    rate = modal.speed[0]  # of the velocity with the displacement
+    radial = np.where(own.hertz > 0.0, 0.0, model.contact_stiffness) + rate * own.damping
     tangential = np.where(own.friction > 0.0, own.stick_stiffness, 0.0)
     for direction in range(2):
         stiffness[layout.contact_rows()[:, direction]] = np.maximum(radial, tangential)
     stick = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)
-    stiffness[layout.element_rows()] = np.abs(local.stiffness) + 2.0 / dt * np.abs(local.damping) + stick + np.abs(local.saturation_stiffness)
+    stiffness[layout.element_rows()] = np.abs(local.stiffness) + rate * np.abs(local.damping) + stick + np.abs(local.saturation_stiffness)
     largest = 0.0
     for g in range(modal.row_start.size - 1):
         row, end = modal.row_start[g], modal.force_row_start[g]
-        count = end - row
-        if count == 0:
+        if end == row:
             continue
-        start = modal.compliance_start[g]
-        compliance = modal.compliance[start : start + count * count].reshape(count, count)
+        start, rows = modal.compliance_start[g], modal.row_start[g + 1] - row
+        compliance = modal.compliance[start : start + rows * rows].reshape(rows, rows)[: end - row, : end - row]
         weight = np.sqrt(stiffness[row:end])
         largest = max(largest, np.linalg.eigvalsh(weight[:, None] * compliance * weight)[-1])
     return float(largest)
 
 
-def checked_contraction(model, steps_per_second):
+def checked_contraction(model, steps_per_second, scheme="newmark"):
     """The contraction factor of the contact iteration; raises IntegrationError when it is too slow to rely on."""
-    contraction = contact_contraction(model, 1.0 / steps_per_second)
+    contraction = contact_contraction(model, 1.0 / steps_per_second, scheme)
     if contraction > CONTRACTION_LIMIT:
         largest = max(model.contact_stiffness.max(initial=0.0), np.abs(model.local_laws.stiffness).max(initial=0.0))
         raise IntegrationError(
@@ -126,10 +127,10 @@ def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive)
     """Integrate up to LANES cases side by side.
 
     gap (case,) m; imperfection (contact_point, 2, case) m, added to the obstacles' centres; drive: function
-    (first, count) -> (count, force_channel, case) force in N at steps first, first + 1, ... (0 to schedule.steps + 1).
+    (first, count) -> (count, force_channel, case) force in N at steps first, first + 1, ... (0 to schedule.steps).
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the run diverged.
     """
-    contraction = checked_contraction(model, schedule.steps_per_second)
+    contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
     return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap)).finish(contraction)
 
 
@@ -146,12 +147,12 @@ class _Run:
 
     def __init__(self, model, schedule, gap, imperfection, drive, cases):
         self.model, self.schedule, self.drive, self.cases = model, schedule, drive, cases
-        self.layout = ModalLayout(model)
+        self.layout = ModalLayout(model, schedule.scheme)
         self.dt = 1.0 / schedule.steps_per_second
         self.modal = self.layout.modal(self.dt)
         self.contact, self.laws = self.layout.contact(gap, imperfection), self.layout.laws(gap)
         self.state, self.tally, self.work = self.layout.state(), self.layout.tally(), self.layout.work()
-        start_state(self.layout, self.modal, self.contact, self.laws, self.state, self.work)
+        start_state(self.layout, self.modal, self.contact, self.laws, self.state, self.work, self.forces(0, 1)[0])
         tail = schedule.filter.second.size - schedule.filter.step
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
         self.output = self.layout.output(schedule.filter.phase_weights(), tail + self.chunk)
@@ -161,7 +162,6 @@ class _Run:
         self.sums = None
         self.residual = np.zeros(LANES)
         self.energies, self.times = [], []
-        self.omega = self.layout.per_mode(model.omega)[:, None]
         self.take_energies()
 
     def finish(self, contraction) -> Lanes:
@@ -200,17 +200,23 @@ class _Run:
 
     def advance(self, ticks, column, recorded):
         """March ``ticks`` ticks, their outputs to ``column`` on; keep the sums when recorded."""
-        force = np.zeros((ticks * RATIO + 2, self.layout.drive_shapes.shape[1], LANES))
-        force[:, : self.model.drive_shapes.shape[1], : self.cases] = self.drive(self.done, ticks * RATIO + 2)
         for array in self.tally:
             array[...] = 0.0
-        force[:, self.model.drive_shapes.shape[1] :] = 1.0  # the dead load, see ModalLayout.drive_shapes
+        force = self.forces(self.done + 1, ticks * RATIO)
         output = self.output._replace(column=column)
         steps = kernels.march(self.modal, self.contact, self.laws, self.state, self.tally, output, self.layout.trace(0), self.work, force)
         if steps < ticks * RATIO:
             self.fail(steps)
         self.done += steps
         self.account(recorded)
+
+    def forces(self, first, count):
+        """Drive forces (count, force_channel, LANES) N at steps first, first + 1, ..."""
+        channels = self.model.drive_shapes.shape[1]
+        out = np.zeros((count, self.layout.drive_shapes.shape[1], LANES))
+        out[:, :channels, : self.cases] = self.drive(first, count)
+        out[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
+        return out
 
     def account(self, recorded):
         """Add the chunk's tally to the totals and take the energies."""
@@ -229,11 +235,8 @@ class _Run:
 
     def take_energies(self):
         """Note the energies of the present state."""
-        stored = {
-            "kinetic": 0.5 * (self.state.velocity**2).sum(axis=0),
-            "elastic": 0.5 * ((self.omega * self.state.displacement[-1]) ** 2).sum(axis=0),
-            "contact_potential": stored_energy(self.contact, self.laws, self.state),
-        }
+        kinetic, elastic = modal_energies(self.layout, self.dt, self.state)
+        stored = {"kinetic": kinetic, "elastic": elastic, "contact_potential": stored_energy(self.contact, self.laws, self.state)}
         terms = self.totals | stored
         self.energies.append(np.array([terms[name] for name in ENERGY_TERMS]))
         self.times.append((self.done - 1) * self.dt - self.schedule.start_up)
@@ -251,13 +254,28 @@ class _Run:
         )
 
 
-def start_state(layout: ModalLayout, modal, contact, laws, state, work) -> None:
-    """Put the model's initial displacement and velocity into the kernel's state; nothing to do for a plain model at rest."""
-    model = layout.model
-    if np.any(model.initial_displacement) or np.any(model.initial_velocity):
-        state.displacement[-1] = layout.per_mode(model.initial_displacement)[:, None]
-        state.velocity[...] = layout.per_mode(model.initial_velocity)[:, None]
+def start_state(layout: ModalLayout, modal, contact, laws, state, work, drive) -> None:
+    """Put the model's initial displacement and velocity, and the force drive (force_channel, LANES) N of that time, into the state."""
+    model, shapes = layout.model, layout.row_shapes
+    q, v = (np.outer(values, np.ones(LANES)) for values in (model.initial_displacement, model.initial_velocity))
+    if np.any(q) or np.any(v):
+        state.displacement[-1] = layout.per_mode(q)
+        state.row_displacement[...], state.row_velocity[...] = shapes @ q, shapes @ v
         kernels.begin(modal, contact, laws, state, work)
+    driven = modal.row_force_channel >= 0
+    state.row_force[driven] = drive[modal.row_force_channel[driven]]
+    ahead, change = layout.step(modal.dt).start(q, v, shapes.T @ state.row_force)
+    state.ahead[...], state.change[...] = layout.per_mode(ahead), layout.per_mode(change)
+    moves = np.any(state.ahead, axis=1) | np.any(state.change, axis=1)
+    state.awake[...] |= [np.any(moves[first:last]) for first, last in zip(layout.mode_start[:-1], layout.mode_start[1:], strict=True)]
+
+
+def modal_energies(layout: ModalLayout, dt: float, state) -> tuple[np.ndarray, np.ndarray]:
+    """Kinetic and elastic energy of the modes, each (lane,) J."""
+    force = layout.row_shapes.T @ state.row_force
+    velocity = layout.step(dt).velocity(state.ahead[layout.place], state.change[layout.place], force)
+    displacement = state.displacement[-1][layout.place]
+    return 0.5 * (velocity**2).sum(axis=0), 0.5 * ((layout.model.omega[:, None] * displacement) ** 2).sum(axis=0)
 
 
 def _chunks(total, size):

@@ -12,6 +12,7 @@ narrower ones.
 """
 
 import operator
+import platform
 from typing import NamedTuple
 
 import numpy as np
@@ -23,9 +24,11 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 
 LANES = 8
 PANEL = 8
-RATIO = 5  # decimation of each of the two stages of the output filter: 51200 -> 10240 -> 2048 Hz
-SLOTS = 4  # outputs of the first stage that one input sample contributes to
+RATIO = 5  # decimation of the first stage of the output filter
+SLOTS = 6  # outputs of the first stage that one input sample contributes to
 CHANNEL_BLOCK = 4  # output channels projected at a time
+BEHIND = SLOTS // 2 - 1  # ticks between a sample and the output that is finished with it
+QUIET = 2  # steps without a force after which all forces kept from the last steps are zero
 
 # Without the run-time's reference counts (_nrt): counting each array of a group at each use costs five times the
 # arithmetic. Nothing is allocated in here; work space is handed in.
@@ -125,6 +128,12 @@ def spread(typing_context, scalar):
 
 
 @intrinsic
+def spread_from(typing_context, array, i):
+    """Element i >= 0 of a flat array of numbers in every lane: without the test for an index from the end."""
+    return lane_vector(array, types.intp), lambda context, builder, sig, args: _spread_from(context, builder, sig.args[0], *args)
+
+
+@intrinsic
 def load(typing_context, array, i):
     """Vector i of a contiguous array whose last axis is the lanes."""
 
@@ -200,6 +209,51 @@ def any_greater(typing_context, a, b):
         return builder.icmp_unsigned("!=", mask, ir.Constant(ir.IntType(LANES), 0))
 
     return types.boolean(lane_vector, lane_vector), code
+
+
+_X86 = platform.machine().lower() in ("x86_64", "amd64", "i686")
+_FLUSH = 0x8040  # flush-to-zero and denormals-are-zero of the MXCSR register
+
+
+@intrinsic
+def flush_subnormals(typing_context):
+    """Let numbers below 1e-308 be zero in this thread; returns the mode before, for `restore_mode`.
+
+    A motion that decays freely passes through them on its way to nothing, and arithmetic on them is many times slower: records with
+    rare contacts cost three times as much as those without or with many. Machines other than x86 keep them, and their time.
+    """
+
+    def code(context, builder, sig, args):
+        if not _X86:
+            return ir.Constant(_INT32, 0)
+        slot = cgutils.alloca_once(builder, _INT32)
+        before = _mode(builder, slot, "st")
+        builder.store(builder.or_(before, ir.Constant(_INT32, _FLUSH)), slot)
+        _mode(builder, slot, "ld")
+        return before
+
+    return types.int32(), code
+
+
+@intrinsic
+def restore_mode(typing_context, before):
+    """Undo `flush_subnormals`."""
+
+    def code(context, builder, sig, args):
+        if _X86:
+            slot = cgutils.alloca_once(builder, _INT32)
+            builder.store(args[0], slot)
+            _mode(builder, slot, "ld")
+        return context.get_dummy_value()
+
+    return types.void(types.int32), code
+
+
+def _mode(builder, slot, direction):
+    pointer = ir.IntType(8).as_pointer()
+    kind = ir.FunctionType(ir.VoidType(), [pointer])
+    builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.x86.sse.{direction}mxcsr"), [builder.bitcast(slot, pointer)])
+    return builder.load(slot)
 
 
 @intrinsic
@@ -301,6 +355,17 @@ def panel_sum(typing_context, a, b):
 
 
 @intrinsic
+def panel_difference(typing_context, a, b):
+    """a[m] - b[m]."""
+
+    def code(context, builder, sig, args):
+        a, b = (cgutils.unpack_tuple(builder, arg, PANEL) for arg in args)
+        return context.make_tuple(builder, sig.return_type, [builder.fsub(a[m], b[m]) for m in range(PANEL)])
+
+    return panel_type(panel_type, panel_type), code
+
+
+@intrinsic
 def vector_plus_dot(typing_context, coefficients, j, panel, vector):
     """vector + sum over m of coefficients[j + m] * panel[m]: PANEL modes projected on one row."""
 
@@ -336,14 +401,14 @@ class Modal(NamedTuple):
     row_force_channel: np.ndarray  # (row,) force channel of the row, -1 for a contact or element row
     shapes: np.ndarray  # flat [kg^-1/2]
     shape_start: np.ndarray  # (group,)
-    velocity_from_velocity: np.ndarray  # (mode,) the Newmark step, see integrate.newmark_coefficients
-    velocity_from_displacement: np.ndarray  # (mode,)
-    velocity_from_force: np.ndarray  # (mode,)
-    displacement_from_displacement: np.ndarray  # (mode,)
-    displacement_from_velocity: np.ndarray  # (mode,)
-    displacement_from_force: np.ndarray  # (mode,)
-    loss: np.ndarray  # (mode,) damping * dt / 4: energy lost in a step per (v0 + v1)²
-    compliance: np.ndarray  # flat (contact row, contact row) of each group [m/N]: end displacement per force sum
+    push: np.ndarray  # (mode,) the step of a mode, see schemes.StepCoefficients
+    shift: np.ndarray  # (mode,)
+    decay: np.ndarray  # (mode,)
+    restore: np.ndarray  # (mode,)
+    kick: np.ndarray  # (mode,)
+    loss: np.ndarray  # (mode,) damping / dt: energy lost in a step per displacement²
+    speed: np.ndarray  # (4,) velocity of a row at the end of a step, see row_speed
+    compliance: np.ndarray  # flat (row, row) of each group [m/N]: displacement at the end of a step per force there
     compliance_start: np.ndarray  # (group,)
 
 
@@ -410,18 +475,20 @@ class State(NamedTuple):
     """What one step hands to the next."""
 
     displacement: np.ndarray  # (RATIO, mode, lane) m kg^1/2, the last RATIO steps, the present one last between ticks
-    velocity: np.ndarray  # (mode, lane)
-    row_displacement: np.ndarray  # (row, lane) m, contact and element rows only
-    row_velocity: np.ndarray  # (row, lane) m/s, kept where there are Laws
+    ahead: np.ndarray  # (mode, lane) displacement at the end of the next step if no force acted there
+    change: np.ndarray  # (mode, lane) what of it is the step's own
+    awake: np.ndarray  # (group,) int64: 0 while nothing has moved the group's modes
+    row_displacement: np.ndarray  # (row, lane) m
+    row_velocity: np.ndarray  # (row, lane) m/s, kept where there are Laws; see row_speed
     row_force: np.ndarray  # (row, lane) N, force on the structure at the end of the last step
     row_force_before: np.ndarray  # (row, lane) N, one step earlier (starts the fixed point)
-    row_pull: np.ndarray  # (row, lane) m, compliance of a step times row_force
+    row_pull: np.ndarray  # (row, lane) m, compliance times row_force
     row_pull_before: np.ndarray  # (row, lane) m
     stick: np.ndarray  # (law, lane) N, friction force along the law's tangent
     slider: np.ndarray  # (element, lane) N, force of the slider
     touching: np.ndarray  # (support, lane) 1.0 while in contact
     average: np.ndarray  # (slot, mode + extra channel, lane) first stage of the output filter
-    flag: np.ndarray  # (2,) int64: contact or element forces non-zero at the end of the last step; steps done
+    flag: np.ndarray  # (2,) int64: steps since contacts or elements last bore a force, 0 to 2; steps done
 
 
 class Tally(NamedTuple):
@@ -451,12 +518,10 @@ class Work(NamedTuple):
     """Scratch space of a step."""
 
     free: np.ndarray  # (row, lane) m
-    base: np.ndarray  # (row, lane) m
     displacement: np.ndarray  # (row, lane) m
     force: np.ndarray  # (row, lane) N
     pull: np.ndarray  # (row, lane) m
-    force_sum: np.ndarray  # (row, lane) N
-    next_drive: np.ndarray  # (row, lane) N
+    resultant: np.ndarray  # (support, 2, lane) N
     fresh: np.ndarray  # (row, lane) N, forces of one pass
     stick: np.ndarray  # (law, lane) N
     slider: np.ndarray  # (element, lane) N
@@ -486,22 +551,6 @@ class Output(NamedTuple):
 # The step
 # ----------------------------------------------------------------------------------------------------
 @njit(**INLINE)
-def project_free(modal, g, i, drive, q, v, free):
-    """Add to ``free`` what one panel at (q, v) will displace the contact rows by in a step without contact force."""
-    width = modal.mode_start[g + 1] - modal.mode_start[g]
-    row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
-    at = modal.shape_start[g] + i - modal.mode_start[g]
-    f = panel_zero()
-    for r in range(row_f, row1):
-        f = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(drive, r), f)
-    ahead = panel_plus_scaled(modal.displacement_from_displacement, i, q, panel_zero())
-    ahead = panel_plus_scaled(modal.displacement_from_velocity, i, v, ahead)
-    ahead = panel_plus_scaled(modal.displacement_from_force, i, f, ahead)
-    for r in range(row0, row_f):
-        store(free, r, vector_plus_dot(modal.shapes, at + (r - row0) * width, ahead, load(free, r)))
-
-
-@njit(**INLINE)
 def clear(array):
     """Every vector of an array to zero."""
     for i in range(array.size // LANES):
@@ -509,37 +558,89 @@ def clear(array):
 
 
 @njit(**INLINE)
-def predict(modal, state, drive, free):
-    """Contact-row displacements at the end of the first step of a call if no contact force acted: ``free`` (row, lane)."""
+def project(modal, g, i, panel, rows):
+    """Add what one panel of group g displaces its rows by to ``rows``."""
+    width = modal.mode_start[g + 1] - modal.mode_start[g]
+    at = modal.shape_start[g] + i - modal.mode_start[g]
+    for r in range(modal.row_start[g], modal.row_start[g + 1]):
+        store(rows, r, vector_plus_dot(modal.shapes, at, panel, load(rows, r)))
+        at += width
+
+
+@njit(**INLINE)
+def project_ahead(modal, state, free):
+    """Row displacements at the end of the first step of a call if no force acted there: ``free`` (row, lane)."""
     clear(free)
-    present = (RATIO - 1) * modal.mode_start[-1]
     for g in range(modal.mode_start.size - 1):
         for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
-            q, v = load_panel(state.displacement, present + i), load_panel(state.velocity, i)
-            project_free(modal, g, i, drive, q, v, free)
+            project(modal, g, i, load_panel(state.ahead, i), free)
+
+
+@njit(**INLINE)
+def apply_drive(modal, drive, n, forces, force, free):
+    """Put the drive forces at the end of step n on their rows of ``force``, and what they move there on top of ``free``."""
+    for g in range(modal.row_start.size - 1):
+        row0, row1 = modal.row_start[g], modal.row_start[g + 1]
+        for f in range(modal.force_row_start[g], row1):
+            value = load(drive, n * forces + modal.row_force_channel[f])
+            store(force, f, value)
+            at = modal.compliance_start[g] + f - row0
+            for r in range(row0, row1):
+                store(free, r, fma(spread_from(modal.compliance, at), value, load(free, r)))
+                at += row1 - row0
+
+
+@njit(**INLINE)
+def tally_drive(modal, state, tally, free, force, active):
+    """Displacement of the force rows at the end of the step, which ``free`` becomes there, and the work of the drive."""
+    half = spread(0.5)
+    work = load(tally.input_work, 0)
+    for g in range(modal.row_start.size - 1):
+        row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
+        for f in range(row_f, row1):
+            u = load(free, f)
+            if active:
+                at = modal.compliance_start[g] + (f - row0) * (row1 - row0)
+                for r in range(row0, row_f):
+                    u = fma(spread_from(modal.compliance, at + r - row0), load(force, r), u)
+            moved = u - load(state.row_displacement, f)
+            work = fma(half * (load(force, f) + load(state.row_force, f)), moved, work)
+            store(state.row_displacement, f, u)
+            store(state.row_force, f, load(force, f))
+    store(tally.input_work, 0, work)
 
 
 @njit(**INLINE)
 def yield_to(modal, force, pull):
-    """pull = compliance @ force on the contact rows of every group, each (row, lane); two rows at a time."""
+    """pull = compliance @ force on the contact and element rows of every group, each (row, lane); five rows at a time."""
     for g in range(modal.row_start.size - 1):
         row0, row_f = modal.row_start[g], modal.force_row_start[g]
-        count = row_f - row0
-        for r in range(row0, row_f - 1, 2):
-            a, b = spread(0.0), spread(0.0)
-            at = modal.compliance_start[g] + (r - row0) * count
-            for s in range(count):
+        stride = modal.row_start[g + 1] - row0
+        at = modal.compliance_start[g]
+        r = row0
+        while r + 5 <= row_f:
+            a, b, c, d, e = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+            for s in range(row_f - row0):
                 f = load(force, row0 + s)
-                a = fma(spread(modal.compliance[at + s]), f, a)
-                b = fma(spread(modal.compliance[at + count + s]), f, b)
+                a = fma(spread_from(modal.compliance, at + s), f, a)
+                b = fma(spread_from(modal.compliance, at + stride + s), f, b)
+                c = fma(spread_from(modal.compliance, at + 2 * stride + s), f, c)
+                d = fma(spread_from(modal.compliance, at + 3 * stride + s), f, d)
+                e = fma(spread_from(modal.compliance, at + 4 * stride + s), f, e)
             store(pull, r, a)
             store(pull, r + 1, b)
-        if count % 2 == 1:
+            store(pull, r + 2, c)
+            store(pull, r + 3, d)
+            store(pull, r + 4, e)
+            r += 5
+            at += 5 * stride
+        while r < row_f:
             a = spread(0.0)
-            at = modal.compliance_start[g] + (count - 1) * count
-            for s in range(count):
-                a = fma(spread(modal.compliance[at + s]), load(force, row0 + s), a)
-            store(pull, row_f - 1, a)
+            for s in range(row_f - row0):
+                a = fma(spread_from(modal.compliance, at + s), load(force, row0 + s), a)
+            store(pull, r, a)
+            r += 1
+            at += stride
 
 
 @njit(**INLINE)
@@ -655,8 +756,13 @@ def element_force(laws, state, e, u, v, moved):
 
 @njit(**INLINE)
 def row_speed(modal, state, u, r):
-    """End-of-step velocity of row r: exact for the scheme, whose displacement moves by dt times the mean velocity."""
-    return fma(spread(2.0 / modal.dt), u - load(state.row_displacement, r), spread(-1.0) * load(state.row_velocity, r))
+    """End-of-step velocity of row r from its displacement and what the last step left in row_velocity.
+
+    Newmark: 2 du/dt less the last velocity, exact for the scheme. Exact modal step: second-order backward difference
+    1.5 du/dt - 0.5 (du/dt of the last step).
+    """
+    moved = u - load(state.row_displacement, r)
+    return fma(spread(modal.speed[0]), moved, spread(modal.speed[1]) * load(state.row_velocity, r))
 
 
 @njit(**INLINE)
@@ -694,18 +800,15 @@ def all_forces(modal, contact, laws, state, work, u):
 @njit(**INLINE)
 def solve_laws(contact, laws, modal, state, tally, work):
     """solve_contact where there are Laws: the same fixed point over contact and element rows. True if any lane may bear a force."""
-    free, base, u, force, pull = work.free, work.base, work.displacement, work.force, work.pull
+    free, u, force, pull = work.free, work.displacement, work.force, work.pull
     zero, one, half = spread(0.0), spread(1.0), spread(0.5)
     opened = one if laws.row.size > 0 else zero
-    for g in range(modal.row_start.size - 1):
-        for r in range(modal.row_start[g], modal.force_row_start[g]):
-            store(base, r, load(free, r) + load(state.row_pull, r))
     for p in range(contact.row_1.size):
-        _, _, square, gap = reach(contact, p, load(base, contact.row_1[p]), load(base, contact.row_2[p]))
+        _, _, square, gap = reach(contact, p, load(free, contact.row_1[p]), load(free, contact.row_2[p]))
         opened = select_greater(square, gap * gap, one, opened)
     for k in range(laws.point.size):
         at = laws.point[k]
-        _, _, _, p = penetration(contact, laws, k, load(base, contact.row_1[at]), load(base, contact.row_2[at]))
+        _, _, _, p = penetration(contact, laws, k, load(free, contact.row_1[at]), load(free, contact.row_2[at]))
         opened = select_greater(p, zero, one, opened)
         store(work.stick, k, zero)
     near = any_greater(opened, half)
@@ -716,7 +819,7 @@ def solve_laws(contact, laws, modal, state, tally, work):
             move = select_greater(opened, half, move + move - load(state.row_pull_before, r), zero)
             store(force, r, f)
             store(pull, r, move)
-            store(u, r, load(base, r) + move)
+            store(u, r, load(free, r) + move)
     if not near:
         return False
     change, size = zero, zero
@@ -742,7 +845,7 @@ def solve_laws(contact, laws, modal, state, tally, work):
         yield_to(modal, force, pull)
         for g in range(modal.row_start.size - 1):
             for r in range(modal.row_start[g], modal.force_row_start[g]):
-                store(u, r, load(base, r) + load(pull, r))
+                store(u, r, load(free, r) + load(pull, r))
         opened = select_greater(moved, tolerance * size, opened, zero)
         if not any_greater(opened, half):
             break
@@ -790,52 +893,40 @@ def tally_laws(modal, contact, laws, state, tally, work):
 
 @njit(**COMPILED)
 def begin(modal, contact, laws, state, work):
-    """Rows, forces and their pull of an initial state.displacement (its last step) and state.velocity: fills state.row_*."""
-    zero = spread(0.0)
-    present = (RATIO - 1) * modal.mode_start[-1]
-    for rows in (state.row_displacement, state.row_velocity, work.fresh):
-        clear(rows)
-    for g in range(modal.row_start.size - 1):
-        width = modal.mode_start[g + 1] - modal.mode_start[g]
-        for i in range(0, width, PANEL):
-            q = load_panel(state.displacement, present + modal.mode_start[g] + i)
-            v = load_panel(state.velocity, modal.mode_start[g] + i)
-            for r in range(modal.row_start[g], modal.force_row_start[g]):
-                at = modal.shape_start[g] + (r - modal.row_start[g]) * width + i
-                store(state.row_displacement, r, vector_plus_dot(modal.shapes, at, q, load(state.row_displacement, r)))
-                # turned, so that row_speed at rest in this step gives the velocity itself
-                store(state.row_velocity, r, vector_plus_dot(modal.shapes, at, v, load(state.row_velocity, r)))
-    for r in range(state.row_velocity.size // LANES):
+    """Forces of contacts and elements, and their pull, at the initial state.row_displacement and row_velocity: fills state.row_*."""
+    rows = state.row_velocity.size // LANES
+    clear(work.fresh)
+    for r in range(rows):
         store(work.displacement, r, load(state.row_displacement, r))
-        store(state.row_velocity, r, zero - load(state.row_velocity, r))
+        # so that row_speed at rest in this step gives the velocity itself
+        store(state.row_velocity, r, load(state.row_velocity, r) / spread(modal.speed[1]))
     all_forces(modal, contact, laws, state, work, work.displacement)
-    for r in range(state.row_velocity.size // LANES):
-        store(state.row_velocity, r, zero - load(state.row_velocity, r))
+    for r in range(rows):
+        store(state.row_velocity, r, load(state.row_velocity, r) * spread(modal.speed[1]))
         store(state.row_force, r, load(work.fresh, r))
         store(state.row_force_before, r, load(work.fresh, r))
     yield_to(modal, state.row_force, state.row_pull)
     yield_to(modal, state.row_force_before, state.row_pull_before)
-    state.flag[0] = 1
+    state.flag[0] = 0
 
 
 @njit(**INLINE)
-def solve_contact(contact, modal, state, tally, free, base, u, force, pull):
+def solve_contact(contact, modal, state, tally, free, u, force, pull):
     """End-of-step contact forces and contact-row displacements, implicit; True if any lane may be in contact.
 
-    Solves u = free + G (f_before + f(u)), G the compliance of a step, by fixed point, lane by lane: a lane whose forces
-    have settled is frozen, so it does not see how many passes its neighbours need. The contraction factor is
-    checked before the run (integrate.contact_contraction). Products with G are kept from step to step (``pull``).
+    Solves u = free + G f(u), G the compliance of a step, by fixed point, lane by lane: a lane whose forces have settled
+    is frozen, so it does not see how many passes its neighbours need. The contraction factor is checked before the run
+    (integrate.contact_contraction). Products with G are kept from step to step (``pull``). Where nothing is near and has
+    not been for two steps, nothing is written: u is free, and all forces are zero as they were.
     """
     zero, one, half = spread(0.0), spread(1.0), spread(0.5)
     opened = zero
     for p in range(contact.row_1.size):
-        r1, r2 = contact.row_1[p], contact.row_2[p]
-        b1, b2 = load(free, r1) + load(state.row_pull, r1), load(free, r2) + load(state.row_pull, r2)
-        store(base, r1, b1)
-        store(base, r2, b2)
-        _, _, square, gap = reach(contact, p, b1, b2)
+        _, _, square, gap = reach(contact, p, load(free, contact.row_1[p]), load(free, contact.row_2[p]))
         opened = select_greater(square, gap * gap, one, opened)
     near = any_greater(opened, half)
+    if not near and state.flag[0] >= QUIET:
+        return False
     for p in range(contact.row_1.size):
         for r in (contact.row_1[p], contact.row_2[p]):
             # start from the forces of the last two steps, extrapolated
@@ -844,7 +935,7 @@ def solve_contact(contact, modal, state, tally, free, base, u, force, pull):
             move = select_greater(opened, half, move + move - load(state.row_pull_before, r), zero)
             store(force, r, f)
             store(pull, r, move)
-            store(u, r, load(base, r) + move)
+            store(u, r, load(free, r) + move)
     if not near:
         return False
     change, size = zero, zero
@@ -865,13 +956,13 @@ def solve_contact(contact, modal, state, tally, free, base, u, force, pull):
         yield_to(modal, force, pull)
         for p in range(contact.row_1.size):
             for r in (contact.row_1[p], contact.row_2[p]):
-                store(u, r, load(base, r) + load(pull, r))
+                store(u, r, load(free, r) + load(pull, r))
         opened = select_greater(moved, tolerance * size, opened, zero)
         if not any_greater(opened, half):
             break
     worst = load(tally.residual, 0)
     relative = select_greater(size, zero, change / size, zero)
-    store(tally.residual, 0, select_greater(relative, worst, relative, worst))
+    store(tally.residual, 0, larger(relative, worst))
     return True
 
 
@@ -893,8 +984,8 @@ def impact_speed(modal, contact, state, u, force, first, s):
 
 
 @njit(**INLINE)
-def tally_contact(modal, contact, state, tally, u, force):
-    """Contact work and statistics of one step; state.row_* still hold the start of the step. 1 if any lane touches."""
+def tally_contact(modal, contact, state, tally, u, force, resultants):
+    """Contact work and statistics of one step, forces of the supports; state.row_* still hold its start. 1 if any lane touches."""
     zero, one, half = spread(0.0), spread(1.0), spread(0.5)
     work = load(tally.contact_work, 0)
     touched = 0
@@ -916,6 +1007,8 @@ def tally_contact(modal, contact, state, tally, u, force):
             borne = borne + magnitude(f1) + magnitude(f2)
             sum1, sum2 = sum1 + f1, sum2 + f2
             p += 1
+        store(resultants, 2 * s, sum1)
+        store(resultants, 2 * s + 1, sum2)
         contact_now = select_greater(borne, zero, one, zero)
         if any_greater(contact_now, half):
             touched = 1
@@ -940,38 +1033,36 @@ def tally_contact(modal, contact, state, tally, u, force):
 
 
 @njit(**INLINE)
-def update(modal, state, tally, force_sum, next_drive, in_contact, phase, free):
-    """Advance the modes by one step under the row forces and predict the next step's ``free``; sum the energies."""
-    half_dt = spread(0.5 * modal.dt)
-    zero, half = spread(0.0), spread(0.5)
+def update(modal, state, tally, force, in_contact, phase, free):
+    """Advance the modes by one step under the row forces at its end and project what comes next: ``free`` (row, lane)."""
     modes = modal.mode_start[-1]
     before, after = ((phase + RATIO - 1) % RATIO) * modes, phase * modes
-    work, lost = load(tally.input_work, 0), load(tally.dissipated, 0)
+    lost = load(tally.dissipated, 0)
     clear(free)
     for g in range(modal.mode_start.size - 1):
+        if state.awake[g] == 0:
+            continue
         first = modal.mode_start[g]
         width = modal.mode_start[g + 1] - first
-        row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
-        begin = row0 if in_contact else row_f
+        row0, row1 = modal.row_start[g], modal.row_start[g + 1]
+        begin = row0 if in_contact else modal.force_row_start[g]
         for i in range(first, first + width, PANEL):
             at = modal.shape_start[g] + i - first
             f = panel_zero()
             for r in range(begin, row1):
-                f = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(force_sum, r), f)
-            q0, v0 = load_panel(state.displacement, before + i), load_panel(state.velocity, i)
-            v = panel_plus_scaled(modal.velocity_from_velocity, i, v0, panel_zero())
-            v = panel_plus_scaled(modal.velocity_from_displacement, i, q0, v)
-            v = panel_plus_scaled(modal.velocity_from_force, i, f, v)
-            twice_mean = panel_sum(v0, v)
-            q = panel_plus_common(half_dt, twice_mean, q0)
+                f = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(force, r), f)
+            q = panel_plus_scaled(modal.push, i, f, load_panel(state.ahead, i))
+            moved = panel_difference(q, load_panel(state.displacement, before + i))
+            lost = vector_plus_dot(modal.loss, i, panel_product(moved, moved), lost)
             store_panel(state.displacement, after + i, q)
-            store_panel(state.velocity, i, v)
-            lost = lost + vector_plus_dot(modal.loss, i, panel_product(twice_mean, twice_mean), zero)
-            for r in range(row_f, row1):
-                moved = vector_plus_dot(modal.shapes, at + (r - row0) * width, twice_mean, zero) * half_dt
-                work = fma(half * load(force_sum, r), moved, work)
-            project_free(modal, g, i, next_drive, q, v, free)
-    store(tally.input_work, 0, work)
+            q = panel_plus_scaled(modal.shift, i, f, q)
+            change = panel_plus_scaled(modal.kick, i, f, panel_zero())
+            change = panel_plus_scaled(modal.decay, i, load_panel(state.change, i), change)
+            change = panel_plus_scaled(modal.restore, i, q, change)
+            store_panel(state.change, i, change)
+            ahead = panel_sum(q, change)
+            store_panel(state.ahead, i, ahead)
+            project(modal, g, i, ahead, free)
     store(tally.dissipated, 0, lost)
 
 
@@ -980,35 +1071,32 @@ def average_modes(modal, state, output, tick):
     """Feed the modal displacements of the RATIO steps of a tick to the first stage of the output filter."""
     modes = modal.mode_start[-1]
     extras = state.average.size // (SLOTS * LANES)
-    for i in range(0, modes, PANEL):
+    for g in range(modal.mode_start.size - 1):
+        if state.awake[g] == 0:
+            continue
         for slot in range(SLOTS):
-            at = ((tick + slot) % SLOTS) * extras + i
-            total = load_panel(state.average, at)
-            for phase in range(RATIO):
-                weight = spread(output.weights[phase, slot])
-                total = panel_plus_common(weight, load_panel(state.displacement, phase * modes + i), total)
-            store_panel(state.average, at, total)
+            at = ((tick + slot) % SLOTS) * extras
+            for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
+                total = load_panel(state.average, at + i)
+                for phase in range(RATIO):
+                    weight = spread(output.weights[phase, slot])
+                    total = panel_plus_common(weight, load_panel(state.displacement, phase * modes + i), total)
+                store_panel(state.average, at + i, total)
 
 
 @njit(**INLINE)
-def filter_forces(modal, contact, state, output, force, drive, end, forces, touched, phase, tick):
-    """Feed support force resultants and the drive forces (from vector ``end`` of drive) to the first filter stage."""
-    modes = modal.mode_start[-1]
+def filter_forces(modal, state, output, resultants, drive, end, forces, touched, phase, tick):
+    """Feed the supports' resultants and the drive forces (from vector ``end`` of drive) to the first filter stage."""
     extras = state.average.size // (SLOTS * LANES)
     for slot in range(SLOTS):
-        weight = output.weights[phase, slot]
-        if weight == 0.0:
-            continue
-        a = ((tick + slot) % SLOTS) * extras + modes
-        w = spread(weight)
+        a = ((tick + slot) % SLOTS) * extras + modal.mode_start[-1]
+        w = spread(output.weights[phase, slot])
         if touched != 0:
-            for p in range(contact.row_1.size):
-                at = a + 2 * contact.support[p]
-                store(state.average, at, fma(w, load(force, contact.row_1[p]), load(state.average, at)))
-                store(state.average, at + 1, fma(w, load(force, contact.row_2[p]), load(state.average, at + 1)))
-        at = a + 2 * output.extra_support
+            for c in range(2 * output.extra_support):
+                store(state.average, a + c, fma(w, load(resultants, c), load(state.average, a + c)))
+        a += 2 * output.extra_support
         for c in range(forces):
-            store(state.average, at + c, fma(w, load(drive, end + c), load(state.average, at + c)))
+            store(state.average, a + c, fma(w, load(drive, end + c), load(state.average, a + c)))
 
 
 @njit(**INLINE)
@@ -1041,6 +1129,8 @@ def emit(modal, state, tally, output, tick, at_tick, channels):
     column = output.column + at_tick
     clear(channels)
     for g in range(modal.mode_start.size - 1):
+        if state.awake[g] == 0:
+            continue
         start, middle, end = output.channel_start[g], output.stress_entry[g], output.channel_start[g + 1]
         project_channels(modal, g, output, state.average, base, (start, middle), channels)
         # Stresses as they are at this step: their statistics are not for the record's filter to take the impacts from.
@@ -1060,88 +1150,89 @@ def emit(modal, state, tally, output, tick, at_tick, channels):
 
 
 @njit(**INLINE)
-def sum_drive(modal, drive, n, forces, out):
-    """Sum of the drive forces at both ends of step n on their rows: ``out`` (row, lane)."""
-    for r in range(modal.row_force_channel.size):
-        c = modal.row_force_channel[r]
-        if c >= 0:
-            store(out, r, load(drive, n * forces + c) + load(drive, (n + 1) * forces + c))
-
-
-@njit(**INLINE)
-def keep_step(modal, contact, laws, state, trace, u, force, pull):
-    """Make the end of the step the start of the next, and put it on the trace."""
+def keep_step(modal, contact, laws, state, trace, u, force, pull, quiet):
+    """Make the end of the step the start of the next, and put it on the trace. quiet: no force, neither now nor before."""
     special = laws.point.size + laws.row.size > 0
     n = state.flag[1]
     for g in range(modal.row_start.size - 1):
         for r in range(modal.row_start[g], modal.force_row_start[g]):
-            ur, f = load(u, r), load(force, r)
-            if special:
-                store(state.row_velocity, r, row_speed(modal, state, ur, r))
+            ur = load(u, r)
             if n < trace.steps:
                 store(trace.displacement, r * trace.steps + n, ur)
-                store(trace.force, r * trace.steps + n, f)
+                store(trace.force, r * trace.steps + n, load(force, r))
+            if special:
+                moved = ur - load(state.row_displacement, r)
+                memory = spread(modal.speed[3]) * load(state.row_velocity, r)
+                store(state.row_velocity, r, fma(spread(modal.speed[2]), moved, memory))
             store(state.row_displacement, r, ur)
-            store(state.row_force_before, r, load(state.row_force, r))
-            store(state.row_force, r, f)
-            store(state.row_pull_before, r, load(state.row_pull, r))
-            store(state.row_pull, r, load(pull, r))
+            if not quiet:
+                store(state.row_force_before, r, load(state.row_force, r))
+                store(state.row_force, r, load(force, r))
+                store(state.row_pull_before, r, load(state.row_pull, r))
+                store(state.row_pull, r, load(pull, r))
+
+
+@njit(**INLINE)
+def within_limit(modal, contact, state, tally):
+    """Sum the squares of the rows; False when one is lost: beyond the limit, or not a number."""
+    zero, one, half, limit = spread(0.0), spread(1.0), spread(0.5), spread(contact.limit)
+    lost = zero
+    for g in range(modal.row_start.size - 1):
+        for r in range(modal.row_start[g], modal.force_row_start[g]):
+            u = load(state.row_displacement, r)
+            store(tally.square_displacement, r, fma(u, u, load(tally.square_displacement, r)))
+            lost = lost + select_greater(limit, magnitude(u), zero, one)
+    return not any_greater(lost, half)
 
 
 @njit(**COMPILED)
 def march(modal, contact, laws, state, tally, output, trace, work, drive):
-    """Integrate whole ticks of RATIO steps; ``drive`` (step + 2, force_channel, lane) N: the force at the
-    start of the first step, at the end of every step, and one more.
+    """Integrate whole ticks of RATIO steps; ``drive`` (step, force_channel, lane) N: the force at the end of every step.
 
-    Newmark average acceleration on the modes, contact implicit. Fills output.values (one column per tick: the
-    filter output centred RATIO steps before the tick), adds to ``tally`` and advances ``state`` in place.
+    One linear step per mode (schemes.py), contacts and elements implicit. Fills output.values (one column per tick: the
+    filter output centred BEHIND ticks before), adds to ``tally`` and advances ``state`` in place.
     Returns the number of steps done; fewer than asked means that the run diverged there.
     """
+    mode = flush_subnormals()
     forces = drive.shape[1]
-    steps = drive.shape[0] - 2
-    free, base, u, force, pull = work.free, work.base, work.displacement, work.force, work.pull
-    force_sum, next_drive = work.force_sum, work.next_drive
-    limit = spread(contact.limit)
-    zero, half, one = spread(0.0), spread(0.5), spread(1.0)
+    free, u, force, pull, resultant = work.free, work.displacement, work.force, work.pull, work.resultant
     special = laws.point.size + laws.row.size > 0
-    sum_drive(modal, drive, 0, forces, next_drive)
-    predict(modal, state, next_drive, free)
-    for at_tick in range(steps // RATIO):
+    project_ahead(modal, state, free)
+    for at_tick in range(drive.shape[0] // RATIO):
         tick = state.flag[1] // RATIO
         for phase in range(RATIO):
             n = at_tick * RATIO + phase
-            sum_drive(modal, drive, n, forces, force_sum)
-            sum_drive(modal, drive, n + 1, forces, next_drive)
-            pushed = state.flag[0] != 0
+            apply_drive(modal, drive, n, forces, force, free)
             if special:
                 active = solve_laws(contact, laws, modal, state, tally, work)
             else:
-                active = solve_contact(contact, modal, state, tally, free, base, u, force, pull)
+                active = solve_contact(contact, modal, state, tally, free, u, force, pull)
+            quiet = not special and not active and state.flag[0] >= QUIET
             touched = 0
-            if active or pushed:
-                touched = tally_contact(modal, contact, state, tally, u, force)
+            if active or state.flag[0] == 0:
+                touched = tally_contact(modal, contact, state, tally, u, force, resultant)
                 if special:
                     tally_laws(modal, contact, laws, state, tally, work)
                     if laws.row.size > 0:
                         touched = 1
-                for g in range(modal.row_start.size - 1):
-                    for r in range(modal.row_start[g], modal.force_row_start[g]):
-                        store(force_sum, r, load(state.row_force, r) + load(force, r))
-            update(modal, state, tally, force_sum, next_drive, active or pushed, phase, free)
-            filter_forces(modal, contact, state, output, force, drive, (n + 1) * forces, forces, touched, phase, tick)
-            keep_step(modal, contact, laws, state, trace, u, force, pull)
-            state.flag[0] = touched
+            if active:
+                state.awake[:] = 1
+            tally_drive(modal, state, tally, free, force, active)
+            if quiet:
+                keep_step(modal, contact, laws, state, trace, free, force, pull, True)
+            else:
+                keep_step(modal, contact, laws, state, trace, u, force, pull, False)
+            update(modal, state, tally, force, active, phase, free)
+            filter_forces(modal, state, output, resultant, drive, n * forces, forces, touched, phase, tick)
+            state.flag[0] = 0 if touched != 0 else min(state.flag[0] + 1, QUIET)
             state.flag[1] += 1
-        for g in range(modal.row_start.size - 1):
-            for r in range(modal.row_start[g], modal.force_row_start[g]):
-                ur = load(u, r)
-                store(tally.square_displacement, r, fma(ur, ur, load(tally.square_displacement, r)))
-                lost = select_greater(limit, magnitude(ur), zero, one)  # a NaN is lost too
-                if any_greater(lost, half):
-                    return (at_tick + 1) * RATIO
+        if not within_limit(modal, contact, state, tally):
+            restore_mode(mode)
+            return (at_tick + 1) * RATIO
         average_modes(modal, state, output, tick)
         emit(modal, state, tally, output, tick, at_tick, work.channels)
-    return steps
+    restore_mode(mode)
+    return drive.shape[0]
 
 
 @njit(**COMPILED)

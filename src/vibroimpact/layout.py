@@ -1,9 +1,12 @@
 """The reduced model laid out for the kernel: uncoupled groups of modes, panels, rows and lanes."""
 
+from functools import cache, cached_property
+
 import numpy as np
 
-from .kernels import CHANNEL_BLOCK, LANES, PANEL, RATIO, SLOTS, Contact, Laws, Modal, Output, State, Tally, Trace, Work
+from .kernels import CHANNEL_BLOCK, LANES, PANEL, QUIET, RATIO, SLOTS, Contact, Laws, Modal, Output, State, Tally, Trace, Work
 from .model import ModalModel
+from .schemes import StepCoefficients, step_coefficients
 
 FIXED_POINT_TOLERANCE = 1e-4
 FIXED_POINT_PASSES = 40
@@ -19,8 +22,8 @@ class ModalLayout:
     there is one, the dead load as a channel of constant 1.
     """
 
-    def __init__(self, model: ModalModel):
-        self.model = model
+    def __init__(self, model: ModalModel, scheme: str):
+        self.model, self.scheme = model, scheme
         self.drive_shapes = model.drive_shapes
         if np.any(model.constant_force):
             self.drive_shapes = np.column_stack([model.drive_shapes, model.constant_force])
@@ -53,7 +56,7 @@ class ModalLayout:
 
     def modal(self, dt: float) -> Modal:
         """The kernel's Modal for a step of dt [s]."""
-        newmark = newmark_coefficients(self.model.omega, self.model.damping, dt)
+        step = self.step(dt)
         row_start, force_row_start, channels = [0], [], []
         shapes, shape_start, compliance, compliance_start = [], [], [], []
         for g, (modes, driven) in enumerate(self.groups):
@@ -61,11 +64,11 @@ class ModalLayout:
             rows = np.zeros((len(implicit) + len(driven), self.mode_start[g + 1] - self.mode_start[g]))
             for r, shape in enumerate([*implicit, *self.drive_shapes[np.ix_(modes, driven)].T]):
                 rows[r, : len(modes)] = shape
-            touched = rows[: len(implicit), : len(modes)]
+            moved = rows[:, : len(modes)]
             shape_start.append(sum(map(np.size, shapes)))
             compliance_start.append(sum(map(np.size, compliance)))
             shapes.append(rows.ravel())
-            compliance.append(((touched * newmark["displacement_from_force"][modes]) @ touched.T).ravel())
+            compliance.append(((moved * step.push[modes]) @ moved.T).ravel())
             force_row_start.append(row_start[-1] + len(implicit))
             row_start.append(row_start[-1] + len(rows))
             channels += [-1] * len(implicit) + driven
@@ -79,8 +82,25 @@ class ModalLayout:
             shape_start=np.array(shape_start, np.int64),
             compliance=np.concatenate([*compliance, np.zeros(1)]),
             compliance_start=np.array(compliance_start, np.int64),
-            **{name: self.per_mode(values) for name, values in newmark.items()},
+            speed=step.speed,
+            **{name: self.per_mode(getattr(step, name)) for name in ("push", "shift", "decay", "restore", "kick", "loss")},
         )
+
+    @cache  # noqa: B019 (a layout lives as long as its run)
+    def step(self, dt: float) -> StepCoefficients:
+        """The step of the model's modes."""
+        return step_coefficients(self.scheme, self.model.omega, self.model.damping, dt)
+
+    @cached_property
+    def row_shapes(self) -> np.ndarray:
+        """Shape of every row over the model's modes: (row, mode)."""
+        out = np.zeros((self._sizes()[0], self.model.omega.size))
+        row = 0
+        for (modes, driven), implicit in zip(self.groups, self.implicit_shapes, strict=True):
+            for shape in [*implicit.values(), *self.drive_shapes[np.ix_(modes, driven)].T]:
+                out[row, modes] = shape
+                row += 1
+        return out
 
     def contact_rows(self) -> np.ndarray:
         """Row of each contact point and direction: (contact_point, 2) int."""
@@ -169,7 +189,9 @@ class ModalLayout:
         extras = 2 * supports + self.drive_shapes.shape[1]
         return State(
             displacement=_aligned((RATIO, self.padded, LANES)),
-            velocity=_aligned((self.padded, LANES)),
+            ahead=_aligned((self.padded, LANES)),
+            change=_aligned((self.padded, LANES)),
+            awake=np.array([len(driven) > 0 for _, driven in self.groups], np.int64),
             row_displacement=_aligned((rows, LANES)),
             row_velocity=_aligned((rows, LANES)),
             row_force=_aligned((rows, LANES)),
@@ -180,7 +202,7 @@ class ModalLayout:
             slider=_aligned((elements, LANES)),
             touching=_aligned((supports, LANES)),
             average=_aligned((SLOTS, self.padded + extras, LANES)),
-            flag=np.zeros(2, np.int64),
+            flag=np.array([QUIET, 0], np.int64),
         )
 
     def tally(self) -> Tally:
@@ -199,7 +221,7 @@ class ModalLayout:
         laws, elements = self._law_sizes()
         model = self.model
         channels = model.sensor_shapes.shape[1] + model.line_shapes.shape[1] + 2 * model.stress_shapes.shape[1] + 1
-        counts = {"channels": channels, "stick": laws, "held_stick": laws, "slider": elements, "held_slider": elements}
+        counts = {"channels": channels, "resultant": 2 * len(model.support_names), "stick": laws, "held_stick": laws, "slider": elements, "held_slider": elements}
         return Work(**{name: _aligned((counts.get(name, rows), LANES)) for name in Work._fields})
 
     def output(self, weights: np.ndarray, columns: int) -> Output:
@@ -258,27 +280,3 @@ def _aligned(shape):
     raw = np.zeros(count + 8)
     first = (-raw.ctypes.data // 8) % 8
     return raw[first : first + count].reshape(shape)
-
-
-def newmark_coefficients(omega: np.ndarray, damping: np.ndarray, dt: float) -> dict[str, np.ndarray]:
-    """Newmark average acceleration, no numerical dissipation, as one linear map per mode: dict of (mode,) arrays.
-
-    With f = f0 + f1 the sum of the modal forces at both ends of the step,
-        v1 = velocity_from_velocity v0 + velocity_from_displacement q0 + velocity_from_force f
-        q1 = q0 + dt/2 (v0 + v1)
-           = displacement_from_displacement q0 + displacement_from_velocity v0 + displacement_from_force f.
-    Source: Newmark 1959 with beta = 1/4, gamma = 1/2, the acceleration eliminated by the equation of motion.
-    """
-    stiff, drag = (0.5 * dt * omega) ** 2, 0.5 * dt * damping
-    scale = 1.0 / (1.0 + drag + stiff)
-    velocity = {
-        "velocity_from_velocity": (1.0 - drag - stiff) * scale,
-        "velocity_from_displacement": -dt * omega**2 * scale,
-        "velocity_from_force": 0.5 * dt * scale,
-    }
-    return velocity | {
-        "displacement_from_displacement": 1.0 + 0.5 * dt * velocity["velocity_from_displacement"],
-        "displacement_from_velocity": 0.5 * dt * (1.0 + velocity["velocity_from_velocity"]),
-        "displacement_from_force": 0.5 * dt * velocity["velocity_from_force"],
-        "loss": 0.25 * dt * damping,
-    }

@@ -26,6 +26,7 @@ def simulate_cases(config, model: ModalModel, cases: list[Case]):
         config.record.sampling_frequency_Hz,
         config.integration.start_up_s,
         config.record.duration_s,
+        config.integration.scheme,
     )
     forces = {seed: seed_force(config, schedule, seed) for seed in sorted({case.seed for case in cases})}
     for first in range(0, len(cases), LANES):

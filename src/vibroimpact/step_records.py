@@ -21,7 +21,8 @@ def trace_cases(config, model: ModalModel, cases: list[Case]):
         batch = cases[first : first + LANES]
         forces = np.stack([case.load_rms_N * _unit_force(config, case.seed, steps, rate) for case in batch], axis=-1)[:, None]
         offset = np.zeros((model.support_of_point.size, 2, len(batch)))
-        traces = trace_lanes(model, rate, steps, np.array([case.gap_m for case in batch]), offset, lambda at, count: forces[at : at + count])  # noqa: B023
+        traces = trace_lanes(model, rate, steps, np.array([case.gap_m for case in batch]), offset, 
+                             lambda at, count: forces[at : at + count], config.integration.scheme)  # noqa: B023
         for lane, case in enumerate(batch):
             yield case, _dataset(config, model, traces, lane, case)
 

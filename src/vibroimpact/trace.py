@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import kernels
-from .integrate import IntegrationError, checked_contraction, start_state, to_lanes
+from .integrate import IntegrationError, checked_contraction, modal_energies, start_state, to_lanes
 from .kernels import RATIO, SLOTS
 from .layout import ModalLayout
 from .model import ModalModel
@@ -32,35 +32,35 @@ class Traces:
     slip_work: np.ndarray
 
 
-def trace_lanes(model: ModalModel, steps_per_second: float, steps: int, gap, imperfection, drive) -> Traces:
+def trace_lanes(model: ModalModel, steps_per_second: float, steps: int, gap, imperfection, drive, scheme: str = "newmark") -> Traces:
     """Integrate up to LANES cases side by side from their initial state and keep every step.
 
     steps: rounded up to a multiple of RATIO; gap (case,) m; imperfection (contact_point, 2, case) m; drive: function (first, count) ->
     (count, force_channel, case) N at the times first / steps_per_second, ...; index 0 is the initial state's.
     Raises IntegrationError.
     """
-    checked_contraction(model, steps_per_second)
+    checked_contraction(model, steps_per_second, scheme)
     cases, ticks = np.size(gap), -(-steps // RATIO)
-    layout = ModalLayout(model)
+    layout = ModalLayout(model, scheme)
     modal, lanes_gap = layout.modal(1.0 / steps_per_second), to_lanes(gap, 1.0)
     contact, laws = layout.contact(lanes_gap, to_lanes(imperfection, 0.0)), layout.laws(lanes_gap)
     state, tally, work = layout.state(), layout.tally(), layout.work()
-    start_state(layout, modal, contact, laws, state, work)
-    start = state.row_displacement.copy(), state.row_force.copy()
-    before = _mechanical(layout, state), stored_energy(contact, laws, state)
-    trace, output = layout.trace(ticks * RATIO), layout.output(np.zeros((RATIO, SLOTS)), ticks)
-    force = np.zeros((ticks * RATIO + 2, layout.drive_shapes.shape[1], kernels.LANES))
     channels = model.drive_shapes.shape[1]
-    force[:, :channels, :cases] = drive(0, ticks * RATIO + 2)
+    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], kernels.LANES))
+    force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
-    done = kernels.march(modal, contact, laws, state, tally, output, trace, work, force)
+    start_state(layout, modal, contact, laws, state, work, force[0])
+    start = state.row_displacement.copy(), state.row_force.copy()
+    before = sum(modal_energies(layout, modal.dt, state)), stored_energy(contact, laws, state)
+    trace, output = layout.trace(ticks * RATIO), layout.output(np.zeros((RATIO, SLOTS)), ticks)
+    done = kernels.march(modal, contact, laws, state, tally, output, trace, work, np.ascontiguousarray(force[1:]))
     if done < ticks * RATIO:
         raise IntegrationError(f"diverged at t = {done / steps_per_second:.4f} s: raise integration.steps_per_second or check forces and stiffnesses")
     displacement, pushed = (np.concatenate([first[:, None], rest], axis=1)[..., :cases].transpose(2, 0, 1)
                             for first, rest in zip(start, (trace.displacement, trace.force), strict=True))  # fmt: skip
     contacts, elements = layout.contact_rows(), layout.element_rows()
     energy = {name: getattr(tally, name)[0, :cases] for name in ("input_work", "dissipated", "contact_work")}
-    energy["mechanical"] = (_mechanical(layout, state) - before[0])[:cases]
+    energy["mechanical"] = (sum(modal_energies(layout, modal.dt, state)) - before[0])[:cases]
     energy["stored"] = (stored_energy(contact, laws, state) - before[1])[:cases]
     return Traces(
         time=np.arange(ticks * RATIO + 1) / steps_per_second,
@@ -72,9 +72,3 @@ def trace_lanes(model: ModalModel, steps_per_second: float, steps: int, gap, imp
         sliding_work=tally.sliding_work[:, :cases].T,
         slip_work=tally.slip_work[:, :cases].T,
     )
-
-
-def _mechanical(layout, state):
-    """Kinetic and elastic energy of the modes (lane,) J."""
-    omega = layout.per_mode(layout.model.omega)[:, None]
-    return 0.5 * (state.velocity**2 + (omega * state.displacement[-1]) ** 2).sum(axis=0)
