@@ -27,7 +27,7 @@ from benchmarks.pairs import Clock, cpu_seconds  # noqa: E402
 from benchmarks.peak import PeakRate  # noqa: E402
 from benchmarks.table import COLUMNS, GROWTH_COLUMNS, PEER_COLUMNS, benchmark_rows, cores_rows, growth_rows, write_csv  # noqa: E402
 
-QUICK = Clock(repeats=2, one_run_s=0.5, batch_s=0.25, peer_scale=0.25)
+QUICK = Clock(repeats=2, ours_s=0.1, peer_scale=0.25)
 PEAK_REPEATS = 3
 
 

@@ -4,7 +4,7 @@ import importlib
 from dataclasses import dataclass, replace
 
 from benchmarks.check import NAMES, Agreement, agreement
-from benchmarks.ours import contact_fraction, march_ours, schedule_of
+from benchmarks.ours import contact_fraction
 from benchmarks.pairs import measure_pairs
 from benchmarks.peer import PeerAbsent
 from benchmarks.problem import FREE_MODES, LOAD_N, SMALL_BASIS, never_touching, tube_problem
@@ -74,11 +74,7 @@ def _verdict(peer, problem, touches):
 
 def _row(problem, peer, seconds, found):
     """Return the row of PEER_COLUMNS."""
-    return {"case": problem.name, "peer": peer.name, "version": peer.version, "simulated_s": seconds, "contact_fraction": _touching(problem, seconds),
-            **{name: getattr(found, name) for name in NAMES}, **{f"{name}_tolerance": getattr(found.tolerance, name) for name in NAMES},
+    return {"case": problem.name, "peer": peer.name, "version": peer.version, "simulated_s": seconds,
+            "contact_fraction": contact_fraction(problem, seconds), **{name: getattr(found, name) for name in NAMES},
+            **{f"{name}_tolerance": getattr(found.tolerance, name) for name in NAMES},
             "agrees": "yes" if found.passed else "no", "failure": found.failure, "note": peer.note}  # fmt: skip
-
-
-def _touching(problem, seconds):
-    """Return the fraction of time that a support bears a force in a run of `seconds`."""
-    return contact_fraction(march_ours(problem, problem.force(seconds), schedule_of(seconds))[0])

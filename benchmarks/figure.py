@@ -28,7 +28,8 @@ def draw(rows, path):
             axis.barh(place, ratio - 1.0, BAR / len(quantities), 1.0, color=COLOURS[number % len(COLOURS)], label=f"ours: {quantity}")
             axis.errorbar(ratio, place, xerr=[ratio - low, high - ratio], fmt="none", ecolor="black", capsize=2.0, linewidth=0.9)
             for row, at in zip(chosen, place, strict=True):
-                axis.annotate(three_digits(row["ratio_median"]), (max(row["ratio_max"], 1.0), at), (4.0, 0.0), textcoords="offset points", va="center", fontsize=7.5)
+                behind = (max(row["ratio_max"], 1.0), at)
+                axis.annotate(three_digits(row["ratio_median"]), behind, (4.0, 0.0), textcoords="offset points", va="center", fontsize=7.5)
         axis.set_xscale("log")
         axis.axvline(1.0, color=GREY, linewidth=1.0)
         axis.set_yticks(range(len(peers[case])), peers[case])
@@ -36,7 +37,8 @@ def draw(rows, path):
         axis.set_title(case)
     low, high = axes[0, 0].get_xlim()
     axes[0, 0].set_xlim(low, 2.5 * high)
-    axes[-1, 0].set_xlabel("CPU time of the peer / CPU time of ours, per simulated second and run (-)\nBars: median of the pairs; whiskers: smallest and largest")
+    axes[-1, 0].set_xlabel("CPU time of the peer / CPU time of ours, per simulated second and run (-)\n"
+                           "Bars: median of the pairs; whiskers: smallest and largest")  # fmt: skip
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(quantities))
     figure.savefig(path, dpi=130)
     plt.close(figure)

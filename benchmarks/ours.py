@@ -35,8 +35,12 @@ def displacement(problem, forces, seconds, touching=True):
     return lanes.displacement[0, [problem.model.sensor_names.index(name) for name in SENSORS]].T.astype(float)
 
 
-def contact_fraction(lanes):
-    """Return the fraction of the steps in which a support bears a force, mean over cases and supports."""
+def contact_fraction(problem, seconds):
+    """Return the fraction of the first `seconds` in which a support bears a force, mean over supports."""
+    schedule = schedule_of(seconds)
+    # Statistics begin when the output filter is full: the force waits for it.
+    waiting = schedule.steps - schedule.samples * STRIDE
+    lanes = march_ours(problem, np.concatenate([np.zeros(max(waiting, 0)), problem.force(seconds)]), schedule)[0]
     return float(np.mean(lanes.tally["contact_steps"]) / lanes.steps)
 
 

@@ -7,19 +7,19 @@ import numpy as np
 
 from benchmarks.ours import march_ours, schedule_of
 from benchmarks.peak import PeakRate, flops_per_step
-from benchmarks.problem import RATE, SEED
+from benchmarks.problem import LONGEST_S, RATE, SEED
 
 ONE_RUN, BATCH = "one run", "batch of {}, per run"
 PEAK = "FMA peak of one core"
+PROBE_S = 0.2
 
 
 @dataclass(frozen=True)
 class Clock:
-    """How long and how often is measured: repeats; seconds simulated by ours alone and in a batch; batches: runs side by side."""
+    """How long and how often is measured: repeats; ours_s: CPU time of a timed run of ours, whose set-up takes 0.01 s; batches: runs in one call."""
 
     repeats: int = 5
-    one_run_s: float = 5.0
-    batch_s: float = 2.0
+    ours_s: float = 0.4
     batches: tuple = (8, 16)
     peer_scale: float = 1.0  # of the simulated seconds of the peers
     slow_s: float = 3.0  # a peer whose timed run takes longer is measured slow_repeats times at most
@@ -46,11 +46,21 @@ def cpu_seconds(work):
     return time.process_time() - start
 
 
-def our_cost(problem, batch, seconds, touching=True):
+def our_cost(problem, batch, seconds):
     """Return the function () -> CPU s per simulated s and run of `batch` runs side by side, each with a force of its own."""
     forces = np.stack([problem.force(seconds, SEED + case) for case in range(batch)], axis=1)
     schedule = schedule_of(seconds)
-    return lambda: cpu_seconds(lambda: march_ours(problem, forces, schedule, touching)) / seconds / batch
+    return lambda: cpu_seconds(lambda: march_ours(problem, forces, schedule)) / seconds / batch
+
+
+def our_long_cost(problem, batch, lasting):
+    """Return (our_cost, simulated s) of runs that take about `lasting` s of CPU time, compiled and warmed up."""
+    probe = our_cost(problem, batch, PROBE_S)
+    probe()
+    seconds = round(min(max(lasting / (probe() * batch), PROBE_S), LONGEST_S), 1)
+    cost = our_cost(problem, batch, seconds)
+    cost()
+    return cost, seconds
 
 
 def peer_cost(peer, problem, scale=1.0):
@@ -80,10 +90,8 @@ def measure_pairs(problem, peers, clock, touches=True, say=print):
 
     touches: whether the load reaches the obstacles (for the count of operations).
     """
-    ours = {ONE_RUN: our_cost(problem, 1, clock.one_run_s)}
-    ours |= {BATCH.format(batch): our_cost(problem, batch, clock.batch_s) for batch in clock.batches}
-    for cost in ours.values():
-        cost()  # compiles, and fills the caches
+    ours = {ONE_RUN: our_long_cost(problem, 1, clock.ours_s)[0]}
+    ours |= {BATCH.format(batch): our_long_cost(problem, batch, clock.ours_s)[0] for batch in clock.batches}
     others = [(peer.name, peer.same_step, *peer_cost(peer, problem, clock.peer_scale), [*ours][peer.batch > 1:]) for peer in peers]
     others.append((PEAK, True, peak_cost(problem, touches), 0.0, [*ours]))
     pairs = []

@@ -33,7 +33,7 @@ class Marcher:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What a peer's displacement may differ by, relative to the largest (linear, first_impacts) or the RMS (rms) of ours.
+    """What a peer's displacement may differ by, each sensor relative to its own largest value in ours.
 
     linear: without contact; first_impacts: up to FIRST_IMPACTS_S; rms: RMS over the whole check. Impacts multiply small differences, and the
     records of ours have passed the output filter, which takes 1e-3 of the displacement out of an impact.
@@ -49,7 +49,8 @@ class Peer:
     """A code and how it is used. start: (problem, touching) -> Marcher; touching False: the same force, the obstacles out of reach.
 
     seconds: simulated per timed run; batch: runs side by side; same_step: integrates with the project's own step, so that nanoseconds per
-    step compare; note: what it solves, and where that differs; problem_of: problem -> the problem whose answer of ours it is checked against.
+    step compare; centred: its obstacles cannot be moved off the tube's axis; note: what it solves, and where that differs; problem_of: problem ->
+    the problem whose answer of ours it is checked against.
     """
 
     name: str
@@ -60,4 +61,5 @@ class Peer:
     tolerance: Tolerance
     batch: int = 1
     same_step: bool = False
+    centred: bool = False
     problem_of: Callable = itself

@@ -9,8 +9,8 @@ from benchmarks.problem import RATE
 COLUMNS = ("case", "quantity", "unit", "ours_median", "peer", "peer_median", "ratio_median", "ratio_min", "ratio_max")
 GROWTH_COLUMNS = ("varied", "value", "modes", "contact_points", "supports", "batch", "duration_s", "contact_fraction", "clock",
                   "ns_per_step_median", "ns_per_step_min", "ns_per_step_max", "s_per_simulated_s_median")  # fmt: skip
-PEER_COLUMNS = ("case", "peer", "version", "simulated_s", "contact_fraction", "linear", "linear_tolerance", "first_impacts", "first_impacts_tolerance",
-                "rms", "rms_tolerance", "agrees", "failure", "note")  # fmt: skip
+PEER_COLUMNS = ("case", "peer", "version", "simulated_s", "contact_fraction", "linear", "linear_tolerance",
+                "first_impacts", "first_impacts_tolerance", "rms", "rms_tolerance", "agrees", "failure", "note")  # fmt: skip
 SECONDS, NANOSECONDS = "CPU s per simulated s", "ns per step"
 
 
@@ -64,5 +64,6 @@ def three_digits(value):
 def _row(case, quantity, unit, ours, peer, theirs):
     """Return the row of two series measured in pairs."""
     ratio = theirs / ours
-    values = (case, quantity, unit, float(np.median(ours)), peer, float(np.median(theirs)), float(np.median(ratio)), float(ratio.min()), float(ratio.max()))
+    spread = [float(of(ratio)) for of in (np.median, np.min, np.max)]
+    values = (case, quantity, unit, float(np.median(ours)), peer, float(np.median(theirs)), *spread)
     return dict(zip(COLUMNS, values, strict=True))
