@@ -18,7 +18,7 @@ LAYERS = (
      "provenance", "centreline", "beam", "kernels", "laws", "model"),
     ("records",),
     ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "spectra", "spectral_kernel", "campaign"),
-    ("ritz", "reduction", "linear", "antialias", "layout", "potential"),
+    ("ritz", "reduction", "linear", "antialias", "schemes", "layout", "potential"),
     ("integrate", "trace", "simulate", "step_records", "identify", "synthetic_campaign"),
     ("consistency", "statistics_table", "f16"),
     ("validation",),

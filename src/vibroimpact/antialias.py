@@ -14,6 +14,7 @@ from .kernels import BEHIND, RATIO, SLOTS
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
 DIFFERENCE_ERROR = 1e-6  # of the second derivative, relative, up to the end of the passband
+LONGEST_DIFFERENCE = 30  # with which a middle rate near the sampling frequency has to do
 DROOP_TERMS = 5  # of the polynomial in 1 - cos that undoes the first stage's droop
 
 
@@ -69,7 +70,7 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
     first = _first_stage(stop / steps_per_second)
     passband = PASS_FRACTION * stop / middle_rate
     second = np.convolve(_kaiser_lowpass(passband, stop / middle_rate), _lift(first, passband))
-    order = next(order for order in range(3, 40) if _difference_error(order, passband) < DIFFERENCE_ERROR)
+    order = next((order for order in range(3, LONGEST_DIFFERENCE) if _difference_error(order, passband) < DIFFERENCE_ERROR), LONGEST_DIFFERENCE)
     difference = _second_difference(order) * middle_rate**2
     return OutputFilter(
         first=first,

@@ -17,7 +17,8 @@ from vibroimpact import config_name_checks as names
 from vibroimpact import config_place_checks as place
 
 STEPS_PER_EXCITED_PERIOD = 20
-LARGEST_OMEGA_STEP = 1.0
+FILTER_RATIO = 5  # kernels.RATIO, which only what integrates may import
+LARGEST_OMEGA_STEP = {"newmark": 1.0, "exact": 2.8}  # rad; exact has no error in a mode alone, but must tell its phase: below pi
 MOST_STEPS_KEPT = 2e6
 TOLERANCE = 1e-9
 
@@ -142,20 +143,23 @@ def _step_and_force(excitation, integration):
 
 def _step_and_modes(structure, basis, integration):
     omega_step = 2 * math.pi * basis.free_modes_to_Hz / integration.steps_per_second
-    if omega_step > LARGEST_OMEGA_STEP:
+    largest = LARGEST_OMEGA_STEP[integration.scheme]
+    if omega_step > largest:
         yield ("integration.steps_per_second", integration.steps_per_second,
-               f"gives omega x step = {omega_step:.3g} for free modes to {basis.free_modes_to_Hz:g} Hz, at most {LARGEST_OMEGA_STEP:g}: give at least "
-               f"{math.ceil(2 * math.pi * basis.free_modes_to_Hz / LARGEST_OMEGA_STEP)} or keep fewer free modes")
+               f"gives omega x step = {omega_step:.3g} for free modes to {basis.free_modes_to_Hz:g} Hz, at most {largest:g}: give at least "
+               f"{math.ceil(2 * math.pi * basis.free_modes_to_Hz / largest)} or keep fewer free modes")
 
 
 def _step_and_samples(integration, record):
     if record.every_step:
         return
     ratio = integration.steps_per_second / record.sampling_frequency_Hz
-    if ratio < 1 or abs(ratio - round(ratio)) > TOLERANCE:
-        nearest = max(1, round(ratio)) * record.sampling_frequency_Hz
+    stages = ratio / FILTER_RATIO
+    if stages < 1 or abs(stages - round(stages)) > TOLERANCE:
+        nearest = max(1, round(stages)) * FILTER_RATIO * record.sampling_frequency_Hz
         yield ("integration.steps_per_second", integration.steps_per_second,
-               f"must be a whole multiple of record.sampling_frequency_Hz = {record.sampling_frequency_Hz:g}: {nearest:g} is near")
+               f"must be {FILTER_RATIO} times a whole multiple of record.sampling_frequency_Hz = {record.sampling_frequency_Hz:g} "
+               f"(the output filter's first stage divides by {FILTER_RATIO}): {nearest:g} is near")
 
 
 def _whole_samples(record, integration):

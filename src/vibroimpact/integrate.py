@@ -131,7 +131,7 @@ def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive)
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the run diverged.
     """
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
-    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap)).finish(contraction)
+    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap), contraction).finish()
 
 
 def to_lanes(values, padding):
@@ -145,12 +145,12 @@ def to_lanes(values, padding):
 class _Run:
     """One batch on its way: the kernel's arrays and the sums carried from chunk to chunk."""
 
-    def __init__(self, model, schedule, gap, imperfection, drive, cases):
-        self.model, self.schedule, self.drive, self.cases = model, schedule, drive, cases
+    def __init__(self, model, schedule, gap, imperfection, drive, cases, contraction):
+        self.model, self.schedule, self.drive, self.cases, self.contraction = model, schedule, drive, cases, contraction
         self.layout = ModalLayout(model, schedule.scheme)
         self.dt = 1.0 / schedule.steps_per_second
         self.modal = self.layout.modal(self.dt)
-        self.contact, self.laws = self.layout.contact(gap, imperfection), self.layout.laws(gap)
+        self.contact, self.laws = self.layout.contact(gap, imperfection, contraction), self.layout.laws(gap)
         self.state, self.tally, self.work = self.layout.state(), self.layout.tally(), self.layout.work()
         start_state(self.layout, self.modal, self.contact, self.laws, self.state, self.work, self.forces(0, 1)[0])
         tail = schedule.filter.second.size - schedule.filter.step
@@ -164,7 +164,7 @@ class _Run:
         self.energies, self.times = [], []
         self.take_energies()
 
-    def finish(self, contraction) -> Lanes:
+    def finish(self) -> Lanes:
         """Start-up, filling of the filter, record."""
         schedule, layout_output = self.schedule, self.output
         for ticks in _chunks(schedule.start_ticks, self.chunk):
@@ -176,12 +176,13 @@ class _Run:
         samples, shapes = schedule.samples, layout_output.stress_start
         outputs = np.empty((self.cases, layout_output.values.shape[0], samples), np.float32)
         acceleration = np.empty((self.cases, sensors, samples), np.float32)
-        first, buffer = 0, np.zeros(LANES)
+        taps, curvature_taps = (np.pad(taps, 3 * schedule.filter.step) for taps in (schedule.filter.second, schedule.filter.second_derivative))
+        first, buffer = 0, np.zeros((4, LANES))
         for ticks in _chunks(samples * schedule.filter.step, self.chunk):
             self.advance(ticks, self.tail, recorded=True)
             values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
-            kernels.decimate(values, schedule.filter.second, outputs, first, schedule.filter.step, buffer)
-            kernels.decimate(values[:sensors], schedule.filter.second_derivative, acceleration, first, schedule.filter.step, buffer)
+            kernels.decimate(values, taps, outputs, first, schedule.filter.step, buffer)
+            kernels.decimate(values[:sensors], curvature_taps, acceleration, first, schedule.filter.step, buffer)
             layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
             first += ticks // schedule.filter.step
         return Lanes(
@@ -193,7 +194,7 @@ class _Run:
             energy=np.array(self.energies).transpose(2, 1, 0)[: self.cases],
             energy_time=np.array(self.times),
             fixed_point_residual=self.residual[: self.cases],
-            contraction=contraction,
+            contraction=self.contraction,
             contact_rows=self.layout.contact_rows(),
             element_rows=self.layout.element_rows(),
         )
@@ -212,9 +213,14 @@ class _Run:
 
     def forces(self, first, count):
         """Drive forces (count, force_channel, LANES) N at steps first, first + 1, ..."""
-        channels = self.model.drive_shapes.shape[1]
-        out = np.zeros((count, self.layout.drive_shapes.shape[1], LANES))
-        out[:, :channels, : self.cases] = self.drive(first, count)
+        channels, total = self.model.drive_shapes.shape[1], self.layout.drive_shapes.shape[1]
+        given = self.drive(first, count)
+        if given.shape == (count, total, LANES):
+            return np.ascontiguousarray(given)
+        out = np.zeros((count, total, LANES))
+        for channel in range(channels):
+            for lane in range(self.cases):  # long strided copies: many times faster than one of blocks of a few lanes
+                out[:, channel, lane] = given[:, channel, lane]
         out[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
         return out
 

@@ -510,7 +510,7 @@ class Tally(NamedTuple):
     element_work: np.ndarray  # (element, lane) J, trapezoidal sum of f du
     slip_work: np.ndarray  # (element, lane) J, slider force times slip
     residual: np.ndarray  # (lane,) largest relative change in the last pass of the fixed point
-    square_stress: np.ndarray  # (section, lane) Pa² sum, every RATIO-th step
+    square_stress: np.ndarray  # (section, lane) Pa² sum
     peak_square_stress: np.ndarray  # (section, lane) Pa²
 
 
@@ -1120,8 +1120,25 @@ def project_channels(modal, g, output, array, base, entries, channels):
 
 
 @njit(**INLINE)
-def emit(modal, state, tally, output, tick, at_tick, channels):
-    """Finish the oldest output of the first stage: channels to output.values; the present stress to the tally; clear it."""
+def tally_stress(modal, state, tally, output, phase, channels):
+    """Stresses at the end of the step, unfiltered: their statistics are not for the record's filter to take the impacts from."""
+    sections = tally.peak_square_stress.size // LANES
+    for c in range(output.stress_start, output.stress_start + 2 * sections):
+        store(channels, c, spread(0.0))
+    for g in range(modal.mode_start.size - 1):
+        if state.awake[g] != 0:
+            entries = (output.stress_entry[g], output.channel_start[g + 1])
+            project_channels(modal, g, output, state.displacement, phase * modal.mode_start[-1], entries, channels)
+    for s in range(sections):
+        s1, s2 = load(channels, output.stress_start + 2 * s), load(channels, output.stress_start + 2 * s + 1)
+        square = fma(s1, s1, s2 * s2)
+        store(tally.square_stress, s, load(tally.square_stress, s) + square)
+        store(tally.peak_square_stress, s, larger(square, load(tally.peak_square_stress, s)))
+
+
+@njit(**INLINE)
+def emit(modal, state, output, tick, at_tick, channels):
+    """Finish the oldest output of the first stage: channels to output.values; clear it."""
     zero = spread(0.0)
     modes = modal.mode_start[-1]
     extras = state.average.size // (SLOTS * LANES)
@@ -1131,20 +1148,11 @@ def emit(modal, state, tally, output, tick, at_tick, channels):
     for g in range(modal.mode_start.size - 1):
         if state.awake[g] == 0:
             continue
-        start, middle, end = output.channel_start[g], output.stress_entry[g], output.channel_start[g + 1]
-        project_channels(modal, g, output, state.average, base, (start, middle), channels)
-        # Stresses as they are at this step: their statistics are not for the record's filter to take the impacts from.
-        project_channels(modal, g, output, state.displacement, (RATIO - 1) * modes, (middle, end), channels)
+        project_channels(modal, g, output, state.average, base, (output.channel_start[g], output.stress_entry[g]), channels)
     for c in range(output.stress_start):
         store(output.values, c * output.columns + column, load(channels, c))
     for x in range(extras - modes):
         store(output.values, (output.stress_start + x) * output.columns + column, load(state.average, base + modes + x))
-    for s in range(tally.peak_square_stress.size // LANES):
-        s1, s2 = load(channels, output.stress_start + 2 * s), load(channels, output.stress_start + 2 * s + 1)
-        square = fma(s1, s1, s2 * s2)
-        store(tally.square_stress, s, load(tally.square_stress, s) + square)
-        peak = load(tally.peak_square_stress, s)
-        store(tally.peak_square_stress, s, select_greater(square, peak, square, peak))
     for x in range(extras):
         store(state.average, base + x, zero)
 
@@ -1223,6 +1231,7 @@ def march(modal, contact, laws, state, tally, output, trace, work, drive):
             else:
                 keep_step(modal, contact, laws, state, trace, u, force, pull, False)
             update(modal, state, tally, force, active, phase, free)
+            tally_stress(modal, state, tally, output, phase, work.channels)
             filter_forces(modal, state, output, resultant, drive, n * forces, forces, touched, phase, tick)
             state.flag[0] = 0 if touched != 0 else min(state.flag[0] + 1, QUIET)
             state.flag[1] += 1
@@ -1230,35 +1239,37 @@ def march(modal, contact, laws, state, tally, output, trace, work, drive):
             restore_mode(mode)
             return (at_tick + 1) * RATIO
         average_modes(modal, state, output, tick)
-        emit(modal, state, tally, output, tick, at_tick, work.channels)
+        emit(modal, state, output, tick, at_tick, work.channels)
     restore_mode(mode)
     return drive.shape[0]
 
 
 @njit(**COMPILED)
 def decimate(values, taps, out, out_start, step, buffer):
-    """Second stage of the output filter, lane by lane.
+    """Second stage of the output filter, lane by lane, four samples at a time.
 
-    ``values`` (channel, tick, lane) flat with ``taps.size - 1`` ticks of history in front; ``out`` (lane, channel,
-    sample) receives sample j = sum of taps times values from tick j * step on, at ``out_start + j``; buffer (lane,).
+    ``values`` (channel, tick, lane) flat with ``taps.size - 1`` ticks of history in front; ``taps`` padded with 3 step zeros at both
+    ends; ``out`` (lane, channel, sample) receives sample j = sum of taps times values from tick j * step on, at ``out_start + j``;
+    buffer (4, lane).
     """
     lanes, channels, _ = out.shape
     ticks = values.size // (channels * LANES)
-    count = (ticks - taps.size) // step + 1
+    length = taps.size - 6 * step
+    count = (ticks - length) // step + 1
     for c in range(channels):
-        for j in range(count):
+        for j in range(0, count, 4):
             at = c * ticks + j * step
             a, b, d, e = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-            k = 0
-            while k + 3 < taps.size:  # four independent sums hide the latency of the multiply-add
-                a = fma(spread(taps[k]), load(values, at + k), a)
-                b = fma(spread(taps[k + 1]), load(values, at + k + 1), b)
-                d = fma(spread(taps[k + 2]), load(values, at + k + 2), d)
-                e = fma(spread(taps[k + 3]), load(values, at + k + 3), e)
-                k += 4
-            while k < taps.size:
-                a = fma(spread(taps[k]), load(values, at + k), a)
-                k += 1
-            store(buffer, 0, (a + b) + (d + e))
-            for lane in range(lanes):
-                out[lane, c, out_start + j] = buffer[lane]
+            for k in range(min(length + 3 * step, ticks - j * step)):
+                value = load(values, at + k)
+                a = fma(spread_from(taps, k + 3 * step), value, a)
+                b = fma(spread_from(taps, k + 2 * step), value, b)
+                d = fma(spread_from(taps, k + step), value, d)
+                e = fma(spread_from(taps, k), value, e)
+            store(buffer, 0, a)
+            store(buffer, 1, b)
+            store(buffer, 2, d)
+            store(buffer, 3, e)
+            for m in range(min(4, count - j)):
+                for lane in range(lanes):
+                    out[lane, c, out_start + j + m] = buffer[m, lane]

@@ -8,7 +8,8 @@ from .kernels import CHANNEL_BLOCK, LANES, PANEL, QUIET, RATIO, SLOTS, Contact, 
 from .model import ModalModel
 from .schemes import StepCoefficients, step_coefficients
 
-FIXED_POINT_TOLERANCE = 1e-4
+FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
+FIXED_POINT_ERROR = 1e-6  # relative error that may be left in them: the change times the contraction
 FIXED_POINT_PASSES = 40
 DIVERGED_DISPLACEMENT = 1e3  # m
 
@@ -120,8 +121,9 @@ class ModalLayout:
             row += len(keys) + len(driven)
         return rows
 
-    def contact(self, gap: np.ndarray, imperfection: np.ndarray) -> Contact:
-        """The kernel's Contact: gap (lane,) nominal gap [m]; imperfection (contact_point, 2, lane) [m] added to the centres.
+    def contact(self, gap: np.ndarray, imperfection: np.ndarray, contraction: float) -> Contact:
+        """The kernel's Contact: gap (lane,) nominal gap [m]; imperfection (contact_point, 2, lane) [m] added to the centres;
+        contraction of the fixed point (integrate.contact_contraction), which sets how far it is followed.
 
         Points with special laws are out of reach here, see laws().
         """
@@ -137,7 +139,7 @@ class ModalLayout:
             offset_1=np.ascontiguousarray(offset[:, 0]),
             offset_2=np.ascontiguousarray(offset[:, 1]),
             plain=plain.astype(np.int64),
-            tolerance=FIXED_POINT_TOLERANCE,
+            tolerance=min(FIXED_POINT_TOLERANCE, FIXED_POINT_ERROR / max(contraction, FIXED_POINT_ERROR)),
             passes=FIXED_POINT_PASSES,
             limit=DIVERGED_DISPLACEMENT,
         )

@@ -117,7 +117,7 @@ def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndar
     per_impact = np.divide(1.0, impacts, out=np.full(impacts.shape, np.nan), where=impacts > 0)
     rows, elements = lanes.contact_rows, lanes.element_rows
     return {
-        "stress_rms": np.sqrt(tally["square_stress"] * RATIO / steps),
+        "stress_rms": np.sqrt(tally["square_stress"] / steps),
         "stress_peak": np.sqrt(tally["peak_square_stress"]),
         "contact_fraction": tally["contact_steps"] / steps,
         "impact_count": impacts.astype(np.int32),

@@ -39,11 +39,11 @@ def trace_lanes(model: ModalModel, steps_per_second: float, steps: int, gap, imp
     (count, force_channel, case) N at the times first / steps_per_second, ...; index 0 is the initial state's.
     Raises IntegrationError.
     """
-    checked_contraction(model, steps_per_second, scheme)
+    contraction = checked_contraction(model, steps_per_second, scheme)
     cases, ticks = np.size(gap), -(-steps // RATIO)
     layout = ModalLayout(model, scheme)
     modal, lanes_gap = layout.modal(1.0 / steps_per_second), to_lanes(gap, 1.0)
-    contact, laws = layout.contact(lanes_gap, to_lanes(imperfection, 0.0)), layout.laws(lanes_gap)
+    contact, laws = layout.contact(lanes_gap, to_lanes(imperfection, 0.0), contraction), layout.laws(lanes_gap)
     state, tally, work = layout.state(), layout.tally(), layout.work()
     channels = model.drive_shapes.shape[1]
     force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], kernels.LANES))

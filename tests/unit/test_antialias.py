@@ -27,10 +27,10 @@ def test_first_stage_stops_the_images_of_the_record_s_band():
 
 
 def test_phase_weights_spread_every_tap_once():
-    """The weights of one output over the four ticks that feed it are the taps in order."""
+    """The weights of one output over the six ticks that feed it are the taps in order."""
     design = output_filter(RATE, SAMPLING)
     weights = design.phase_weights()
-    taps = np.concatenate([weights[:, slot] for slot in (3, 2, 1, 0)])  # an output is last in slot 3 at first, first in slot 0 at last
+    taps = np.concatenate([weights[:, slot] for slot in range(5, -1, -1)])  # an output is in the last slot at first, in slot 0 at last
     assert np.array_equal(taps[1:], design.first)
     assert taps[0] == 0.0
 

@@ -9,7 +9,7 @@ CONVERGENCE_FIGURES = {
     "statistics": ("step", "statistics_step", "statistics_modes"),
     "spectra": ("spectra",),
 }
-CONVERGENCE_AXES = ("step", "modes", "modes_alone")
+CONVERGENCE_AXES = ("step", "step_exact", "modes", "modes_alone")
 
 
 # A topic's tables, its checks last; its figures, their data and captions.
