@@ -1,5 +1,6 @@
 """The project itself, through its public path: cases in, displacement records, statistics and energies out."""
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -10,13 +11,29 @@ from vibroimpact.integrate import ENERGY_TERMS, Schedule, march_lanes
 SAMPLING_HZ = RATE // STRIDE
 
 
-def schedule_of(seconds):
+@dataclass(frozen=True)
+class Step:
+    """A scheme of integration and its steps per second."""
+
+    scheme: str
+    rate: int
+
+
+SAME_STEP = Step("newmark", RATE)  # as the peers that do the same step
+
+
+def study_step(problem):
+    """Return the Step of the problem's configuration."""
+    return Step(problem.config.integration.scheme, problem.config.integration.steps_per_second)
+
+
+def schedule_of(seconds, step=SAME_STEP):
     """Return the Schedule of a record of `seconds` without start-up."""
-    return Schedule(RATE, SAMPLING_HZ, 0.0, seconds)
+    return Schedule(step.rate, SAMPLING_HZ, 0.0, seconds, step.scheme)
 
 
 def march_ours(problem, forces, schedule, touching=True):
-    """Return [Lanes]: the runs of forces (step + 1, case) N, index k at time k / RATE, in as many batches as the library asks for.
+    """Return [Lanes]: the runs of forces (step + 1, case) N, index k at step k, in as many batches as the library asks for.
 
     A force that ends before the schedule's last step goes on as zero.
     """

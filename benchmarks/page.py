@@ -14,7 +14,7 @@ INTRODUCTION = f"""# Performance
 Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmark.csv`, `growth.csv` and `peers.csv`.
 
 The problem is the study's stand-in tube: a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 degrees of the bend, two plates of five contact
-points, {GAP_M * 1e3:.3f} mm of gap, {RATE} steps per second. "Modes" counts free modes and the residual vectors that carry the local flexibility
+points, {GAP_M * 1e3:.3f} mm of gap. "Modes" counts free modes and the residual vectors that carry the local flexibility
 of the contacts; these reach 130 kHz and set the step of every explicit method, so that one case keeps free modes alone.
 
 - Every code solves the same problem, and is checked before its time is quoted: displacement at three sensors over {CHECK_S:g} s without contact,
@@ -24,6 +24,8 @@ of the contacts; these reach 130 kHz and set the step of every explicit method, 
 - A time is CPU time of one core, compiled beforehand. Ours and a peer run in turns in one process; a ratio belongs to a pair measured next
   to each other: median (smallest to largest). A short stretch of a slow peer is compared per simulated second; it holds less
   contact than a long record, which favours the peer.
+- Ours steps as the plain loop, JAX and Exudyn do: Newmark, {RATE} steps per second. "At the study's step" is the scheme and rate of
+  `config/study.yaml`; `python -m benchmarks.work_precision` compares what steps are worth.
 - Absolute times are those of this machine. Compare ratios.
 """
 

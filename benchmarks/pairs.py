@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchmarks.ours import march_ours, schedule_of
+from benchmarks.ours import SAME_STEP, march_ours, schedule_of, study_step
 from benchmarks.peak import PeakRate, flops_per_step
 from benchmarks.problem import LONGEST_S, RATE, SEED
 
-ONE_RUN, BATCH = "one run", "batch of {}, per run"
+ONE_RUN, BATCH, STUDY = "one run", "batch of {}, per run", "batch of {} at the study's step, per run"
 PEAK = "FMA peak of one core"
 PROBE_S = 0.2
 
@@ -19,7 +19,7 @@ class Clock:
     """How long and how often is measured: repeats; ours_s: CPU time of a timed run of ours, whose set-up takes 0.01 s; batches: runs in one call."""
 
     repeats: int = 5
-    ours_s: float = 0.4
+    ours_s: float = 0.3
     batches: tuple = (8, 16)
     peer_scale: float = 1.0  # of the simulated seconds of the peers
     slow_s: float = 3.0  # a peer whose timed run takes longer is measured slow_repeats times at most
@@ -28,7 +28,9 @@ class Clock:
 
 @dataclass
 class Pair:
-    """CPU seconds per simulated second and run, pair by pair. quantity: how ours ran; bound: the peer is arithmetic at the FMA peak."""
+    """CPU seconds per simulated second and run, pair by pair. quantity: how ours ran; same_step: ours and the peer step alike; bound: the peer is
+    arithmetic at the FMA peak.
+    """
 
     case: str
     quantity: str
@@ -46,19 +48,19 @@ def cpu_seconds(work):
     return time.process_time() - start
 
 
-def our_cost(problem, batch, seconds):
+def our_cost(problem, batch, seconds, step=SAME_STEP):
     """Return the function () -> CPU s per simulated s and run of `batch` runs side by side, each with a force of its own."""
-    forces = np.stack([problem.force(seconds, SEED + case) for case in range(batch)], axis=1)
-    schedule = schedule_of(seconds)
+    forces = np.stack([problem.force(seconds, SEED + case, step.rate) for case in range(batch)], axis=1)
+    schedule = schedule_of(seconds, step)
     return lambda: cpu_seconds(lambda: march_ours(problem, forces, schedule)) / seconds / batch
 
 
-def our_long_cost(problem, batch, lasting):
+def our_long_cost(problem, batch, lasting, step=SAME_STEP):
     """Return (our_cost, simulated s) of runs that take about `lasting` s of CPU time, compiled and warmed up."""
-    probe = our_cost(problem, batch, PROBE_S)
+    probe = our_cost(problem, batch, PROBE_S, step)
     probe()
     seconds = round(min(max(lasting / (probe() * batch), PROBE_S), LONGEST_S), 1)
-    cost = our_cost(problem, batch, seconds)
+    cost = our_cost(problem, batch, seconds, step)
     cost()
     return cost, seconds
 
@@ -92,11 +94,13 @@ def measure_pairs(problem, peers, clock, touches=True, say=print):
     """
     ours = {ONE_RUN: our_long_cost(problem, 1, clock.ours_s)[0]}
     ours |= {BATCH.format(batch): our_long_cost(problem, batch, clock.ours_s)[0] for batch in clock.batches}
+    same = [*ours]
+    ours[STUDY.format(clock.batches[0])] = our_long_cost(problem, clock.batches[0], clock.ours_s, study_step(problem))[0]
     others = [(peer.name, peer.same_step, *peer_cost(peer, problem, clock.peer_scale), [*ours][peer.batch > 1:]) for peer in peers]
-    others.append((PEAK, True, peak_cost(problem, touches), 0.0, [*ours]))
+    others.append((PEAK, True, peak_cost(problem, touches), 0.0, same))
     pairs = []
     for name, same_step, cost, warm, quantities in others:
-        found = {quantity: Pair(problem.name, quantity, name, same_step, name == PEAK) for quantity in quantities}
+        found = {quantity: Pair(problem.name, quantity, name, same_step and quantity in same, name == PEAK) for quantity in quantities}
         for repeat in range(min(clock.repeats, clock.slow_repeats) if warm > clock.slow_s else clock.repeats):
             # Ours before and after, in turns, so that neither has the cooler core.
             order = quantities if repeat % 2 else quantities[::-1]

@@ -50,17 +50,18 @@ class Problem:
         """Return the gap in m, out of reach unless touching."""
         return self.gap_m if touching else OUT_OF_REACH_M
 
-    def force(self, seconds, seed=SEED):
-        """Return (step + 1,) N at k / RATE: the beginning of a seed's record, a whole number of STRIDE steps; `seconds` up to LONGEST_S."""
-        return self.load_N * unit_record(seed)[:STRIDE * round(seconds * RATE / STRIDE) + 1]
+    def force(self, seconds, seed=SEED, rate=RATE):
+        """Return (step + 1,) N at k / rate: the beginning of a seed's record, for RATE a whole number of STRIDE steps; `seconds` up to LONGEST_S."""
+        stride = STRIDE if rate == RATE else 1
+        return self.load_N * unit_record(seed, rate)[:stride * round(seconds * rate / stride) + 1]
 
 
 @cache
-def unit_record(seed):
-    """Return (step + 1,) band-limited noise at k / RATE of about unit RMS, zero at the start, LONGEST_S long."""
-    steps = round(LONGEST_S * RATE)
-    noise = band_limited_noise(np.random.default_rng(seed), steps + 1, RATE, BAND_HZ)
-    return noise * -np.expm1(-((np.arange(steps + 1) / (RAMP_S * RATE)) ** 2))
+def unit_record(seed, rate):
+    """Return (step + 1,) band-limited noise at k / rate of about unit RMS, zero at the start, LONGEST_S long; another rate is another record."""
+    steps = round(LONGEST_S * rate)
+    noise = band_limited_noise(np.random.default_rng(seed), steps + 1, rate, BAND_HZ)
+    return noise * -np.expm1(-((np.arange(steps + 1) / (RAMP_S * rate)) ** 2))
 
 
 def tube_problem(values=None, kind="modes", path=CONFIG):
