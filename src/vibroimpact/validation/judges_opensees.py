@@ -64,10 +64,10 @@ def opensees_frequencies(config, stiffness, count, refinement=1):
     Raises JudgeAbsent.
     """
     ops = opensees()
-    nodes = _tube(ops, config, refinement)
+    nodes = clamped_tube(ops, config, refinement)
     for number, node in enumerate(nodes.contact):
         ops.uniaxialMaterial("Elastic", number + 1, stiffness / config.supports[0].points)
-        _spring(ops, nodes, number, node, (1, ACROSS))
+        tie(ops, nodes, number, node, (1, ACROSS))
     squares = ops.eigen("-fullGenLapack" if len(nodes.position) < 30 else "-genBandArpack", count)
     ops.wipe()
     return np.sqrt(squares) / (2.0 * np.pi)
@@ -80,7 +80,7 @@ def opensees_impacts(config, force, steps_per_second, gap, refinement=1):
     acceleration; damping.kind must be rayleigh. In-plane motion is held at zero. Raises JudgeAbsent; RuntimeError when Newton does not settle.
     """
     ops = opensees()
-    nodes = _tube(ops, config, refinement)
+    nodes = clamped_tube(ops, config, refinement)
     for node in range(1, len(nodes.position) - 1):
         ops.fix(NODES_FROM + node, 1, 0, 1, 0, 1, 0)
     stiffness = config.supports[0].stiffness_N_per_m / config.supports[0].points
@@ -89,7 +89,7 @@ def opensees_impacts(config, force, steps_per_second, gap, refinement=1):
         ops.uniaxialMaterial("ElasticPPGap", above, stiffness, NEVER_N, gap)
         ops.uniaxialMaterial("ElasticPPGap", below, stiffness, -NEVER_N, -gap)
         ops.uniaxialMaterial("Parallel", number + 1, above, below)
-        _spring(ops, nodes, number, node, (ACROSS,))
+        tie(ops, nodes, number, node, (ACROSS,))
     ops.rayleigh(config.damping.mass_coefficient_per_s, 0.0, config.damping.stiffness_coefficient_s, 0.0)
     ops.timeSeries("Path", 1, "-dt", 1.0 / steps_per_second, "-values", *map(float, force))
     ops.pattern("Plain", 1, 1)
@@ -117,8 +117,8 @@ def _march(ops, nodes, steps, dt):
     return displacement, force
 
 
-def _tube(ops, config, refinement):
-    """Return the TubeNodes; the model in OpenSees has its clamped tube."""
+def clamped_tube(ops, config, refinement):
+    """Return the TubeNodes of a configuration; OpenSees (the module ops) holds its tube, clamped at both ends, and nothing else."""
     nodes = tube_nodes(config, refinement)
     section, material = config.structure.section, config.structure.material
     outer, inner = 0.5 * section.outer_diameter_m, 0.5 * section.outer_diameter_m - section.wall_thickness_m
@@ -148,7 +148,7 @@ def _spring_number(nodes, number):
     return NODES_FROM + len(nodes.position) + number
 
 
-def _spring(ops, nodes, number, node, directions):
+def tie(ops, nodes, number, node, directions):
     """Tie a contact point to the ground with material number + 1 along `directions`."""
     ground = _spring_number(nodes, number)
     ops.node(ground, *map(float, nodes.position[node]))

@@ -1,0 +1,1 @@
+"""What the project costs beside what a user would otherwise pick: `make benchmark`, or `python -m benchmarks --help`."""
