@@ -541,6 +541,7 @@ class Output(NamedTuple):
     shapes: np.ndarray  # flat, for each entry the shape over the modes of its group
     shape_start: np.ndarray  # (entry,)
     stress_start: int  # first stress channel: two per section
+    stress_weight: np.ndarray  # (RATIO,) steps that a stress taken at a phase stands for, 0 where none is taken
     extra_support: int  # number of supports: their force resultants follow, two per support, then the force channels
     values: np.ndarray  # (displacement channel + extra channel, column, lane): displacement [m], forces [N]
     columns: int  # columns of values
@@ -667,13 +668,10 @@ def reach(contact, p, u1, u2):
 @njit(**INLINE)
 def contact_forces(contact, p, u1, u2):
     """Force on the structure at point p along its two directions: radial, unilateral, circular obstacle."""
-    zero = spread(0.0)
     d1, d2, square, gap = reach(contact, p, u1, u2)
-    if not any_greater(square, gap * gap):
-        return zero, zero
-    # -k (r - gap) d / r = k (gap / r - 1) d, kept only where r > gap
-    k = load(contact.stiffness, p)
-    per_metre = select_greater(square, gap * gap, k * fma(gap, inverse_root(square), spread(-1.0)), zero)
+    # -k (r - gap) d / r = k (gap / r - 1) d, kept only where r > gap; no branch: with lanes of their own it would be guessed wrong too often
+    per_metre = load(contact.stiffness, p) * fma(gap, inverse_root(square), spread(-1.0))
+    per_metre = select_greater(square, gap * gap, per_metre, spread(0.0))
     return per_metre * d1, per_metre * d2
 
 
@@ -916,7 +914,7 @@ def solve_contact(contact, modal, state, tally, free, u, force, pull):
 
     Solves u = free + G f(u), G the compliance of a step, by fixed point, lane by lane: a lane whose forces have settled
     is frozen, so it does not see how many passes its neighbours need. The contraction factor is checked before the run
-    (integrate.contact_contraction). Products with G are kept from step to step (``pull``). Where nothing is near and has
+    (contraction.contact_contraction). Products with G are kept from step to step (``pull``). Where nothing is near and has
     not been for two steps, nothing is written: u is free, and all forces are zero as they were.
     """
     zero, one, half = spread(0.0), spread(1.0), spread(0.5)
@@ -1122,7 +1120,7 @@ def project_channels(modal, g, output, array, base, entries, channels):
 @njit(**INLINE)
 def tally_stress(modal, state, tally, output, phase, channels):
     """Stresses at the end of the step, unfiltered: their statistics are not for the record's filter to take the impacts from."""
-    sections = tally.peak_square_stress.size // LANES
+    sections, weight = tally.peak_square_stress.size // LANES, spread(output.stress_weight[phase])
     for c in range(output.stress_start, output.stress_start + 2 * sections):
         store(channels, c, spread(0.0))
     for g in range(modal.mode_start.size - 1):
@@ -1132,7 +1130,7 @@ def tally_stress(modal, state, tally, output, phase, channels):
     for s in range(sections):
         s1, s2 = load(channels, output.stress_start + 2 * s), load(channels, output.stress_start + 2 * s + 1)
         square = fma(s1, s1, s2 * s2)
-        store(tally.square_stress, s, load(tally.square_stress, s) + square)
+        store(tally.square_stress, s, fma(weight, square, load(tally.square_stress, s)))
         store(tally.peak_square_stress, s, larger(square, load(tally.peak_square_stress, s)))
 
 
@@ -1231,7 +1229,8 @@ def march(modal, contact, laws, state, tally, output, trace, work, drive):
             else:
                 keep_step(modal, contact, laws, state, trace, u, force, pull, False)
             update(modal, state, tally, force, active, phase, free)
-            tally_stress(modal, state, tally, output, phase, work.channels)
+            if output.stress_weight[phase] > 0.0:
+                tally_stress(modal, state, tally, output, phase, work.channels)
             filter_forces(modal, state, output, resultant, drive, n * forces, forces, touched, phase, tick)
             state.flag[0] = 0 if touched != 0 else min(state.flag[0] + 1, QUIET)
             state.flag[1] += 1

@@ -12,6 +12,7 @@ FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the las
 FIXED_POINT_ERROR = 1e-6  # relative error that may be left in them: the change times the contraction
 FIXED_POINT_PASSES = 40
 DIVERGED_DISPLACEMENT = 1e3  # m
+STRESS_RATE = 1e4  # Hz at least, of the stresses behind RMS and peak
 
 
 class ModalLayout:
@@ -123,7 +124,7 @@ class ModalLayout:
 
     def contact(self, gap: np.ndarray, imperfection: np.ndarray, contraction: float) -> Contact:
         """The kernel's Contact: gap (lane,) nominal gap [m]; imperfection (contact_point, 2, lane) [m] added to the centres;
-        contraction of the fixed point (integrate.contact_contraction), which sets how far it is followed.
+        contraction of the fixed point (contraction.contact_contraction), which sets how far it is followed.
 
         Points with special laws are out of reach here, see laws().
         """
@@ -226,7 +227,7 @@ class ModalLayout:
         counts = {"channels": channels, "resultant": 2 * len(model.support_names), "stick": laws, "held_stick": laws, "slider": elements, "held_slider": elements}
         return Work(**{name: _aligned((counts.get(name, rows), LANES)) for name in Work._fields})
 
-    def output(self, weights: np.ndarray, columns: int) -> Output:
+    def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
         """Output buffers: displacement channels are the sensors, then the shape line; then the stresses of each section."""
         model = self.model
         sections = model.stress_shapes.shape[1]
@@ -255,6 +256,7 @@ class ModalLayout:
             shapes=np.concatenate([*shapes, np.zeros(1)]),
             shape_start=np.array(shape_start, np.int64),
             stress_start=int(stress_start),
+            stress_weight=stress_weight(steps_per_second),
             extra_support=supports,
             values=_aligned((stress_start + extras, columns, LANES)),
             columns=int(columns),
@@ -269,6 +271,14 @@ class ModalLayout:
         own = self.model.contact_laws
         at_lands = np.isin(np.arange(len(own.gap)), own.land_point)
         return int(np.sum(~own.plain & ~at_lands)) + len(own.land_point), len(self.model.element_names)
+
+
+def stress_weight(steps_per_second: float) -> np.ndarray:
+    """Steps that a stress taken at each phase of a tick stands for, (RATIO,): as few phases as STRESS_RATE needs, evenly spread."""
+    taken = min(RATIO, int(np.ceil(STRESS_RATE * RATIO / steps_per_second)))
+    weights = np.zeros(RATIO)
+    weights[np.arange(taken) * RATIO // taken] = RATIO / taken
+    return weights
 
 
 def _inverse(values):

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import kernels
-from .integrate import IntegrationError, checked_contraction, modal_energies, start_state, to_lanes
+from .contraction import IntegrationError, checked_contraction
+from .integrate import modal_energies, start_state, to_lanes
 from .kernels import RATIO, SLOTS
 from .layout import ModalLayout
 from .model import ModalModel
@@ -52,7 +53,7 @@ def trace_lanes(model: ModalModel, steps_per_second: float, steps: int, gap, imp
     start_state(layout, modal, contact, laws, state, work, force[0])
     start = state.row_displacement.copy(), state.row_force.copy()
     before = sum(modal_energies(layout, modal.dt, state)), stored_energy(contact, laws, state)
-    trace, output = layout.trace(ticks * RATIO), layout.output(np.zeros((RATIO, SLOTS)), ticks)
+    trace, output = layout.trace(ticks * RATIO), layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
     done = kernels.march(modal, contact, laws, state, tally, output, trace, work, np.ascontiguousarray(force[1:]))
     if done < ticks * RATIO:
         raise IntegrationError(f"diverged at t = {done / steps_per_second:.4f} s: raise integration.steps_per_second or check forces and stiffnesses")

@@ -7,8 +7,9 @@ import pytest
 
 from tests.oracle import exact_contact, newmark_contact
 from vibroimpact import integrate, layout
+from vibroimpact.contraction import IntegrationError
 from vibroimpact.excitation import band_limited_noise
-from vibroimpact.integrate import ENERGY_TERMS, IntegrationError, Schedule, march_lanes
+from vibroimpact.integrate import ENERGY_TERMS, Schedule, march_lanes
 from vibroimpact.kernels import LANES
 
 GAP = 2.8886e-4

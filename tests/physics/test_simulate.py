@@ -96,13 +96,21 @@ def test_below_contact_nothing_moves_in_plane(records):
     assert float(record.wear_work_rate.max()) == 0.0
 
 
-def test_stress_at_20_newton_is_that_of_the_testbed(records):
-    """Prototypes of the stand-in tube gave about 34 MPa RMS and 144 MPa peak over 49 s at the plate; a short record has less of a peak."""
-    chosen = [records[Case(20.0, GAP, seed)] for seed in (0, 1, 2)]
-    plate = np.mean([[record.stress_rms.sel(section=name) for name in ("left_middle", "right_middle")] for record in chosen])
-    assert plate == pytest.approx(34e6, rel=0.2)
+def test_stress_at_20_newton_is_that_of_the_testbed(short_config, study_model):
+    """Prototypes of the stand-in tube gave about 34 MPa RMS and 144 MPa peak over 49 s at the plate; a shorter record has less of a peak.
+
+    Eight records of 12 s: their mean scatters by some 3 %, that of three records of 3 s by 15 %.
+    """
+    longer = Settings({**short_config, "record": {**short_config.record, "duration_s": 12.0}})
+    found = [record for _, record in simulate_cases(longer, study_model, [Case(20.0, GAP, seed) for seed in range(8)])]
+    plate = np.mean([[record.stress_rms.sel(section=name) for name in ("left_middle", "right_middle")] for record in found])
+    assert plate == pytest.approx(34e6, rel=0.15)
+    assert 60e6 < max(float(record.stress_peak.max()) for record in found) < 250e6
+
+
+def test_the_stress_flag_tells_of_the_peak(records):
     assert all(int(record.stress_flag) == int(record.stress_peak.max() > 60e6) for record in records.values())
-    assert any(int(record.stress_flag) for record in chosen)
+    assert any(int(records[Case(20.0, GAP, seed)].stress_flag) for seed in (0, 1, 2))
     assert not int(records[Case(0.5, GAP, 0)].stress_flag)
 
 

@@ -17,7 +17,7 @@ from vibroimpact.validation.check import Check
 from vibroimpact.validation.judges_opensees import opensees_impacts
 from vibroimpact.validation.variant import changed
 
-RUN = {"structure.mesh.elements_per_span": 10, "structure.mesh.elements_per_bend": 40,
+RUN = {"integration.scheme": "newmark", "integration.steps_per_second": 51200, "structure.mesh.elements_per_span": 10, "structure.mesh.elements_per_bend": 40,
        "damping": {"kind": "rayleigh", "mass_coefficient_per_s": 1.0, "stiffness_coefficient_s": 2.0e-6}}  # fmt: skip
 LOAD_RMS_N, BAND_HZ, SEED, RAMP_S = 20.0, (5.0, 200.0), 3, 0.005  # the ramp: at rest, zero force and no acceleration
 HORIZON_S, MESH_HORIZON_S = 0.1, 0.05
