@@ -18,9 +18,9 @@ LAYERS = (
      "provenance", "stopwatch", "centreline", "beam", "kernels", "laws", "model"),
     ("records", "variables"),
     ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "force_stream", "spectra", "spectra_of_case", "spectral_kernel", "campaign"),
-    ("ritz", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),
+    ("ritz", "modifications", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),
     ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "identify", "synthetic_campaign"),
-    ("consistency", "statistics_table", "timing", "f16"),
+    ("effects", "discrepancy", "consistency", "statistics_table", "timing", "f16"),
     ("validation",),
     ("figures",),
 )
