@@ -44,11 +44,12 @@ def test_a_breach_of_the_contract_is_told_with_all_others(campaign, tmp_path):
     broken = campaign.drop_vars("gap").assign(channel_kind=("channel", np.array(["acceleration", "tilt", "displacement"], dtype=object)))
     broken["response"] = broken["response"].transpose("channel", "record", "time")
     del broken.attrs["sampling_frequency"]
-    broken["force"].attrs["units"] = "lbf"
+    broken = broken.drop_vars("force_channel_units")
+    broken["force"].attrs["units"] = "furlong"
     with pytest.raises(CampaignError) as refusal:
         write_campaign(broken, tmp_path / "broken.nc")
     told = str(refusal.value)
-    for part in ("no variable 'gap'", "'response' has dimensions ('channel', 'record', 'time')", "sampling_frequency", "lbf", "channel_kind 'tilt'"):
+    for part in ("no variable 'gap'", "'response' has dimensions ('channel', 'record', 'time')", "sampling_frequency", "furlong", "channel_kind 'tilt'"):
         assert part in told
     assert not (tmp_path / "broken.nc").exists()
     write_record(broken, tmp_path / "broken.nc")

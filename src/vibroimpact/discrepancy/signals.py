@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.campaign import channel_signal
+from vibroimpact.campaign import channel_signal, force_signal
 
 BANDS = 24
 DEFAULT_BAND_HZ = (5.0, 200.0)
@@ -70,7 +70,10 @@ def signals_of(campaign, longest_s=None):
         for channel in range(channels):
             signal = channel_signal(campaign, record, channel)[:samples]
             response[record, channel, : len(signal)] = signal
-    force = np.asarray(campaign["force"].values, float)[..., :samples]
+    force = np.full((records, campaign.sizes["force_channel"], samples), np.nan)
+    for record, channel in np.ndindex(force.shape[:2]):
+        signal = force_signal(campaign, record, channel)[:samples]
+        force[record, channel, : len(signal)] = signal
     valid = np.isfinite(response).all(axis=1)
     force = np.where(valid[:, None], force, np.nan)
     band = excited_band(force, rate)

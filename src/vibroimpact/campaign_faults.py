@@ -1,0 +1,115 @@
+"""Faults of single signals of a record: numbers that are missing, clipped tops, drop-outs, drifting levels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+TOP_SHARE = 0.01  # width of the bins at the extreme, as a share of it
+FEWEST_AT_TOP = 8  # samples in the outermost bin
+PILE_UP = 8.0  # times as many samples as in the bin beneath: 3 for a sine, below 1 for random vibration
+EQUAL_IN_A_ROW = 3
+DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a value that is held for longer than both
+QUIET_S, QUIET_SHARE = 0.1, 0.01  # a stretch whose RMS and whose differences' RMS fall to this share of the median
+TREND_SEGMENT_S, TREND_SEGMENTS, TREND_BANDS = 2.0, 8, 6
+TREND_T, TREND_DB = 5.0, 1.5  # 3.2 is the largest |t| of the 140 signals of the development campaigns
+START_UP_SHARE = 0.1  # of the record, 5 s at most, that a start from rest takes
+START_UP_S = 5.0
+
+
+def missing(signal):
+    """Return (number of samples that are no number, index of the first) of a signal (time,), or None."""
+    holes = np.flatnonzero(~np.isfinite(signal))
+    return (holes.size, int(holes[0])) if holes.size else None
+
+
+def clipped(signal):
+    """Return the share of samples (0 to 1) at a flat top of a signal (time,) without holes, or None where the tops are round.
+
+    Flat: the same extreme value three times in a row, or far more samples within 1 % of it than in the next 1 %.
+    """
+    found = 0
+    for side in (signal - np.median(signal), np.median(signal) - signal):
+        top = side.max()
+        if top <= 0.0:
+            continue
+        at_top = np.count_nonzero(side > (1.0 - TOP_SHARE) * top)
+        beneath = np.count_nonzero(side > (1.0 - 2.0 * TOP_SHARE) * top) - at_top
+        equal = side >= top * (1.0 - 1e-7)
+        pile = at_top >= FEWEST_AT_TOP and at_top > PILE_UP * max(beneath, 1)
+        if pile or _longest(equal) >= EQUAL_IN_A_ROW and not _coarse(signal):
+            found += at_top
+    return found / signal.size if found else None
+
+
+def _coarse(signal):
+    """Whether a signal is written in so few steps that equal neighbours are usual."""
+    return np.mean(np.diff(signal) == 0.0) > 0.05
+
+
+def _longest(flags):
+    """Return the length of the longest run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
+    return int(np.max(edges[1::2] - edges[::2], initial=0))
+
+
+def dropped_out(signal, rate, starts_at_rest):
+    """Return (start, duration) in s of the longest drop-out of a signal (time,) without holes, or None.
+
+    A drop-out is a value that is held, or a stretch in which motion and its differences nearly vanish. A record from rest may
+    begin with one.
+    """
+    begin = int(min(START_UP_SHARE * signal.size, START_UP_S * rate)) if starts_at_rest else 0
+    kept = signal[begin:]
+    held = np.diff(kept) == 0.0
+    length = _longest(held) + 1
+    if length > max(DROP_OUT_SAMPLES, DROP_OUT_S * rate) and not _coarse_runs(held, length):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], held.astype(np.int8), [0]])))
+        first = int(edges[::2][np.argmax(edges[1::2] - edges[::2])])
+        return (begin + first) / rate, length / rate
+    size = max(int(QUIET_S * rate), 16)
+    blocks = kept[: kept.size // size * size].reshape(-1, size)
+    if len(blocks) < 8:
+        return None
+    moving, changing = blocks.std(axis=1), np.diff(blocks, axis=1).std(axis=1)
+    quiet = (moving < QUIET_SHARE * np.median(moving)) & (changing < QUIET_SHARE * np.median(changing))
+    if not quiet.any():
+        return None
+    return (begin + int(np.argmax(quiet)) * size) / rate, _longest(quiet) * size / rate
+
+
+def _coarse_runs(held, length):
+    """Whether runs of equal values are usual: the longest one then is no drop-out but the converter's step."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], held.astype(np.int8), [0]])))
+    runs = np.sort(edges[1::2] - edges[::2])[:-1] + 1
+    return runs.size > 10 and length < 5 * runs[int(0.99 * runs.size)]
+
+
+def level_trend(signal, rate, band_Hz, starts_at_rest):
+    """Return (change in dB over the record, its t statistic) of the mean band level of a signal (time,), or None if too short.
+
+    The levels of 6 bands over band_Hz in segments of 2 s, averaged in dB; a straight line through them, its error widened for the
+    correlation of neighbours.
+    """
+    begin = int(min(START_UP_SHARE * signal.size, START_UP_S * rate)) if starts_at_rest else 0
+    kept = signal[begin:]
+    size = int(max(TREND_SEGMENT_S, 4.0 / band_Hz[0]) * rate)
+    count = (2 * kept.size) // size - 1
+    if count < TREND_SEGMENTS:
+        return None
+    window, step = np.hanning(size), size // 2
+    power = np.array([np.abs(np.fft.rfft(window * kept[index * step : index * step + size])) ** 2 for index in range(count)])
+    frequency, edges = np.fft.rfftfreq(size, 1.0 / rate), np.geomspace(*band_Hz, TREND_BANDS + 1)
+    inside = [(frequency >= low) & (frequency <= high) for low, high in zip(edges[:-1], edges[1:], strict=True)]
+    levels = np.array([10.0 * np.log10(np.maximum(power[:, band].sum(axis=1), np.finfo(float).tiny)) for band in inside if band.any()]).mean(axis=0)
+    place = np.linspace(-0.5, 0.5, count)
+    centred = levels - levels.mean()
+    change = place @ centred / (place @ place)
+    rest = centred - change * place
+    neighbours = float(np.clip(rest[1:] @ rest[:-1] / max(rest @ rest, 1e-300), 0.0, 0.9))
+    error = np.sqrt(rest @ rest / (count - 2) / (place @ place) * (1.0 + neighbours) / (1.0 - neighbours))
+    return float(change), float(change / max(error, 1e-300))
+
+
+def drifting(trend):
+    """Whether a level_trend is more than chance and matters."""
+    return trend is not None and abs(trend[1]) > TREND_T and abs(trend[0]) > TREND_DB
