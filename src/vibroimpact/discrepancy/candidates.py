@@ -68,12 +68,15 @@ class Candidate:
         return measuring_of(self.effect_id, parameters, self.location, names) if self.effect.measured else None
 
 
-def linear_candidates(values, names, held):
-    """Return the candidates that the lowest record tells of by itself; held: names of what the campaign holds beyond force and response."""
+def linear_candidates(values, names, held, modes):
+    """Return the candidates that the lowest record tells of by itself; held: names of what the campaign holds beyond force and response; modes: those
+    that were seen, from 0."""
     found = []
     for effect in EFFECTS.values():
         if effect.linear and set(effect.needs) <= set(held):
             locations = places(names) if effect.measured else effect.locations(values)
+            if effect.id == "mode_frequency_error":
+                locations = [f"mode_{mode + 1}" for mode in modes]
             found += [Candidate(effect.id, location) for location in locations]
     return found
 

@@ -9,8 +9,12 @@ CORRECTION_LIMIT = 2.0  # sigma: a nuisance is not corrected beyond it, so that 
 NAMED_BEYOND = 2.0  # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their interval outside
 
 # What two codes of the same physics differ by in a feature, one sigma, beside the scatter of seeds.
-FEATURE_SD = {"power": 0.15, "coherence": 0.03, "co": 0.05, "quad": 0.05, "skewness": 0.05, "kurtosis": 0.04}
-LAW_SD = 0.10  # of an effect's own change of a feature: two codes never share a law to the letter
+FEATURE_SD = {"power": 0.15, "coherence": 0.03, "co": 0.05, "quad": 0.05, "skewness": 0.12, "kurtosis": 0.12}
+TAIL = 100.0  # degrees of freedom of the multivariate t law of a record's features: what no model explains shall not outvote the rest
+UNSEEN_DAMPING = 0.6  # factor of the damping of modes that the lowest record does not show, one sigma: what it changes is a direction left free
+LEVEL_SD = {True: 0.2, False: 0.6}  # dB common to all bands and channels that the force drives in the linear structure, and that it does not
+LAW_SD = 0.08  # of an effect's own change of a feature: two codes never share a law to the letter
+LAW_COMMON_SD = 0.15  # the same, common to all features of the channels that the force drives, or does not
 RESIDUAL_SD = 0.15  # of ln of the low-level residual over noise
 
 NULL_SEEDS = 16  # runs of every record without an effect
