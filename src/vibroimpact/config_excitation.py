@@ -35,10 +35,14 @@ class DeadLoad(Section):
 
 
 class Forces(Section):
-    """Where the force of the case acts: factor times the force at the point, and what is listed under `also` and `distributed`."""
+    """Where the force of the case acts: factor times the force at the point, and what is listed under `also` and `distributed`.
+
+    turn_deg: angle about z by which the force at the point acts away from its stated direction.
+    """
 
     point: Name
     direction: Vector
+    turn_deg: Phase_deg = 0.0
     factor: Number = 1.0
     also: tuple[ForcePoint, ...] = ()
     distributed: tuple[Distributed, ...] = ()

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from vibroimpact.config_types import (Axis, Coefficient, Height_m, Name, Number, Pair, Positive_factor, Section, Stiffness, Vector, choice, count,
+from vibroimpact.config_types import (Axis, Coefficient, Damping_ratio, Height_m, Name, Number, Pair, Positive_factor, Section, Stiffness, Vector, choice, count,
                            one_or_list, within)
 
 Friction = Annotated[Number, within("Coulomb's coefficient, 0.2 for steel on steel", at_least=0, at_most=10)]
@@ -35,6 +35,22 @@ class Lobes(Section):
     angle_deg: Number = 0.0
 
 
+class Plate(Section):
+    """What carries a support, where it gives way: a mass on a spring and damper in both transverse directions."""
+
+    mass_kg: Positive_factor
+    stiffness_N_per_m: Stiffness
+    damping_ratio: Damping_ratio = 0.02
+
+
+class PointMass(Section):
+    """A mass at a named point of the structure."""
+
+    name: Name
+    point: Name
+    mass_kg: Positive_factor
+
+
 class Support(Section):
     """A gap support: contact points evenly spaced over its height, both edges included (one point: its middle).
 
@@ -58,6 +74,7 @@ class Support(Section):
     friction: Friction = 0.0
     stick_stiffness_ratio: Positive_factor = 1.0
     profile: choice(Circular, Planes, Lobes) = Circular(kind="circular")
+    plate: Plate | None = None
 
 
 class LocalElement(Section):

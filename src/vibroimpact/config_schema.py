@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from vibroimpact.config_excitation import Excitation
-from vibroimpact.config_local import Initial, LocalElement, Support
+from vibroimpact.config_local import Initial, LocalElement, PointMass, Support
 from vibroimpact.config_structure import Damping, ModalDamping, Structure
 from vibroimpact.config_types import (Axis, Band_Hz, Duration_s, Force_N, Fraction_of_gap, Frequency_Hz, Gap_m, Name, Number, Overlap,
                            Positive_factor, Section, Start_up_s, Stiffness_range, Stress_Pa, Study_name, Vector, count, one_or_list, within)
@@ -126,6 +126,8 @@ class Config(Section):
     damping: Damping = ModalDamping(kind="modal", first_ratios=(0.015, 0.015), other_ratio=0.002)
     supports: tuple[Support, ...] = ()
     elements: tuple[LocalElement, ...] = ()
+    masses: tuple[PointMass, ...] = ()
+    mode_frequency_factors: tuple[Positive_factor, ...] = ()
     initial: Initial | None = None
     points: dict[Name, Vector] = {}
     excitation: Excitation

@@ -144,11 +144,12 @@ Structure = choice(UTube, Path, Chain, Matrices)
 
 
 class ModalDamping(Section):
-    """Damping ratios of the free modes: the first ones one by one, then all others."""
+    """Damping ratios of the free modes: the first ones one by one, then all others; mass_coefficient M on top, as a fluid along the tube gives."""
 
     kind: Literal["modal"]
     first_ratios: tuple[Damping_ratio, ...] = ()
     other_ratio: Damping_ratio
+    mass_coefficient_per_s: Coefficient = 0.0
 
 
 class RayleighDamping(Section):

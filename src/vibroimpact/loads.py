@@ -19,12 +19,21 @@ def force_row(structure, place, excitation):
         return np.zeros(structure.dofs)
     if excitation.kind == "base_motion":
         return -unit_vector(excitation.direction) @ structure.inertia
-    row = excitation.factor * (unit_vector(excitation.direction) @ place(excitation.point))
+    row = excitation.factor * (turned(excitation.direction, excitation.turn_deg) @ place(excitation.point))
     for force in excitation.also:
         row = row + force.factor * (unit_vector(force.direction) @ place(force.point))
     for load in excitation.distributed:
         row = row + load.factor_per_m * line_load(structure, load)
     return row
+
+
+def turned(direction, angle_deg):
+    """Return the unit vector (3,) along a direction turned about z by an angle in degrees; the same bits where the angle is 0."""
+    x, y, z = unit_vector(direction)
+    if angle_deg == 0.0:
+        return np.array([x, y, z])
+    cosine, sine = np.cos(np.deg2rad(angle_deg)), np.sin(np.deg2rad(angle_deg))
+    return np.array([cosine * x - sine * y, sine * x + cosine * y, z])
 
 
 def line_load(structure, load):

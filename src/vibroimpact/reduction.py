@@ -7,6 +7,7 @@ from vibroimpact.centreline import SAME_PLACE_M
 from vibroimpact.loads import dead_load, force_row, with_base_mode
 from vibroimpact.local_elements import element_laws, element_rows, split_damping
 from vibroimpact.model import ModalModel
+from vibroimpact.modifications import with_factors, with_masses, with_plates
 from vibroimpact.point_structure import PointStructure, build_point_structure
 from vibroimpact.ritz import FAMILIES, basis_vectors, eigenmodes, orthonormal_basis, uncoupled_groups
 from vibroimpact.structure import build_structure
@@ -37,8 +38,10 @@ def build_model(config):
     tube = config.structure.kind in TUBES
     structure = build_structure(config) if tube else build_point_structure(config)
     place = _places(structure, config)
+    structure = with_masses(structure, config.masses, place)
     local_rows = np.vstack([element_rows(config.elements, place, structure.dofs), *(row[None] for row, _ in ([] if tube else structure.dampers))])
     omega, shapes, full = _modes(structure, local_rows, config.basis)
+    omega = with_factors(omega, config.mode_frequency_factors)
     damping, damper_shapes, coefficients = modal_damping(omega, config.damping), np.zeros((len(omega), 0)), []
     if not tube:
         own, damper_shapes, coefficients = split_damping(shapes.T @ structure.damping @ shapes)
@@ -62,7 +65,7 @@ def build_model(config):
     }  # fmt: skip
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
-    return ModalModel(**fields)
+    return ModalModel(**with_plates(fields, config.supports))
 
 
 def _places(structure, config):
@@ -122,7 +125,7 @@ def modal_basis(structure, groups, basis, families=FAMILIES):
 def modal_damping(omega, damping):
     """Return (mode,) 2 zeta omega in 1/s for ascending omega (mode,) rad/s.
 
-    damping.kind modal: first_ratios for the first modes that are not rigid-body motion, other_ratio for the rest. rayleigh:
+    damping.kind modal: first_ratios for the first modes that are not rigid-body motion, other_ratio for the rest, and mass_coefficient. rayleigh:
     C = mass_coefficient M + stiffness_coefficient K, diagonal in this basis.
     """
     if damping.kind == "rayleigh":
@@ -130,7 +133,7 @@ def modal_damping(omega, damping):
     ratios = np.full(len(omega), float(damping.other_ratio))
     elastic = np.flatnonzero(omega > 0.0)[:len(damping.first_ratios)]
     ratios[elastic] = damping.first_ratios[:len(elastic)]
-    return 2.0 * ratios * omega
+    return 2.0 * ratios * omega + damping.mass_coefficient_per_s
 
 
 def quality_report(config):

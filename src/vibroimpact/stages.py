@@ -12,7 +12,7 @@ from vibroimpact.config_schema import Config
 
 STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "targets": ("study", "grid", "identification", "record.every_step", "record.keep_time_series", "overlay.load_rms_N", "overlay.campaign"),
-    "basis": ("structure", "damping", "supports", "elements", "initial", "points", "excitation", "basis", "record.sensors",
+    "basis": ("structure", "damping", "supports", "elements", "masses", "mode_frequency_factors", "initial", "points", "excitation", "basis", "record.sensors",
               "record.shape_line"),
     "simulate": ("study", "seed", "excitation", "integration", "grid.gap_m", "grid.seeds", "record.duration_s",
                  "record.sampling_frequency_Hz", "record.stress_limit_Pa", "record.every_step"),
@@ -26,7 +26,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "consistency": ("study", "grid", "identification"),
     "synthetic_campaign": ("study", "seed", "points", "excitation", "integration", "grid.gap_m", "record.duration_s",
                            "record.sampling_frequency_Hz", "record.stress_limit_Pa", "record.every_step", "overlay.gap_ratio", "overlay.noise", "overlay.seed"),
-    "figures_model": ("structure", "damping", "supports", "elements", "initial", "points", "excitation", "basis", "grid.gap_m", "record.sensors", "record.shape_line"),
+    "figures_model": ("structure", "damping", "supports", "elements", "masses", "mode_frequency_factors", "initial", "points", "excitation", "basis", "grid.gap_m", "record.sensors", "record.shape_line"),
     "figures_response": ("structure.section", "excitation", "grid.gap_m", "spectra", "identification"),
     "figures_identification": ("structure.section", "excitation", "grid.gap_m", "record.shape_line", "spectra", "identification"),
     "figures_checks": ("structure.section", "record.stress_limit_Pa", "identification.stiffness_range_N_per_m"),

@@ -1,0 +1,59 @@
+"""A campaign's channels and forces on the model: the reduced model with the campaign's sensors and drives in place of the study's."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.campaign import CampaignError
+from vibroimpact.reduction import build_model
+
+NEAR_M = 5.0e-3  # farther from the structure is no place on it
+
+
+def attach(config, campaign):
+    """Return the ModalModel of `config` that has the campaign's channels as sensors and its forces as drives, and nothing else to keep.
+
+    config: a checked Config or Settings of a tube. Sensors are the displacements along channel_direction, positive in its sense, in the order of the channels.
+    Raises CampaignError when a channel or force is farther than 5 mm from the structure; the message lists all of them.
+    """
+    places = np.vstack([campaign["channel_point"].values, campaign["force_channel_point"].values])
+    directions = np.vstack([campaign["channel_direction"].values, campaign["force_channel_direction"].values]).astype(float)
+    names = [*map(str, campaign["channel_name"].values), *map(str, campaign["force_channel_name"].values)]
+    _require_directions(directions, names)
+    points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
+    sensors = config.record.model_copy(update={"sensors": config_sensors(config, tuple(points))})
+    try:
+        model = build_model(config.model_copy(update={"points": {**config.points, **points}, "record": sensors}))
+    except ValueError as error:
+        raise CampaignError(_sentence(str(error), names)) from None
+    along = directions / np.linalg.norm(directions, axis=1)[:, None]
+    shapes = np.einsum("mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), along)
+    channels = campaign.sizes["channel"]
+    return replace(
+        model,
+        sensor_shapes=shapes[:, :channels], sensor_names=tuple(names[:channels]), sensor_positions=places[:channels], sensor_directions=along[:channels],
+        drive_shapes=shapes[:, channels:],
+        line_shapes=np.zeros((model.modes, 0)), line_positions=np.zeros((0, 3)), line_arc_length=np.zeros(0),
+        stress_shapes=np.zeros((model.modes, 0, 2)), section_names=(),
+    )  # fmt: skip
+
+
+def config_sensors(config, points):
+    """Return the section record.sensors with all three directions of some points."""
+    from vibroimpact.config_schema import Sensors
+
+    return Sensors(points=points, directions=("x", "y", "z"))
+
+
+def _require_directions(directions, names):
+    """Raise CampaignError for a direction that is no direction."""
+    for direction, name in zip(directions, names, strict=True):
+        if not np.isfinite(direction).all() or np.linalg.norm(direction) < 1.0e-6:
+            raise CampaignError(f"channel {name} has the direction {direction.tolist()}: give a unit vector")
+
+
+def _sentence(message, names):
+    """A message about place_<number> as one about the channel of that number."""
+    for number in reversed(range(len(names))):
+        message = message.replace(f"point place_{number}", f"channel {names[number]}")
+    return message

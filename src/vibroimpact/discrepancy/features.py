@@ -1,0 +1,100 @@
+"""What is compared: band powers, coherences, skewness and peakedness of a record, with the measuring noise in both.
+
+Every feature is in units in which its scatter is about even over the level: decibels for powers, Fisher's z for coherences and
+correlations, the cube root of skewness, the logarithm of kurtosis.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+COARSE = 8  # bands of the coherences
+SEGMENT_S = 5.0
+LEAST_SEGMENTS = 7
+SAME_POINT_M = 1.0e-3
+BLEND_DB = 10.0  # powers that differ by more than this are compared in logarithm of the difference
+
+
+@dataclass(frozen=True)
+class FeatureLayout:
+    """Which features a record of a campaign has.
+
+    edges (band + 1,), coarse (coarse + 1,) Hz; pairs [(channel, channel)]: two directions at one point; kind, channel, band (feature,): what each
+    feature is; band is -1 where it has none.
+    """
+
+    rate: float
+    edges: np.ndarray
+    coarse: np.ndarray
+    pairs: list
+    kind: np.ndarray
+    channel: np.ndarray
+    band: np.ndarray
+
+    def power(self, features):
+        """Return (..., channel, band) dB from features (..., feature)."""
+        chosen = np.flatnonzero(self.kind == "power")
+        return features[..., chosen].reshape(*features.shape[:-1], -1, len(self.edges) - 1)
+
+
+def feature_layout(signals, points):
+    """Return the FeatureLayout of Signals; points (channel, 3) m."""
+    channels = len(signals.names)
+    pairs = [(a, b) for a in range(channels) for b in range(a + 1, channels)
+             if np.linalg.norm(points[a] - points[b]) < SAME_POINT_M and signals.kinds[a] == signals.kinds[b]]  # fmt: skip
+    bands = len(signals.edges) - 1
+    rows = [("power", c, b) for c in range(channels) for b in range(bands)]
+    rows += [("coherence", c, b) for c in range(channels) for b in range(COARSE)]
+    rows += [(kind, a, b) for kind in ("co", "quad") for a, _ in pairs for b in range(COARSE)]
+    rows += [(kind, c, -1) for kind in ("skewness", "kurtosis") for c in range(channels)]
+    kind, channel, band = zip(*rows, strict=True)
+    return FeatureLayout(signals.rate, signals.edges, np.geomspace(*signals.band_Hz, COARSE + 1), pairs, np.array(kind), np.array(channel), np.array(band))
+
+
+def record_features(layout, force, response):
+    """Return (feature,) of one record: force (sample,), response (channel, sample), both of valid samples."""
+    samples = response.shape[-1]
+    length = fft.next_fast_len(min(round(SEGMENT_S * layout.rate), 2 * samples // (LEAST_SEGMENTS + 1)))
+    step = length // 2
+    count = 1 + (samples - length) // step
+    window = np.hanning(length + 1)[:-1].astype(np.float32)
+    series = np.concatenate([response, force[None]]).astype(np.float32)
+    segments = np.lib.stride_tricks.sliding_window_view(series, length, axis=-1)[:, : count * step : step]
+    frequency = fft.rfftfreq(length, 1.0 / layout.rate)
+    lines = frequency <= layout.edges[-1]
+    spectra = fft.rfft(segments * window, axis=-1)[..., lines]
+    scale = 2.0 / (layout.rate * np.sum(window.astype(float) ** 2)) * layout.rate / length
+    power = scale * np.mean(np.abs(spectra) ** 2, axis=1).astype(float)
+    cross = scale * np.mean(spectra[:-1] * spectra[-1:].conj(), axis=1)
+    fine = _sums(frequency[lines], layout.edges)
+    coarse = _sums(frequency[lines], layout.coarse)
+    values = [10.0 * np.log10(np.maximum(power[:-1] @ fine, 1.0e-300)).ravel()]
+    # coherence from spectra summed over lines would mix phases: it is averaged line by line, by power
+    coherent = np.abs(cross) ** 2 / np.maximum(power[-1], 1.0e-300)
+    share = (coherent @ coarse) / np.maximum(power[:-1] @ coarse, 1.0e-300)
+    values.append(np.arctanh(np.sqrt(np.clip(share, 0.0, 0.9999))).ravel())
+    both = [scale * np.mean(spectra[a] * spectra[b].conj(), axis=0) for a, b in layout.pairs]
+    for part in (np.real, np.imag):
+        for (a, b), product in zip(layout.pairs, both, strict=True):
+            level = np.sqrt((power[a] @ coarse) * (power[b] @ coarse))
+            values.append(np.arctanh(np.clip(part(product) @ coarse / np.maximum(level, 1.0e-300), -0.9999, 0.9999)))
+    centred = response - response.mean(axis=-1, keepdims=True)
+    sd = np.maximum(centred.std(axis=-1), 1.0e-300)
+    values.append(np.cbrt(np.mean((centred / sd[:, None]) ** 3, axis=-1)))
+    values.append(np.log(np.mean((centred / sd[:, None]) ** 4, axis=-1) / 3.0))
+    return np.concatenate(values)
+
+
+def compressed(difference):
+    """Differences of features with those beyond BLEND_DB drawn in: an exact match of what is far off is not asked for."""
+    return BLEND_DB * np.arcsinh(difference / BLEND_DB)
+
+
+def _sums(frequency, edges):
+    """Return (line, band) 0 or 1: the lines of each band; a band that no line falls into takes the nearest."""
+    inside = (frequency[:, None] >= edges[:-1]) & (frequency[:, None] < edges[1:])
+    middle = np.sqrt(edges[:-1] * edges[1:])
+    for band in np.flatnonzero(~inside.any(axis=0)):
+        inside[np.argmin(np.abs(frequency - middle[band])), band] = True
+    return inside.astype(float)

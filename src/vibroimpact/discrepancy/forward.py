@@ -1,0 +1,67 @@
+"""Simulating a campaign's records: the measured force on the model, the response as its sensors would have kept it."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from vibroimpact.excitation import resample_measured
+from vibroimpact.integrate import Schedule, march_lanes
+from vibroimpact.kernels import LANES, RATIO
+
+IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
+NO_GAP_M = 1.0  # where a record has no clearance
+
+
+def schedule_of(campaign, integration, duration_s):
+    """Return the Schedule of runs from rest at the campaign's sampling frequency, its steps at least those of the model's configuration."""
+    sampling = float(campaign.attrs["sampling_frequency"])
+    ratio = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
+    return Schedule(RATIO * ratio * sampling, sampling, 0.0, duration_s, integration.scheme)
+
+
+class Forces:
+    """The measured forces of a campaign at the integration step, cut to the schedule's length.
+
+    force: (record, force_channel, time) N as measured; values(record) -> (step, force_channel) N, one more than the steps (the first
+    is one step before time 0).
+    """
+
+    def __init__(self, force, schedule):
+        self.force, self.schedule = np.asarray(force, float), schedule
+        self.values = lru_cache(maxsize=None)(self._values)
+
+    def _values(self, record):
+        rate, sampling = self.schedule.steps_per_second, self.schedule.sampling_frequency
+        valid = np.isfinite(self.force[record]).all(axis=0)
+        measured = self.force[record][:, : np.flatnonzero(valid)[-1] + 1]
+        fine = np.stack([resample_measured(row, sampling, rate) for row in measured], axis=-1)
+        out = np.zeros((self.schedule.steps + 2, fine.shape[1]))
+        kept = min(len(fine), len(out) - 1)
+        out[1 : 1 + kept] = fine[:kept]
+        return out
+
+
+def simulate_records(model, schedule, forces, runs, kinds, extra=()):
+    """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed), LANES of them at a time.
+
+    kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is the integral of neither: refused by the checks.
+    A run's seed draws the tiny offset of the obstacles that makes two runs of an impacting tube differ.
+    """
+    out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
+    acceleration = np.array([kind == "acceleration" for kind in kinds])
+    for first in range(0, len(runs), LANES):
+        batch = runs[first : first + LANES]
+        gaps = np.array([gap if np.isfinite(gap) else NO_GAP_M for _, gap, _ in batch])
+        offsets = np.stack([np.random.default_rng([seed, record]).uniform(-IMPERFECTION, IMPERFECTION, (len(model.support_of_point), 2)) * gap
+                            for (record, _, seed), gap in zip(batch, gaps, strict=True)], axis=-1)  # fmt: skip
+
+        def drive(at, count, batch=batch):
+            return np.stack([forces.values(record)[at : at + count] for record, _, _ in batch], axis=-1)
+
+        def receive(at, displacement, accelerations, _, first=first, size=len(batch)):
+            stop = at + displacement.shape[-1]
+            out[first : first + size, acceleration, at:stop] = accelerations[:, acceleration]
+            out[first : first + size, ~acceleration, at:stop] = displacement[:, ~acceleration]
+
+        march_lanes(model, schedule, gaps, offsets, drive, receive)
+    return out

@@ -1,0 +1,288 @@
+"""Modal parameters of a low-level record: frequencies, damping and participations fitted to its waveform, run from rest to its end.
+
+The same fit reads the measured and a simulated record, so that what it can not do it does to both. Variable projection: the participations
+are linear and solved for at each step (G.H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 1973); frequencies and damping by Gauss-Newton.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft, linalg
+
+ITERATIONS = 12
+MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
+VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
+DISCARDED = 0.2  # of a record that did not start from rest
+STEP_LIMIT = 0.02  # of ln frequency in one iteration
+UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
+LEAST_LAG_S, SETTLED_LAG_S, LONGEST_LAG_S = 2.0e-5, 3.0e-6, 0.02
+RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band's upper end
+SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
+
+
+@dataclass(frozen=True)
+class ModalFit:
+    """What the fit of one record found.
+
+    modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted over the model's value;
+    participation (channel, fitted): response per unit modal response to the force on `drive` (fitted, force_channel); covariance of
+    [log_frequency, log_damping] (2 fitted, 2 fitted); delay (channel,) s by which a channel lags the others' fit, 0 where it is not to be told from none;
+    residual (channel,): RMS of what is left over that of the noise, in the band; share (channel,): residual over response, RMS.
+    """
+
+    modes: np.ndarray
+    drive: np.ndarray
+    log_frequency: np.ndarray
+    log_damping: np.ndarray
+    participation: np.ndarray
+    covariance: np.ndarray
+    delay: np.ndarray
+    residual: np.ndarray
+    share: np.ndarray
+
+
+class LinearRecord:
+    """A force record, ready for linear responses to it.
+
+    force (force_channel, sample) N at rate Hz; band_Hz: lines that are compared; from_rest: False for a record that was under way.
+    """
+
+    def __init__(self, force, rate, band_Hz, from_rest=True):
+        # responses are needed at a fraction of the rate only: the force holds nothing above the band
+        self.every = max(1, int(rate / (RATE_PER_BAND * band_Hz[1])))
+        samples = force.shape[-1] // self.every * self.every
+        self.rate, self.samples = rate, samples
+        self.first = 0 if from_rest else int(DISCARDED * samples) // self.every * self.every
+        self.length = self.every * fft.next_fast_len(2 * samples // self.every, real=True)
+        kept = self.length // self.every // 2 + 1
+        self.omega = 2.0 * np.pi * fft.rfftfreq(self.length, 1.0 / rate)[:kept]
+        self.spectrum = fft.rfft(force[..., :samples], self.length)[..., :kept]
+        frequency = fft.rfftfreq(samples - self.first, 1.0 / rate)
+        self.lines = np.flatnonzero((frequency >= band_Hz[0]) & (frequency <= band_Hz[1]))
+        self.frequency = frequency[self.lines]
+
+    def spectra(self, responses):
+        """Return (..., line) complex: the Fourier lines in the band of series (..., sample)."""
+        return fft.rfft(responses[..., self.first : self.samples], axis=-1)[..., self.lines] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
+
+    def responses(self, omega, damping, drive_shapes, kinds):
+        """Return (mode, line) complex for modes of omega rad/s, damping = 2 zeta omega 1/s and drive_shapes (mode, force_channel).
+
+        kinds: acceleration or displacement, of all of them.
+        """
+        force = drive_shapes @ self.spectrum
+        transfer = 1.0 / (omega[:, None] ** 2 - self.omega**2 + 1j * damping[:, None] * self.omega)
+        if kinds == "acceleration":
+            transfer = -(self.omega**2) * transfer
+        return self.short_spectra(force * transfer)
+
+    def short_spectra(self, lines):
+        """Return (..., line): the lines in the band of responses given by their spectra over the whole length, cut to the record."""
+        series = fft.irfft(lines, self.length // self.every, axis=-1)[..., self.first // self.every : self.samples // self.every]
+        return fft.rfft(series, axis=-1)[..., self.lines] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
+
+
+def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
+    """Return the ModalFit of responses (channel, sample) to the force of a LinearRecord.
+
+    model: ModalModel attached to the campaign; kinds (channel,), all of one kind; noise_rms (channel,) in the band. visible: the modes to fit, as another fit had
+    them; chosen by their predicted share where it is None. Returns None where no mode is visible.
+    """
+    kind = "acceleration" if kinds[0] == "acceleration" else "displacement"
+    measured = record.spectra(np.asarray(responses, float))
+    near = np.flatnonzero((model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1]))
+    expected = record.responses(model.omega[near], model.damping[near], model.drive_shapes[near], kind)
+    size = np.sqrt(np.sum(np.abs(expected) ** 2, axis=-1))
+    noise = np.maximum(noise_rms, 1.0e-12)
+    fixed = visible is not None
+    if not fixed:
+        chosen = ((np.abs(model.sensor_shapes[near]) * size[:, None]) > VISIBLE * noise).any(axis=1)
+        inside = model.omega[near] < 2.0 * np.pi * record.frequency[-1] * 1.02
+        visible = near[chosen & inside]
+    if len(visible) == 0:
+        return None
+    weights = 1.0 / np.sqrt(noise[:, None] ** 2 / len(record.lines) + (MODEL_ERROR * _smooth(np.abs(measured))) ** 2)
+    delay, start = np.zeros(len(measured)), np.zeros(len(visible)) if fixed else None
+    for _ in range(4):  # modes that the model does not excite, and delays, are seen once the rest is taken out
+        drive = model.drive_shapes[visible].copy()
+        drive[np.abs(drive).max(axis=1) < 1.0e-6 * np.abs(model.drive_shapes).max(), 0] = 1.0
+        turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
+        found = _gauss_newton(record, turned - _rest(record, model, visible, kind), weights, model, visible, drive, kind, noise, delay, start)
+        if fixed:
+            break
+        lag = _lags(record, turned, found, weights, drive, model, kind)
+        extra = _unexpected(record, turned, found, weights, drive, model, near, kind)
+        late = np.abs(delay + lag).max() > LEAST_LAG_S
+        if not len(extra) and not (late and np.abs(lag).max() > SETTLED_LAG_S):
+            break
+        delay = np.where(np.abs(delay + lag) > LEAST_LAG_S, delay + lag, 0.0)
+        start = None if len(extra) else found.log_frequency
+        visible = np.sort(np.concatenate([visible, extra]))
+    return found
+
+
+def _fitted(record, found, drive, model, kind):
+    """Return (channel, line) the response that a fit gives, without what the other modes add."""
+    omega = model.omega[found.modes] * np.exp(found.log_frequency)
+    zeta = model.damping[found.modes] / (2.0 * model.omega[found.modes]) * np.exp(found.log_damping)
+    return found.participation @ record.responses(omega, 2.0 * zeta * omega, drive, kind)
+
+
+def _lags(record, measured, found, weights, drive, model, kind):
+    """Return (channel,) s: by how much each channel lags the fit, up to LONGEST_LAG_S."""
+    fitted = _fitted(record, found, drive, model, kind) + _rest(record, model, found.modes, kind)
+    lags = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.1 / record.frequency[-1])
+    turn = np.exp(2j * np.pi * np.outer(lags, record.frequency))
+    out = np.zeros(len(measured))
+    for channel in range(len(measured)):
+        cross = weights[channel] ** 2 * measured[channel] * fitted[channel].conj()
+        strength = np.sum(np.abs(cross))
+        coherent = np.abs(np.sum(turn * cross, axis=1))
+        if found.share[channel] > 0.95 and coherent.max() < 0.5 * strength:
+            continue  # a channel of noise
+        best = lags[np.argmax(np.real(turn @ cross))]
+        for _ in range(4):
+            aligned = cross * np.exp(2j * np.pi * record.frequency * best)
+            slope = np.sum(record.frequency * aligned.imag) / max(2.0 * np.pi * np.sum(record.frequency**2 * aligned.real), 1.0e-300)
+            best -= np.clip(slope, -0.05 / record.frequency[-1], 0.05 / record.frequency[-1])
+        out[channel] = best
+    return out - np.median(out) if np.sum(np.abs(out) > LEAST_LAG_S) <= len(out) // 2 else out
+
+
+def _unexpected(record, measured, found, weights, drive, model, near, kind):
+    """Return the modes that the model does not excite visibly but the record holds."""
+    residual = measured - _fitted(record, found, drive, model, kind) - _rest(record, model, found.modes, kind)
+    extra = []
+    for mode in np.setdiff1d(near, found.modes):
+        if model.omega[mode] > 2.0 * np.pi * record.frequency[-1]:
+            continue
+        basis = record.responses(model.omega[[mode]], model.damping[[mode]], np.eye(1, model.drive_shapes.shape[1]), kind)[0]
+        gain = 0.0
+        for channel in np.flatnonzero(np.abs(model.sensor_shapes[mode]) > 1.0e-6 * np.abs(model.sensor_shapes).max()):
+            y, b = _real(weights[channel] * residual[channel]), _real(weights[channel] * basis)
+            gain += (y @ b) ** 2 / (b @ b)
+        if gain > UNEXPECTED and not _covered(model, mode, found):
+            extra.append(mode)
+    return np.array(extra, int)
+
+
+def _covered(model, mode, found):
+    """True where the fitted modes have the shape and place of another one: its remainder is theirs."""
+    shape = model.sensor_shapes[mode]
+    for other in found.modes:
+        against = model.sensor_shapes[other]
+        alike = (shape @ against) ** 2 / max((shape @ shape) * (against @ against), 1.0e-300)
+        if alike > 0.5 and abs(np.log(model.omega[mode] / model.omega[other])) < 0.2:
+            return True
+    return False
+
+
+def _rest(record, model, visible, kind):
+    """Return (channel, line): what the modes that are not fitted add, those far above the band as their static response."""
+    others = np.setdiff1d(np.flatnonzero(model.omega > 0.0), visible)
+    transfer = np.zeros((model.sensor_shapes.shape[1], model.drive_shapes.shape[1], record.omega.size), complex)
+    reach = record.omega <= 2.2 * np.pi * record.frequency[-1]
+    omega = record.omega[reach]
+    for mode in others:
+        h = 1.0 / (model.omega[mode] ** 2 - omega**2 + 1j * model.damping[mode] * omega)
+        transfer[:, :, reach] += np.einsum("c,f,l->cfl", model.sensor_shapes[mode], model.drive_shapes[mode], h)
+    if kind == "acceleration":
+        transfer *= -(record.omega**2)
+    return record.short_spectra(np.einsum("cfl,fl->cl", transfer, record.spectrum))
+
+
+def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise, delay, start=None):
+    """Return the ModalFit, from the frequency at which each mode's own resonance fits best."""
+    count = len(visible)
+    omega, zeta = model.omega[visible], model.damping[visible] / (2.0 * model.omega[visible])
+    logs = np.zeros(2 * count)
+    logs[:count] = start if start is not None else _start(record, measured, weights, visible, drive, omega, zeta, kind)
+    weighted = (weights * measured).ravel()
+
+    def columns(values, chosen=slice(None)):
+        w = (omega * np.exp(values[:count]))[chosen]
+        return record.responses(w, 2.0 * (zeta * np.exp(values[count:]))[chosen] * w, drive[chosen], kind)
+
+    def solve(basis):
+        parts = [linalg.lstsq(_real(weights[c] * basis).T, _real(weights[c] * measured[c]))[0] for c in range(len(measured))]
+        return np.array(parts)
+
+    best, best_cost, damp = None, np.inf, 1.0e-3
+    for _ in range(ITERATIONS):
+        basis = columns(logs)
+        shapes = solve(basis)
+        residual = weighted - (weights * (shapes @ basis)).ravel()
+        cost = np.sum(np.abs(residual) ** 2)
+        if cost < best_cost:
+            converged = best is not None and best_cost - cost < 1.0e-6 * cost
+            best, best_cost, damp = (logs.copy(), shapes, basis, residual), cost, max(0.2 * damp, 1.0e-9)
+            if converged:
+                break
+        else:
+            damp *= 20.0
+            if damp > 1.0e3:
+                break
+        jacobian = _jacobian(record, weights, columns, best)
+        normal = jacobian.T @ jacobian
+        step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]), assume_a="pos")
+        step *= min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
+        logs = best[0] + step
+        logs[count:] = np.clip(logs[count:], -3.0, 3.0)
+    return _result(best, weights, visible, drive, noise, record, columns, measured, delay)
+
+
+def _jacobian(record, weights, columns, best):
+    """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm, the participations held."""
+    logs, shapes, basis, _ = best
+    count = len(logs) // 2
+    parts = []
+    for number in range(2 * count):
+        moved = logs.copy()
+        step = 1.0e-5 if number < count else 1.0e-3
+        moved[number] += step
+        mode = number % count
+        change = (columns(moved, [mode])[0] - basis[mode]) / step
+        parts.append(_real((weights * np.outer(shapes[:, mode], change)).ravel()))
+    # the part that the participations would take up is no evidence for the logarithms
+    jacobian = np.stack(parts, axis=-1)
+    return jacobian
+
+
+def _result(best, weights, visible, drive, noise, record, columns, measured, delay):
+    logs, shapes, _, residual = best
+    count = len(visible)
+    jacobian = _jacobian(record, weights, columns, best)
+    covariance = linalg.pinvh(jacobian.T @ jacobian) * max(1.0, np.mean(np.abs(residual) ** 2))
+    power = np.sqrt(np.sum(np.abs(residual.reshape(len(shapes), -1) / weights) ** 2, axis=-1))
+    total = np.sqrt(np.sum(np.abs(measured) ** 2, axis=-1))
+    return ModalFit(visible, drive, logs[:count], logs[count:], shapes, covariance, delay, power / noise, power / np.maximum(total, 1.0e-300))
+
+
+def _start(record, measured, weights, visible, drive, omega, zeta, kind):
+    """Return (fitted,) ln of the frequency at which the mode alone explains most near its resonance, within SEARCH."""
+    out = np.zeros(len(visible))
+    for number in range(len(visible)):
+        near = np.abs(record.frequency - omega[number] / (2.0 * np.pi)) < SEARCH * 1.5 * omega[number] / (2.0 * np.pi) + 0.5
+        if near.sum() < 10:
+            continue
+        grid = np.arange(-SEARCH, SEARCH + 1.0e-9, max(zeta[number], SEARCH / 40.0))
+        w = omega[number] * np.exp(grid)
+        basis = record.responses(w, 2.0 * zeta[number] * w, np.repeat(drive[number][None], len(w), axis=0), kind)[:, near]
+        explained = np.zeros(len(grid))
+        for c in range(len(measured)):
+            y, b = weights[c, near] * measured[c, near], weights[c, near] * basis
+            explained += np.real(b.conj() @ y) ** 2 / np.maximum(np.sum(np.abs(b) ** 2, axis=-1), 1.0e-300)
+        prior = -0.5 * (grid / 0.006) ** 2 * 0.02 * explained.max()  # between equals the one near the model
+        out[number] = grid[np.argmax(explained + prior)]
+    return out
+
+
+def _smooth(values, width=21):
+    """Running mean over the last axis."""
+    kernel = np.ones(width) / width
+    return np.apply_along_axis(lambda row: np.convolve(np.pad(row, width // 2, mode="edge"), kernel, mode="valid"), -1, values)
+
+
+def _real(values):
+    """Complex (..., n) as real (..., 2 n)."""
+    return np.concatenate([values.real, values.imag], axis=-1)

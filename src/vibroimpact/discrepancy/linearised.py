@@ -1,0 +1,37 @@
+"""A model without contact as uncoupled modes: the linear part of its local elements folded into the modes."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.laws import LocalLaws
+
+MODE_ARRAYS = ("contact_shapes", "drive_shapes", "sensor_shapes", "line_shapes", "stress_shapes", "element_shapes")
+
+
+def linearised(model):
+    """Return the ModalModel whose modes hold the stiffness and damping of the local elements, which are gone; of damping the diagonal is kept."""
+    laws = model.local_laws
+    if not len(laws.stiffness) or not (np.any(laws.stiffness) or np.any(laws.damping)):
+        return model
+    shapes = model.element_shapes
+    squares, turn = np.linalg.eigh(np.diag(model.omega**2) + (shapes * laws.stiffness) @ shapes.T)
+    damping = np.diag(turn.T @ (np.diag(model.damping) + (shapes * laws.damping) @ shapes.T) @ turn)
+    fields = {name: np.tensordot(turn.T, getattr(model, name), axes=1) for name in MODE_ARRAYS}
+    fields["element_shapes"] = np.zeros((model.modes, 0))
+    return replace(model, omega=np.sqrt(np.maximum(squares, 0.0)), damping=damping, element_names=(), local_laws=LocalLaws.neutral(0), **fields)
+
+
+def same_modes(model, modes, reference):
+    """Return (mode,) indices of the modes of `model` that are those of `reference` (a model) at `modes`: alike in shape at the sensors, near in frequency."""
+
+    out = []
+    for mode in modes:
+        wanted = reference.sensor_shapes[mode]
+        near = np.flatnonzero(np.abs(np.log(np.maximum(model.omega, 1.0e-3) / reference.omega[mode])) < 0.5)
+        shapes = model.sensor_shapes[near]
+        alike = (shapes @ wanted) ** 2 / np.maximum(np.sum(shapes**2, axis=1) * (wanted @ wanted), 1.0e-300)
+        score = alike * np.exp(-((np.log(model.omega[near] / reference.omega[mode]) / 0.15) ** 2))
+        score[np.isin(near, out)] = -1.0
+        out.append(int(near[np.argmax(score)]))
+    return np.array(out)

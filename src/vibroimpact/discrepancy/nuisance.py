@@ -1,0 +1,101 @@
+"""The linear stage: what the lowest record says of modes and sensors, and how far a model, with or without an effect, is from it.
+
+Frequencies, damping and gains scatter in any test; their priors are in priors.py. The most probable nuisance is corrected in the model, never beyond
+its limit, and the rest is left to be explained.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import linalg
+
+from vibroimpact.discrepancy import priors
+
+SEEN = 0.05  # of a mode's largest participation among the channels: below it a channel says nothing of the mode
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a fit of the lowest record reads: ln frequency and ln damping (mode,), participation (channel, mode), residual over noise (channel,)."""
+
+    modes: np.ndarray
+    log_frequency: np.ndarray
+    log_damping: np.ndarray
+    participation: np.ndarray
+    residual: np.ndarray
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """The corrections: factors of frequency and damping of modes (mode,) with indices `modes`, gain (channel,) of each channel."""
+
+    modes: np.ndarray
+    frequency: np.ndarray
+    damping: np.ndarray
+    gain: np.ndarray
+
+
+def reading_of_fit(fit, model):
+    """Return the Reading of a ModalFit of responses to the force on `model`."""
+    omega, damping = model.omega[fit.modes], model.damping[fit.modes]
+    driven = fit.drive[:, 0]
+    return Reading(fit.modes, np.log(omega) + fit.log_frequency, np.log(damping / (2.0 * omega)) + fit.log_damping, fit.participation * driven, fit.residual)
+
+
+def reading_of_model(model, modes):
+    """Return the Reading that a linear model gives without noise, for the first force channel."""
+    omega = model.omega[modes]
+    participation = model.sensor_shapes[modes].T * model.drive_shapes[modes, 0]
+    return Reading(modes, np.log(omega), np.log(model.damping[modes] / (2.0 * omega)), participation, np.ones(participation.shape[0]))
+
+
+def difference(measured, simulated, error):
+    """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus simulated Reading.
+
+    error: (2 mode, 2 mode) covariance of the fit's logarithms. Nuisances: mode frequencies, mode dampings, channel gains, each in units of its
+    prior's sigma; the covariance is of what is not nuisance.
+    """
+    count, channels = len(measured.log_frequency), len(measured.participation)
+    scale = np.maximum(np.abs(simulated.participation), np.abs(measured.participation)).max(axis=0)
+    seen = np.maximum(np.abs(simulated.participation), np.abs(measured.participation)) > SEEN * scale
+    ratio = (measured.participation - simulated.participation)[seen] / np.broadcast_to(scale, seen.shape)[seen]
+    level = (simulated.participation / scale)[seen]
+    residual = np.log(np.hypot(1.0, measured.residual)) - np.log(np.hypot(1.0, simulated.residual))
+    values = np.concatenate([measured.log_frequency - simulated.log_frequency, measured.log_damping - simulated.log_damping, ratio, residual])
+    covariance = linalg.block_diag(error + np.diag([1.0e-10] * count + [1.0e-4] * count), np.eye(len(ratio)) * priors.SHAPE_SD**2,
+                                   np.eye(channels) * priors.RESIDUAL_SD**2)  # fmt: skip
+    sensitivity = np.zeros((len(values), 2 * count + channels))
+    sensitivity[:count, :count] = np.eye(count) * priors.FREQUENCY_SD
+    sensitivity[count : 2 * count, count : 2 * count] = np.eye(count) * priors.DAMPING_SD
+    rows = np.flatnonzero(seen.ravel()) // seen.shape[1]
+    for number, (channel, value) in enumerate(zip(rows, level, strict=True)):
+        sensitivity[2 * count + number, 2 * count + channel] = value * priors.GAIN_SD
+    return values, covariance, sensitivity
+
+
+def likelihood(measured, simulated, error):
+    """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances marginalised, pulls in sigma."""
+    values, covariance, sensitivity = difference(measured, simulated, error)
+    total = covariance + sensitivity @ sensitivity.T
+    factor = linalg.cho_factor(total, lower=True)
+    solved = linalg.cho_solve(factor, values)
+    chi_square = float(values @ solved)
+    return -0.5 * chi_square - np.sum(np.log(np.diag(factor[0]))), chi_square, sensitivity.T @ solved
+
+
+def nuisance_of(pulls, modes, channels):
+    """Return the Nuisance of pulls in sigma, limited."""
+    limited = np.clip(pulls, -priors.CORRECTION_LIMIT, priors.CORRECTION_LIMIT)
+    count = len(modes)
+    return Nuisance(modes, np.exp(priors.FREQUENCY_SD * limited[:count]), np.exp(priors.DAMPING_SD * limited[count : 2 * count]),
+                    1.0 + priors.GAIN_SD * limited[2 * count : 2 * count + channels])  # fmt: skip
+
+
+def corrected(model, nuisance):
+    """Return the ModalModel with the frequencies and damping of a Nuisance."""
+    if nuisance is None or not len(nuisance.modes):
+        return model
+    omega, damping = model.omega.copy(), model.damping.copy()
+    omega[nuisance.modes] *= nuisance.frequency
+    damping[nuisance.modes] *= nuisance.damping * nuisance.frequency
+    return replace(model, omega=np.maximum.accumulate(omega), damping=damping)

@@ -1,0 +1,29 @@
+"""The sizes that an effect's parameters are measured by, so that its bounds mean the same on any tube, load and gap."""
+
+import numpy as np
+
+
+def scales(model, signals, null):
+    """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at the drive of the highest fit record, m and m/s."""
+    drive = model.drive_shapes[:, 0]
+    elastic = model.omega > 0.0
+    flexibility = np.sum(drive[elastic] ** 2 / model.omega[elastic] ** 2)
+    driven = np.flatnonzero(np.abs(drive) > 0.3 * np.abs(drive).max())
+    first = driven[0] if len(driven) else 0
+    mass = 1.0 / max(drive[first] ** 2, 1.0e-300)
+    stiffness = 1.0 / flexibility
+    load, gap = float(np.max(signals.load)), float(np.nanmax(signals.gap)) if np.isfinite(signals.gap).any() else float(null["displacement"])
+    contact = np.bincount(model.support_of_point, model.contact_stiffness).max() if len(model.support_of_point) else stiffness
+    points = max(np.bincount(model.support_of_point).max(), 1) if len(model.support_of_point) else 1
+    displacement, speed = max(null["displacement"], 1.0e-12), max(null["speed"], 1.0e-12)
+    damping = model.damping[first] * mass
+    length = max(float(np.ptp(model.sensor_positions, axis=0).max()), 1.0e-3) * 3.0
+    at_contact = model.contact_shapes.reshape(model.modes, -1)
+    held = np.sum(at_contact[elastic] ** 2 / model.omega[elastic][:, None] ** 2, axis=0).max() if at_contact.size else flexibility
+    return {
+        "one": 1.0, "gap": gap, "load": load, "displacement": displacement, "contact_stiffness": contact,
+        "hertz": contact / points / np.sqrt(0.03 * gap), "gap_force": gap / held, "mass": mass,
+        "mass_per_length": mass / length, "tube_translation": stiffness, "tube_rotation": stiffness * length**2 / 100.0, "tube_damping": damping,
+        "damping_per_length": damping / length, "cubic": stiffness / displacement**2, "quadratic": stiffness / displacement,
+        "drag": damping / length / speed,
+    }  # fmt: skip

@@ -1,0 +1,120 @@
+"""A campaign as arrays: forces and responses in SI, the excited band, the noise of every channel."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.campaign import channel_signal, force_signal
+
+BANDS = 24
+DEFAULT_BAND_HZ = (5.0, 200.0)
+EXCITED = 1.0e-3  # of the largest smoothed force PSD: above it a line is excited
+QUIET = 0.75  # of half the sampling frequency: where the anti-alias filter begins
+QUIET_ABOVE = 1.6  # times the band's upper end
+
+
+@dataclass(frozen=True)
+class Signals:
+    """force (record, force_channel, sample) N and response (record, channel, sample) SI, NaN beyond a record's valid samples.
+
+    rate Hz; band_Hz: excited; kinds, names (channel,); gap (record,) m; load (record,) N RMS; split, record_names (record,); noise (channel,): RMS of
+    white measuring noise over the whole range to half the sampling frequency; from_rest; sources: attributes of the file.
+    """
+
+    force: np.ndarray
+    response: np.ndarray
+    rate: float
+    band_Hz: tuple[float, float]
+    kinds: np.ndarray
+    names: tuple[str, ...]
+    gap: np.ndarray
+    load: np.ndarray
+    split: np.ndarray
+    record_names: tuple[str, ...]
+    noise: np.ndarray
+    from_rest: bool
+
+    @property
+    def lowest(self):
+        """Return the record of the lowest load; of several the one with the widest gap."""
+        order = np.lexsort((-np.nan_to_num(self.gap, nan=np.inf), np.round(self.load, 9)))
+        return int(order[0])
+
+    @property
+    def edges(self):
+        """Return (BANDS + 1,) Hz: logarithmic bands over the excited band."""
+        return np.geomspace(*self.band_Hz, BANDS + 1)
+
+    @property
+    def noise_in_band(self):
+        """Return (channel,): RMS of the noise within the excited band."""
+        return self.noise * np.sqrt((self.band_Hz[1] - self.band_Hz[0]) / (0.5 * self.rate))
+
+    def fit(self):
+        """Return the records of the split "fit"; all where none is named so."""
+        chosen = np.flatnonzero(self.split != "holdout")
+        return chosen if len(chosen) else np.arange(len(self.load))
+
+    def holdout(self):
+        """Return the records of the split "holdout"."""
+        return np.flatnonzero(self.split == "holdout")
+
+
+def signals_of(campaign, longest_s=None):
+    """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given."""
+    rate = float(campaign.attrs["sampling_frequency"])
+    records, channels = campaign.sizes["record"], campaign.sizes["channel"]
+    samples = campaign.sizes["time"] if longest_s is None else min(campaign.sizes["time"], round(longest_s * rate))
+    response = np.full((records, channels, samples), np.nan)
+    for record in range(records):
+        for channel in range(channels):
+            signal = channel_signal(campaign, record, channel)[:samples]
+            response[record, channel, : len(signal)] = signal
+    force = np.full((records, campaign.sizes["force_channel"], samples), np.nan)
+    for record, channel in np.ndindex(force.shape[:2]):
+        signal = force_signal(campaign, record, channel)[:samples]
+        force[record, channel, : len(signal)] = signal
+    valid = np.isfinite(response).all(axis=1)
+    force = np.where(valid[:, None], force, np.nan)
+    band = excited_band(force, rate)
+    load = np.sqrt(np.nanmean(force[:, 0] ** 2, axis=-1))
+    gap = np.asarray(campaign["gap"].values, float)
+    split = np.array([str(value) for value in campaign["split"].values]) if "split" in campaign else np.full(records, "fit")
+    lowest = int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), load))[0])
+    return Signals(
+        force=force, response=response, rate=rate, band_Hz=band, kinds=np.array([str(kind) for kind in campaign["channel_kind"].values]),
+        names=tuple(map(str, campaign["channel_name"].values)), gap=gap, load=load, split=split,
+        record_names=tuple(map(str, campaign["record_name"].values)), noise=noise_of(campaign, response[lowest], rate, band),
+        from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
+    )  # fmt: skip
+
+
+def excited_band(force, rate):
+    """Return (low, high) Hz: where the PSD of the first force of all records is above EXCITED of its largest, within 1 % of a decade."""
+    length = int(4.0 * rate)
+    window = np.hanning(length)
+    power = np.zeros(length // 2 + 1)
+    for series in np.nan_to_num(force[:, 0]):
+        for first in range(0, max(len(series) - length, 0) + 1, length // 2):
+            power += np.abs(np.fft.rfft(window * np.resize(series[first : first + length], length))) ** 2
+    frequency = np.fft.rfftfreq(length, 1.0 / rate)
+    smooth = np.convolve(power, np.ones(5) / 5.0, mode="same")
+    inside = np.flatnonzero(smooth[1:] > EXCITED * np.median(np.sort(smooth[1:])[-len(smooth) // 50 :])) + 1
+    low, high = frequency[inside[0]] + 0.5, frequency[inside[-1]] - 0.5
+    if abs(low - DEFAULT_BAND_HZ[0]) < 1.5 and abs(high - DEFAULT_BAND_HZ[1]) < 3.0:
+        return DEFAULT_BAND_HZ
+    return float(max(low, 2.0 / (force.shape[-1] / rate))), float(high)
+
+
+def noise_of(campaign, response, rate, band):
+    """Return (channel,) RMS of the noise: as the campaign says, or from the lowest record above the excited band; 0 where neither tells."""
+    if "noise_floor_rms" in campaign:
+        return np.asarray(campaign["noise_floor_rms"].values, float)
+    valid = response[:, np.isfinite(response).all(axis=0)]
+    window = np.hanning(valid.shape[-1])
+    frequency = np.fft.rfftfreq(valid.shape[-1], 1.0 / rate)
+    quiet = (frequency > QUIET_ABOVE * band[1]) & (frequency < QUIET * 0.5 * rate)
+    if quiet.sum() < 50:
+        return np.zeros(len(response))
+    density = np.median(np.abs(np.fft.rfft(window * valid, axis=-1)[:, quiet]) ** 2, axis=-1) / np.log(2.0)  # a median of exponentials, as a mean
+    return np.sqrt(density / np.sum(window**2))

@@ -1,0 +1,152 @@
+"""All that a campaign and a model give to every job: signals, features of the measurement, the corrected model, and runs of any variant of it."""
+
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from vibroimpact.config import check_config
+from vibroimpact.contraction import IntegrationError
+from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.attach import attach
+from vibroimpact.discrepancy.features import feature_layout, record_features
+from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
+from vibroimpact.discrepancy.linear_stage import LinearRecord, fit_modes
+from vibroimpact.discrepancy.linearised import linearised, same_modes
+from vibroimpact.discrepancy.signals import signals_of
+from vibroimpact.kernels import LANES
+
+TOUCHES = 0.98  # of the gap: a linear response that comes that near is not taken for free of contact
+SAME = 1.0e-5  # relative difference of two responses without contact
+
+
+class Workbench:
+    """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s where given."""
+
+    def __init__(self, config, campaign, longest_s=None):
+        self.config, self.campaign = config, campaign
+        self.signals = signals_of(campaign, longest_s)
+        self.bare = attach(config, campaign)
+        self.layout = feature_layout(self.signals, campaign["channel_point"].values)
+        self.schedule = schedule_of(campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate)
+        self.forces = Forces(self.signals.force, self.schedule)
+        self.nuisance = None
+
+    @cached_property
+    def values(self):
+        """Return the configuration in plain values."""
+        return self.config.model_dump(mode="json")
+
+    @cached_property
+    def linear_record(self):
+        """Return the LinearRecord of the lowest record."""
+        record = self.signals.lowest
+        return LinearRecord(self._valid(self.signals.force[record]), self.signals.rate, self.signals.band_Hz, self.signals.from_rest)
+
+    @cached_property
+    def measured_fit(self):
+        """Return the ModalFit of the lowest measured record, None where no mode is seen."""
+        response = self._valid(self.signals.response[self.signals.lowest])
+        return fit_modes(self.linear_record, response, self.bare, self.signals.kinds, self.signals.noise_in_band)
+
+    @cached_property
+    def measured_reading(self):
+        """Return the Reading of the lowest measured record."""
+        return linear.reading_of_fit(self.measured_fit, self.bare)
+
+    @cached_property
+    def measured_features(self):
+        """Return (record, feature) of the measurement."""
+        out = []
+        for record in range(len(self.signals.load)):
+            keep = np.isfinite(self.signals.response[record]).all(axis=0)
+            out.append(record_features(self.layout, self.signals.force[record][0, keep], self.signals.response[record][:, keep]))
+        return np.array(out)
+
+    def model(self, values=None):
+        """Return the attached model of a configuration in plain values, with the nuisance corrections."""
+        model = self.bare if values is None else attach(check_config(values, "variant of the model"), self.campaign)
+        return linear.corrected(model, self.nuisance)
+
+    def touches(self, model=None):
+        """Return True where the lowest record already brings the bare model into contact."""
+        model = linear.corrected(self.bare, self.nuisance) if model is None else model
+        points = model.contact_shapes.reshape(model.modes, -1)
+        if not points.size:
+            return False
+        record = self.linear_record
+        transfer = 1.0 / (model.omega[:, None] ** 2 - record.omega**2 + 1j * model.damping[:, None] * record.omega + 1.0e-9)
+        modal = np.fft.irfft((model.drive_shapes @ record.spectrum) * transfer, record.length // record.every, axis=-1)
+        largest = np.abs(points.T @ modal).max(axis=-1).reshape(-1, 2).max(axis=1)
+        gap = self.signals.gap[self.signals.lowest]
+        clearance = np.where(np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap)
+        return bool(np.isfinite(gap) and np.any(largest > TOUCHES * clearance))
+
+    def runs(self, records, seeds, first_seed=0):
+        """Return [(record, gap, seed)] of `seeds` runs of every record."""
+        return [(int(record), float(self.signals.gap[record]), first_seed + seed) for record in records for seed in range(seeds)]
+
+    def respond(self, model, runs, measuring=None):
+        """Return (run, channel, sample) responses with the gains of the nuisance; measuring: (gain (channel,), delay (channel,), force factor)."""
+        forces = self.forces
+        if measuring is not None and measuring.force_gain != 1.0:
+            forces = Forces(self.signals.force / measuring.force_gain, self.schedule)
+        responses = simulate_records(model, self.schedule, forces, runs, self.signals.kinds)
+        gain = np.ones(responses.shape[1]) if self.nuisance is None else self.nuisance.gain
+        if measuring is not None:
+            gain = gain * measuring.gain
+            responses = measuring.delayed(responses, self.signals.rate)
+        return responses * gain[:, None].astype(np.float32)
+
+    def features(self, model, runs, measuring=None):
+        """Return (run, feature): the features of runs with the measuring noise, each cut to the valid samples of its record."""
+        responses = self.respond(model, runs, measuring)
+        out = []
+        for (record, _, seed), response in zip(runs, responses, strict=True):
+            keep = np.isfinite(self.signals.force[record][0])
+            noise = np.random.default_rng([7, seed, record]).standard_normal((len(self.signals.noise), int(keep.sum())), dtype=np.float32)
+            noisy = response[:, : keep.size][:, keep] + noise * self.signals.noise[:, None].astype(np.float32)
+            out.append(record_features(self.layout, self.signals.force[record][0, keep], noisy))
+        return np.array(out)
+
+    def linear_reading(self, values, modes):
+        """Return the Reading of a variant that stays linear below contact, at the modes of the bare model named."""
+        model = linearised(attach(check_config(values, "variant of the model"), self.campaign))
+        return replace(linear.reading_of_model(model, same_modes(model, modes, self.bare)), modes=modes)
+
+    def low_reading(self, model, bare_response):
+        """Return the Reading of a variant's simulated lowest record, None where it answers as the bare model does.
+
+        model: without nuisance corrections; bare_response: (channel, sample) of the bare model, likewise.
+        """
+        record = self.signals.lowest
+        response = simulate_records(model, self.schedule, self.forces, self.runs([record], 1), self.signals.kinds)[0]
+        change = np.sqrt(np.mean((response - bare_response) ** 2)) / np.sqrt(np.mean(bare_response**2))
+        if not change > SAME:
+            return None
+        keep = np.isfinite(self.signals.force[record][0])
+        fit = fit_modes(self.linear_record, response[:, keep], self.bare, self.signals.kinds, self.signals.noise_in_band, self.measured_fit.modes)
+        return linear.reading_of_fit(fit, self.bare)
+
+    def seeds_of_a_batch(self, records):
+        """Return how many seeds of every record fill the lanes of a batch, at least 1."""
+        return max(1, LANES // max(1, len(records)))
+
+    @staticmethod
+    def _valid(values):
+        """Return the samples of (..., sample) at which all are finite."""
+        return values[..., np.isfinite(values).all(axis=tuple(range(values.ndim - 1)))]
+
+
+def corrected_nuisance(bench, reading=None):
+    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record under a Reading; that of the bare model where None."""
+    fit = bench.measured_fit
+    if fit is None:
+        return None, 0.0, 0.0, np.zeros(0)
+    simulated = linear.reading_of_model(bench.bare, fit.modes) if reading is None else reading
+    score, chi_square, pulls = linear.likelihood(bench.measured_reading, simulated, fit.covariance)
+    return linear.nuisance_of(pulls, fit.modes, len(bench.signals.names)), score, chi_square, pulls
+
+
+__all__ = ["IntegrationError", "Workbench", "corrected_nuisance", "priors"]

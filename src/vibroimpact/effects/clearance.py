@@ -1,0 +1,26 @@
+"""A stop behind a clearance, at a point that the model leaves free."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with a pair of flat stops at a point, across the tube along the force."""
+    support = {"name": "clearance", "at_m": list(values["points"][location]), "height_m": 0.002, "points": 1, "stiffness_N_per_m": parameters["stiffness"],
+               "gap_m": parameters["half_gap"], "profile": {"kind": "planes", "normals_deg": [90.0, -90.0]}}  # fmt: skip
+    return values | {"supports": [*values["supports"], support]}
+
+
+EFFECT = Effect(
+    id="clearance",
+    explanation="a stop behind a clearance that the model lacks",
+    source="dead zone: stiffness (|u| - half_gap) beyond half_gap",
+    parameters=(
+        Parameter("half_gap", "m", 0.05, 3.0, None, per="displacement", design=(0.2, 0.5, 0.8)),
+        Parameter("stiffness", "N/m", 0.1, 1000.0, None, per="tube_translation", design=(0.3, 0.6, 0.9)),
+    ),
+    apply=apply,
+    broken=("T1", "T2"),
+    aliases=("cubic_stiffness",),
+    locations=places.masses_and_springs,
+)

@@ -1,0 +1,27 @@
+"""Dry friction of constant force at a point."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+STICK_PER_FORCE = 1.0e5  # 1/m: it slips after 10 micrometres
+
+
+def apply(values, parameters, location):
+    """Return the configuration with a slider between a point and the ground, along the force."""
+    laws = {"slip_limit_N": parameters["force"], "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"]}
+    return places.with_element(values, "coulomb_friction", location, places.across(values, location), **laws)
+
+
+EFFECT = Effect(
+    id="coulomb_friction",
+    explanation="something rubs with a constant force",
+    source="Coulomb with an elastic stick spring (Jenkins element)",
+    parameters=(
+        Parameter("force", "N", 0.003, 2.0, 0.0, per="load"),
+    ),
+    apply=apply,
+    broken=("T1", "T2", "T5"),
+    aliases=("saturation_stiffness", "dry_friction"),
+    locations=places.masses_and_springs,
+)

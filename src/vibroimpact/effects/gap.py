@@ -1,0 +1,33 @@
+"""A support whose clearance is not the nominal one."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with the clearances of a location multiplied by gap_factor."""
+    factor = parameters["gap_factor"]
+
+    def change(support):
+        own = {} if support["gap_m"] is None else {"gap_m": factor * support["gap_m"]}
+        return own | {"gap_factor": _times(support["gap_factor"], factor)}
+
+    return places.with_supports(values, location, change)
+
+
+def _times(given, factor):
+    """A number, or a list of them, times a factor."""
+    return [factor * value for value in given] if isinstance(given, (list, tuple)) else factor * given
+
+
+EFFECT = Effect(
+    id="gap",
+    explanation="the radial clearance differs from the nominal one",
+    source="scaling: q/gap depends on force/gap alone",
+    parameters=(
+        Parameter("gap_factor", "1", 0.4, 2.5, 1.0, design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9)),
+    ),
+    apply=apply,
+    locations=places.supports,
+    aliases=("sensor_gain",),
+)

@@ -1,0 +1,28 @@
+"""Damping of the modes other than assumed."""
+
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with all modal damping ratios multiplied by a factor."""
+    damping = dict(values["damping"])
+    for key in ("other_ratio", "mass_coefficient_per_s", "stiffness_coefficient_s"):
+        if key in damping:
+            damping[key] = parameters["factor"] * damping[key]
+    if "first_ratios" in damping:
+        damping["first_ratios"] = [parameters["factor"] * ratio for ratio in damping["first_ratios"]]
+    return values | {"damping": damping}
+
+
+EFFECT = Effect(
+    id="modal_damping",
+    explanation="the modes are damped otherwise than assumed",
+    source="viscous modal damping",
+    parameters=(
+        Parameter("factor", "1", 0.2, 5.0, 1.0),
+    ),
+    apply=apply,
+    linear=True,
+    broken=("T1", "T5"),
+    aliases=("fluid_added_mass_damping",),
+)

@@ -1,0 +1,26 @@
+"""A mode whose frequency is not the computed one."""
+
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with the frequency of mode_<n> multiplied by a factor."""
+    mode = int(location.removeprefix("mode_"))
+    factors = [*values["mode_frequency_factors"], *[1.0] * (mode - len(values["mode_frequency_factors"]))]
+    factors[mode - 1] *= parameters["factor"]
+    return values | {"mode_frequency_factors": factors}
+
+
+EFFECT = Effect(
+    id="mode_frequency_error",
+    explanation="a mode has another frequency than computed",
+    source="model error of the linear structure",
+    parameters=(
+        Parameter("factor", "1", 0.85, 1.18, 1.0, log=True),
+    ),
+    apply=apply,
+    linear=True,
+    broken=("T1",),
+    aliases=("added_mass", "root_stiffness"),
+    locations=lambda values: [f"mode_{mode}" for mode in range(1, 9)],
+)

@@ -1,0 +1,55 @@
+"""Where an effect may sit: supports, and named points on the tube that an effect adds to a configuration."""
+
+import numpy as np
+
+from vibroimpact.centreline import build_centreline
+from vibroimpact.config_structure import Path, UTube
+
+TUBES = {"u_tube": UTube, "path": Path}
+
+
+def supports(values):
+    """Return the places of an effect of contact: all supports together, then each by itself."""
+    names = [support["name"] for support in values["supports"]]
+    return ["all", *names] if len(names) > 1 else ["all"]
+
+
+def driven(values):
+    """Return the name of the drive point."""
+    return [values["excitation"]["point"]]
+
+
+def masses_and_springs(values):
+    """Return the named points of a structure that an element may be put at: the drive point first, then the others, one per place."""
+    first, seen, names = values["excitation"].get("point"), [], []
+    for name in sorted(values["points"], key=lambda point: point != first):
+        place = np.array(values["points"][name])
+        if all(np.linalg.norm(place - other) > 1.0e-3 for other in seen):
+            seen.append(place)
+            names.append(name)
+    return names
+
+
+def with_supports(values, location, change):
+    """Return the configuration with change(support) -> {key: value} merged into the supports of a location."""
+    chosen = [support | change(support) if location in ("all", support["name"]) else support for support in values["supports"]]
+    return values | {"supports": chosen}
+
+
+def with_element(values, name, point, direction, **laws):
+    """Return the configuration with a local element more between a point and the ground; laws: keys of an element."""
+    element = {"name": name, "point": point, "direction": list(direction), **laws}
+    return values | {"elements": [*values["elements"], element]}
+
+
+def across(values, point):
+    """Return the direction of an element at a point: that of the force."""
+    return values["excitation"]["direction"]
+
+
+def stations(values, count):
+    """Return ({name: place}, tributary length in m) of `count` points evenly spaced along a tube, ends excluded."""
+    structure = values["structure"]
+    line = build_centreline(TUBES[structure["kind"]].model_validate(structure))
+    lengths = line.length * (np.arange(count) + 0.5) / count
+    return {f"station_{number + 1}": [float(x) for x in line.position(at)] for number, at in enumerate(lengths)}, line.length / count

@@ -1,0 +1,27 @@
+"""A plate that gives way: a mass on a spring carries the support."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with the supports of a location on a plate of mass and stiffness."""
+    plate = {"mass_kg": parameters["mass"], "stiffness_N_per_m": parameters["stiffness"], "damping_ratio": DAMPING_RATIO}
+    return places.with_supports(values, location, lambda support: {"plate": plate})
+
+
+DAMPING_RATIO = 0.02
+
+
+EFFECT = Effect(
+    id="plate_flexibility",
+    explanation="the support plate moves",
+    source="mass on a spring in both transverse directions",
+    parameters=(
+        Parameter("stiffness", "N/m", 0.002, 1.0, None, per="contact_stiffness", design=(0.15, 0.45, 0.75)),
+        Parameter("mass", "kg", 0.01, 3.0, None, per="mass", design=(0.2, 0.6, 1.0)),
+    ),
+    apply=apply,
+    locations=places.supports,
+    aliases=("contact_stiffness",),
+)

@@ -1,0 +1,31 @@
+"""A fluid whose drag grows with the square of the speed."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+STATIONS = 8
+
+
+def apply(values, parameters, location):
+    """Return the configuration with drag at evenly spaced stations of the tube, in the two directions across x-y."""
+    points, length = places.stations(values, STATIONS)
+    values = values | {"points": values["points"] | points}
+    for name in points:
+        for axis, direction in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0))):
+            values = places.with_element(values, f"drag_{name}_{axis}", name, direction, drag_N_s2_per_m2=parameters["coefficient"] * length)
+    return values
+
+
+EFFECT = Effect(
+    id="quadratic_drag",
+    explanation="a fluid at rest brakes the tube with the square of its speed",
+    source="J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v",
+    parameters=(
+        Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag"),
+    ),
+    apply=apply,
+    broken=("T1", "T2", "T5"),
+    aliases=("modal_damping",),
+    locations=lambda values: ["tube"] if values["structure"]["kind"] in places.TUBES else [],
+)

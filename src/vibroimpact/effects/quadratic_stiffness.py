@@ -1,0 +1,23 @@
+"""A spring that is stiffer on one side."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with a quadratic spring between a point and the ground, along the force."""
+    return places.with_element(values, "quadratic_stiffness", location, places.across(values, location), quadratic_N_per_m2=parameters["coefficient"])
+
+
+EFFECT = Effect(
+    id="quadratic_stiffness",
+    explanation="a spring is stiffer to one side",
+    source="force = coefficient u^2",
+    parameters=(
+        Parameter("coefficient", "N/m^2", -30.0, 30.0, 0.0, per="quadratic", log=False, design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0)),
+    ),
+    apply=apply,
+    broken=("T1", "T2", "T3"),
+    aliases=("support_offset", "preload"),
+    locations=places.masses_and_springs,
+)

@@ -1,0 +1,25 @@
+"""A spring whose force saturates."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with a saturating spring between a point and the ground, along the force."""
+    laws = {"saturation_stiffness_N_per_m": parameters["stiffness"], "saturation_limit_N": parameters["limit"]}
+    return places.with_element(values, "saturation_stiffness", location, places.across(values, location), **laws)
+
+
+EFFECT = Effect(
+    id="saturation_stiffness",
+    explanation="a spring holds up to a limit only",
+    source="force = clip(stiffness u, +-limit)",
+    parameters=(
+        Parameter("stiffness", "N/m", 0.05, 50.0, 0.0, per="tube_translation", design=(0.2, 0.5, 0.8)),
+        Parameter("limit", "N", 0.02, 2.0, 0.0, per="load", design=(0.2, 0.5, 0.8)),
+    ),
+    apply=apply,
+    broken=("T1", "T2"),
+    aliases=("coulomb_friction",),
+    locations=places.masses_and_springs,
+)

@@ -1,0 +1,24 @@
+"""A support whose centre is not where the tube is."""
+
+from vibroimpact.effects import places
+from vibroimpact.effects.effect import Effect, Parameter
+
+
+def apply(values, parameters, location):
+    """Return the configuration with the centres of a location moved; x and y are the support's two transverse directions."""
+    return places.with_supports(values, location, lambda support: {"centre_offset_m": [parameters["offset_x"], parameters["offset_y"]]})
+
+
+EFFECT = Effect(
+    id="support_offset",
+    explanation="the support is not centred on the tube",
+    source="geometry",
+    parameters=(
+        Parameter("offset_x", "m", -0.85, 0.85, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9)),
+        Parameter("offset_y", "m", -0.85, 0.85, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9)),
+    ),
+    apply=apply,
+    locations=places.supports,
+    broken=("T2", "T3", "T4"),
+    aliases=("preload",),
+)
