@@ -138,7 +138,8 @@ def _faults_of(signal, measured, record, channel, what):
     if not signal.any():
         yield _row("drop-outs", "warn", f"{channel} is zero throughout record {record}. {what}.", record, channel)
         return
-    share = clipped(signal)
+    # Of a periodic signal the last period: every peak comes back in all of them.
+    share = clipped(signal[-measured.period_samples :] if 0 < measured.period_samples < signal.size else signal)
     if share is not None:
         yield _row("clipping", "warn", f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in record {record}, {100 * share:.2g} % of the "
                                        f"samples: the range of the amplifier was too small. {what}.", record, channel)
