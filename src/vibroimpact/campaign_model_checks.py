@@ -57,17 +57,20 @@ def compare_with_model(spectra, simulated, names, kinds, record=None):
     for first, second in _swaps(misfit, [kinds[index] for index in heard]):
         one, other = names[heard[first]], names[heard[second]]
         moved |= {first: second, second: first}
-        rows.append(_row("swapped channels", record, one, f"{one} moves as the model does at {other}, and {other} as it does at {one}, in record {record}: the two "
-                                                          f"seem swapped (misfit {misfit[first, second]:.1f} instead of {misfit[first, first]:.1f} dB)."))
+        rows.append(_row("swapped channels", record, one, f"{one} moves as the model does at {other}, and {other} as it does at {one}, in record "
+                                                          f"{record}: the two "
+                                                          f"seem swapped (misfit {misfit[first, second]:.1f} instead of {misfit[first, first]:.1f} "
+                                                          "dB)."))
     for index, channel in enumerate(heard):
         place = moved.get(index, index)
         cosine = np.real(h1[index] * model[place].conj()) / np.maximum(np.abs(h1[index] * model[place]), np.finfo(float).tiny)
         if np.average(cosine, weights=weights[index]) < OPPOSITE:
-            rows.append(_row("swapped channels", record, names[channel], f"{names[channel]} moves against the model in record {record}: its polarity or "
-                                                                         "its channel_direction is reversed."))
+            rows.append(_row("swapped channels", record, names[channel], f"{names[channel]} moves against the model in record {record}: its polarity "
+                                                                         "or its channel_direction is reversed."))
         gain = float(offset[index, place])
         if abs(gain) > UNIT_FACTOR_DB:
-            rows.append(_row("units", record, names[channel], f"{names[channel]} is {10 ** (gain / 20):.3g} times the model in record {record}{_known(gain)}: check its unit."))
+            rows.append(_row("units", record, names[channel], f"{names[channel]} is {10 ** (gain / 20):.3g} times the model in record "
+                                                              f"{record}{_known(gain)}: check its unit."))
     return rows
 
 

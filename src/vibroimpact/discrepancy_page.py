@@ -25,13 +25,17 @@ def discrepancy_page(name, verdict, figures):
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     tests = [f"{test}, {TESTS[test]}" if test in TESTS else str(test) for test in verdict["broken_invariances"]]
     return template.render(
-        name=name, verdict=verdict, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)], sets=sets_in_words(verdict["ambiguity_set"]),
+        name=name, verdict=verdict, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
+        sets=sets_in_words(verdict["ambiguity_set"]),
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
-        figures=[{"name": file.stem, "caption": file.with_suffix(".txt").read_text(encoding="utf-8"), "data": base64.b64encode(file.read_bytes()).decode()}
+        figures=[{"name": file.stem, "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
+                  "data": base64.b64encode(file.read_bytes()).decode()}
                  for file in map(Path, figures)],
-        ranking=[{"ids": in_words(row["ids"]), "score": _digits(row["heldout_score"]), "closed": _percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
-        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=_digits(verdict["seconds"]), provenance=[*_flat(verdict["provenance"])])
+        ranking=[{"ids": in_words(row["ids"]), "score": _digits(row["heldout_score"]),
+                  "closed": _percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
+        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=_digits(verdict["seconds"]),
+        provenance=[*_flat(verdict["provenance"])])
 
 
 def verdict_sentence(verdict):
@@ -43,9 +47,11 @@ def verdict_sentence(verdict):
     others = f" This campaign can not tell it from {sets_in_words(alternatives)}." if named and alternatives else ""
     refusals = " ".join(row["message"] for row in verdict["checks"] if row["level"] == "refuse")
     sentences = {
-        "none": f"No effect is missing: the model explains the campaign within the scatter of its seeds (chance makes such a map with probability {_probability(verdict['p_global_before'])}).",
+        "none": "No effect is missing: the model explains the campaign within the scatter of its seeds (chance makes such a map with probability "
+                f"{_probability(verdict['p_global_before'])}).",
         "named": f"The model lacks {named}.{shrinks}{others}",
-        "partly_explained": f"The model lacks {named}, and something else that the catalogue does not hold: the remaining difference is more than chance.{shrinks}{others}",
+        "partly_explained": f"The model lacks {named}, and something else that the catalogue does not hold: the remaining difference is more than "
+                            f"chance.{shrinks}{others}",
         "ambiguous": f"One of these is missing, and this campaign can not tell which: {sets_in_words(verdict['ambiguity_set'])}.",
         "unknown": "The model and the measurement disagree, and no effect of the catalogue explains it: the map says where to look.",
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
@@ -65,7 +71,8 @@ def sets_in_words(sets):
 
 def _with_parameters(effect):
     """Return an effect in words with its parameters: dry friction at both plates (mu 0.149, between 0.128 and 0.171)."""
-    values = ", ".join(f"{name.replace('_', ' ')} {_digits(value['value'])}{_unit(value['unit'])}, between {_digits(value['low'])} and {_digits(value['high'])}"
+    values = ", ".join(f"{name.replace('_', ' ')} {_digits(value['value'])}{_unit(value['unit'])}, between {_digits(value['low'])} and "
+                       f"{_digits(value['high'])}"
                        for name, value in effect["parameters"].items())
     place = f" at {effect['location']}" if effect.get("location") not in (None, "", "all") else ""
     return f"{in_words([effect['id']])}{place}" + (f" ({values})" if values else "")
@@ -84,7 +91,8 @@ def _effect_rows(verdict):
 def _misfit_rows(verdict):
     for split, words in SPLITS.items():
         values = verdict["misfit"].get(split) or {}
-        yield {"records": words, **{key: _digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")}, "closed": _percent(values.get("closed_fraction"))}
+        yield {"records": words, **{key: _digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")},
+               "closed": _percent(values.get("closed_fraction"))}
 
 
 def _region_row(region):

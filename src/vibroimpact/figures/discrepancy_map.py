@@ -22,10 +22,14 @@ def map_figure(before, after):
     """
     rows = before.sizes["record"] * before.sizes["channel"] if before is not None else 4
     height = min(max(1.6 + 2.0 * (0.5 + ROW_IN * rows), 5.0), 22.0)
-    caption = ("Measured over simulated band power (D, dB; mean over seeds) and its significance (z, in standard deviations of seeds, calibration and numerical "
-               "error), by record and channel against frequency band: left with the model as given, right with the completed one. Red: the measurement is "
-               "stronger; blue: the simulation is. Grey: the measurement is not 6 dB above its noise. Records that were held out of the fit are marked with *.")
-    sheet = Sheet("discrepancy_map", "Where measurement and model disagree", caption, [[f"{name} {stage}" for stage in STAGES] for name, _, _ in QUANTITIES],
+    caption = ("Measured over simulated band power (D, dB; mean over seeds) and its significance (z, in standard deviations of seeds, calibration "
+               "and numerical "
+               "error), by record and channel against frequency band: left with the model as given, right with the completed one. Red: the "
+               "measurement is "
+               "stronger; blue: the simulation is. Grey: the measurement is not 6 dB above its noise. Records that were held out of the fit are "
+               "marked with *.")
+    sheet = Sheet("discrepancy_map", "Where measurement and model disagree", caption,
+                  [[f"{name} {stage}" for stage in STAGES] for name, _, _ in QUANTITIES],
                   size=(11.0, height), sharex=True, sharey=before is not None)
     for name, column, title in QUANTITIES:
         limit = _limit(name, before)
@@ -65,9 +69,11 @@ def _panel(sheet, axes, data, name, column, limit, title):
     band = data["band_Hz"].values
     values = np.where(counted_cells(data), data[name].values, np.nan).reshape(len(records) * len(channels), len(band))
     for index, row in enumerate(values):
-        sheet.record(axes, f"{records[index // len(channels)]}, {channels[index % len(channels)]}", frequency_Hz=np.sqrt(band[:, 0] * band[:, 1]), **{column: row})
+        sheet.record(axes, f"{records[index // len(channels)]}, {channels[index % len(channels)]}", frequency_Hz=np.sqrt(band[:, 0] * band[:, 1]),
+                     **{column: row})
     axes.set_facecolor(PALE)
-    mesh = axes.pcolormesh(np.append(band[:, 0], band[-1, 1]), np.arange(len(values) + 1), values, cmap=COLOURS, vmin=-limit, vmax=limit, rasterized=True)
+    mesh = axes.pcolormesh(np.append(band[:, 0], band[-1, 1]), np.arange(len(values) + 1), values, cmap=COLOURS, vmin=-limit, vmax=limit,
+                           rasterized=True)
     axes.set_xscale("log")
     axes.set_ylim(len(values), 0)
     axes.grid(False)

@@ -21,15 +21,16 @@ def spectra_figure(before, after, regions=()):
     optionally channel_unit (channel), m s-2 where it is missing; or None; regions: those of verdict.json, shaded in their panels.
     """
     caption = ("PSD, measured (black) and simulated: with the model as given (orange) and with the completed one (blue); bands hold the spectra of "
-               "the seeds. Records: the lowest load, the highest fitted one, and the held-out one that disagrees most; channels: those that disagree most. Dotted: edges "
-               "of the compared bands.")
+               "the seeds. Records: the lowest load, the highest fitted one, and the held-out one that disagrees most; channels: those that disagree "
+               "most. Dotted: edges of the compared bands.")
     if before is None or "psd_measured" not in before:
         sheet = Sheet("discrepancy_psd", "Measured and simulated spectra", caption)
         sheet.note(sheet.axes["main"], "no spectra: the campaign was refused", "frequency_Hz", "psd_m2_per_s4_per_Hz")
         return [sheet]
     records, channels = chosen_records(before), chosen_channels(before)
     mosaic = [[f"{record} {channel}" for record in records] for channel in channels]
-    sheet = Sheet("discrepancy_psd", "Measured and simulated spectra, before and after", caption, mosaic, size=(1.2 + 3.7 * len(records), 0.9 + 2.9 * len(channels)), sharex=True)
+    sheet = Sheet("discrepancy_psd", "Measured and simulated spectra, before and after", caption, mosaic,
+                  size=(1.2 + 3.7 * len(records), 0.9 + 2.9 * len(channels)), sharex=True)
     for row in mosaic:
         for key in row:
             record, channel = map(int, key.split())

@@ -46,15 +46,17 @@ def quicklook(campaign):
 
 def _title(measured):
     duration = max(signal.shape[-1] for signal in measured.force) / measured.rate
-    return f"{len(measured.records)} records of up to {duration:.3g} s at {measured.rate:g} Hz: {len(measured.forces)} force(s), {len(measured.channels)} responses"
+    forces = f"{len(measured.forces)} force{'s' if len(measured.forces) > 1 else ''}"
+    return f"{len(measured.records)} records of up to {duration:.3g} s at {measured.rate:g} Hz: {forces}, {len(measured.channels)} responses"
 
 
 def _caption(campaign, measured, panels, left_out):
     source = str(campaign.attrs.get("source", "")) or "no source given"
     hidden = f" Not shown: {', '.join(name for _, _, name, _ in left_out)}." if left_out else ""
-    return (f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light "
-            "for high loads; dashed: held out. The shaded band is what the force excites. Last panel: RMS of each response over its RMS at the lowest level; "
-            f"a linear structure follows the grey line.{hidden}")
+    return (f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power in bins of 1/{BINS_PER_OCTAVE} octave, one "
+            "curve per record, light "
+            "for high loads; dashed: held out. The shaded band is what the force excites. Last panel: RMS of each response over its RMS at the "
+            f"lowest level; a linear structure follows the grey line.{hidden}")
 
 
 def _shown_unit(units, kind):
@@ -77,8 +79,10 @@ def _spectra(sheet, axes, measured, signal, unit, colours, band):
         frequency, psd = _binned(values, measured.rate, band)
         load = measured.load_rms[record]
         held = measured.splits[record] == "holdout"
-        sheet.line(axes, ("frequency_Hz", frequency), (column, psd), measured.records[record], tags={"load_rms_N": float(load), "split": measured.splits[record]},
-                   color=colours.get(load, BLACK), linewidth=0.9, linestyle="--" if held else "-", label=f"{measured.records[record]} ({load:.3g} N RMS{', held out' if held else ''})")
+        sheet.line(axes, ("frequency_Hz", frequency), (column, psd), measured.records[record],
+                   tags={"load_rms_N": float(load), "split": measured.splits[record]},
+                   color=colours.get(load, BLACK), linewidth=0.9, linestyle="--" if held else "-",
+                   label=f"{measured.records[record]} ({load:.3g} N RMS{', held out' if held else ''})")
         lowest, highest = min(lowest, np.percentile(psd, 3)), max(highest, psd.max())
     if not highest > 0.0:
         sheet.note(axes, "holes in every record", "frequency_Hz", column)
@@ -110,7 +114,8 @@ def _levels(sheet, axes, measured):
         rms = np.array([np.sqrt(np.mean(np.square(measured.response[record][index]))) for record in order])
         if not (np.isfinite(rms[0]) and rms[0] > 0.0):
             continue
-        sheet.line(axes, ("load_rms_N", loads), ("rms_over_lowest", rms / rms[0]), name, color=CURVES[index % len(CURVES)], marker=MARKERS[index % len(MARKERS)],
+        sheet.line(axes, ("load_rms_N", loads), ("rms_over_lowest", rms / rms[0]), name, color=CURVES[index % len(CURVES)],
+                   marker=MARKERS[index % len(MARKERS)],
                    linestyle="none", label=name, alpha=0.85)
     if not axes.lines:
         sheet.note(axes, "no response without holes", "load_rms_N", "rms_over_lowest")

@@ -40,8 +40,8 @@ def import_folder(folder):
     found = _read_files(folder, {name for record in described.records for name in record.all_files()} if described else None)
     sidecar = described or _told_by_files(folder, found)
     problems = []
-    sensors = [(_settled(sensor, role, sidecar, folder, found, problems)) for role, group in (("force", sidecar.forces), ("response", sidecar.channels))
-               for sensor in group]
+    asked = [("force", sensor) for sensor in sidecar.forces] + [("response", sensor) for sensor in sidecar.channels]
+    sensors = [_settled(sensor, role, sidecar, folder, found, problems) for role, sensor in asked]
     sensors = [sensor for sensor in sensors if sensor is not None]
     rate = _one_rate(sidecar, sensors, problems)
     voltage = _voltage(sidecar, folder, found, problems)
@@ -75,8 +75,8 @@ def _told_by_files(folder, found):
     forces, responses = ([Sensor(name=signal.name) for signal in first if signal.force is wanted] for wanted in (True, False))
     if not forces or not responses:
         missing = "force (ordinate type 13)" if not forces else "response"
-        raise ImportProblem(f"{folder}: there is no {NAME} and the files do not say which signal is the {missing}: put a {NAME} into the folder, such as\n\n"
-                            f"{draft(folder, signals)}")
+        raise ImportProblem(f"{folder}: there is no {NAME} and the files do not say which signal is the {missing}: put a {NAME} into the folder, "
+                            f"such as\n\n{draft(folder, signals)}")
     return Sidecar(source=folder.name, forces=forces, channels=responses, records=[Record(name=Path(name).stem, file=name) for name in found])
 
 
@@ -97,7 +97,8 @@ def _settled(sensor, role, sidecar, folder, found, problems):
     units = {sensor.unit or signal.unit for signal in signals}
     unit = sensor.unit or first.unit
     if len(units) > 1:
-        problems.append(f"{place}: its unit differs from record to record, {' and '.join(sorted(units))}: convert the files, or correct the labels with unit")
+        problems.append(f"{place}: its unit differs from record to record, {' and '.join(sorted(units))}: convert the files, or correct the labels "
+                        "with unit")
     wanted = ("excitation" if role == "force" else kind) or "generic"
     try:
         si_factor(unit, wanted)
@@ -134,8 +135,8 @@ def _signal_of(sensor, variable, record, folder, found, problems):
     matches = [signal for signal in known if signal.name == wanted] or [signal for signal in known if wanted in signal.aliases]
     if len(matches) != 1:
         what = "is not" if not matches else f"is {len(matches)} times"
-        problems.append(f"{folder / NAME}, {sensor}: the signal '{wanted}' {what} in {', '.join(record.all_files())}: they have {', '.join(signal.name for signal in known)}; "
-                        "name it with variable")
+        problems.append(f"{folder / NAME}, {sensor}: the signal '{wanted}' {what} in {', '.join(record.all_files())}: they have "
+                        f"{', '.join(signal.name for signal in known)}; name it with variable")
         return None
     return matches[0]
 
@@ -152,11 +153,13 @@ def _one_rate(sidecar, sensors, problems):
     rates = {signal.rate: signal for sensor in sensors for signal in sensor.signals if signal.rate}
     given = sidecar.sampling_frequency_Hz
     if given:
-        problems += [f"{Path(signal.file).name}, {signal.name}: sampled at {rate:g} Hz, but sampling_frequency_Hz of {NAME} = {given:g}: remove the key"
+        problems += [f"{Path(signal.file).name}, {signal.name}: sampled at {rate:g} Hz, but sampling_frequency_Hz of {NAME} = {given:g}: remove the "
+                     "key"
                      for rate, signal in rates.items() if abs(rate - given) > 1e-6 * given]
         return given
     if len(rates) > 1:
-        problems.append(f"{NAME}: the signals are sampled at {', '.join(f'{rate:g} Hz ({Path(signal.file).name})' for rate, signal in sorted(rates.items()))}: "
+        problems.append(f"{NAME}: the signals are sampled at "
+                        f"{', '.join(f'{rate:g} Hz ({Path(signal.file).name})' for rate, signal in sorted(rates.items()))}: "
                         "resample them to one rate first")
     if not rates and sensors:
         problems.append(f"{NAME}: no file says its sampling: add sampling_frequency_Hz")

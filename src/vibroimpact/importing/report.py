@@ -7,7 +7,8 @@ from pathlib import Path
 from vibroimpact.campaign_checks import COLUMNS, check_campaign
 from vibroimpact.records import write_table, write_text
 
-SHOWN = {"sensor": "sensor", "role": "role", "kind": "kind", "file": "file", "variable": "signal", "unit_read": "unit read", "unit_from": "which stands in",
+SHOWN = {"sensor": "sensor", "role": "role", "kind": "kind", "file": "file", "variable": "signal", "unit_read": "unit read",
+         "unit_from": "which stands in",
          "unit_SI": "SI unit", "factor": "times", "rms_SI": "RMS (SI)", "peak_SI": "peak (SI)"}
 SIGNS = {"pass": "ok    ", "warn": "WARN  ", "refuse": "REFUSE"}
 
@@ -28,7 +29,8 @@ def import_text(folder, campaign, rows, checks):
     for record, name in enumerate(str(value) for value in campaign["record_name"].values):
         own = [row for row in rows if row["record"] == name]
         gap = f"gap {gaps[record] * 1e3:.4g} mm" if gaps[record] == gaps[record] else "no gap"
-        lines += [f"Record {name}: {own[0]['samples']} samples, {own[0]['duration_s']:.4g} s, load {loads[record]:.4g} {own[0]['unit_SI']} RMS, {gap}, {campaign['split'].values[record]}"]
+        lines += [f"Record {name}: {own[0]['samples']} samples, {own[0]['duration_s']:.4g} s, load {loads[record]:.4g} {own[0]['unit_SI']} RMS, "
+                  f"{gap}, {campaign['split'].values[record]}"]
         lines += [*_table(own), *(f"  {row['sensor']}: {row['note']}" for row in own if row["note"]), ""]
     return "\n".join([*lines, checks_text(checks)])
 
@@ -46,4 +48,5 @@ def checks_text(checks):
     counts = {level: sum(row["level"] == level for row in checks) for level in order}
     verdict = "can not be used" if counts["refuse"] else "can be used, with care" if counts["warn"] else "can be used"
     lines = [f"Checks: the campaign {verdict}; {counts['pass']} checks passed, {counts['warn']} warnings, {counts['refuse']} refusals.", ""]
-    return "\n".join(lines + [f"{SIGNS[row['level']]} {row['check']}: {row['message']}" for row in sorted(checks, key=lambda row: order[row["level"]])]) + "\n"
+    ordered = sorted(checks, key=lambda row: order[row["level"]])
+    return "\n".join(lines + [f"{SIGNS[row['level']]} {row['check']}: {row['message']}" for row in ordered]) + "\n"

@@ -79,7 +79,8 @@ def read_sidecar(path):
         sidecar = Sidecar.model_validate(data)
     except ValidationError as error:
         raise ImportProblem("\n".join(_sentence(path, line) for line in error.errors(include_url=False))) from error
-    problems = [f"{path}: records[{index}] names no file: give file or files" for index, record in enumerate(sidecar.records) if not record.all_files()]
+    problems = [f"{path}: records[{index}] names no file: give file or files"
+                for index, record in enumerate(sidecar.records) if not record.all_files()]
     for group in ("forces", "channels"):
         names = [sensor.name for sensor in getattr(sidecar, group)]
         problems += [f"{path}: {group}: the name '{name}' is given twice" for name in sorted({name for name in names if names.count(name) > 1})]
@@ -100,13 +101,14 @@ def _sentence(path, line):
 
 def draft(folder, signals):
     """Return the text of a campaign.yaml to fill in for a folder: every signal found in its first file, and every file as a record."""
-    lines = ["# Fill in every ???, delete the signals that are no channels, then move the forces to 'forces'.", f"source: {Path(folder).name}", "forces:",
+    lines = ["# Fill in every ???, delete the signals that are no channels, then move the forces to 'forces'.", f"source: {Path(folder).name}",
+             "forces:",
              "  - {name: ???, variable: ???, unit: N, point_m: [???, ???, ???], direction: ???}", "channels:"]
     first = signals[0].file if signals else ""
     for signal in (signal for signal in signals if signal.file == first):
         direction = next((text for text, vector in DIRECTIONS.items() if vector == signal.direction and len(text) == 2), "???")
         place = list(signal.point) if signal.point else "[???, ???, ???]"
-        lines.append(f"  - {{name: {signal.name!r}, variable: {signal.name!r}, unit: {signal.unit or '???'}, kind: {signal.kind or '???'}, point_m: {place}, "
-                     f"direction: {direction}}}")
+        lines.append(f"  - {{name: {signal.name!r}, variable: {signal.name!r}, unit: {signal.unit or '???'}, kind: {signal.kind or '???'}, point_m: "
+                     f"{place}, direction: {direction}}}")
     files = dict.fromkeys(Path(signal.file).name for signal in signals)
     return "\n".join([*lines, "records:", *(f"  - {{file: {name!r}, gap_m: ???, split: fit}}" for name in files)]) + "\n"

@@ -54,8 +54,8 @@ def even_samples(time, values, place):
         raise ImportProblem(f"{place}: the time does not rise: give sampling_frequency_Hz in campaign.yaml, or correct the file")
     if np.any(steps > LOST_SAMPLE * typical + 2.0 * printed) or np.any(steps < -2.0 * printed):
         index = int(np.argmax(np.abs(steps - typical)))
-        raise ImportProblem(f"{place}: a step of {steps[index]:.4g} s after {time[index]:.6g} s, elsewhere {typical:.4g} s: samples are lost; cut the record there "
-                            "with from_s and to_s of campaign.yaml")
+        raise ImportProblem(f"{place}: a step of {steps[index]:.4g} s after {time[index]:.6g} s, elsewhere {typical:.4g} s: samples are lost; cut "
+                            "the record there with from_s and to_s of campaign.yaml")
     step = (time[-1] - time[0]) / (time.size - 1)
     grid = time[0] + step * np.arange(time.size)
     if np.max(np.abs(time - grid)) <= max(EVEN_WITHIN * step, printed):

@@ -53,7 +53,8 @@ def _signal(data, path, nodes, units):
     place = f"{path}, {name}"
     values, stated = np.asarray(data["data"], float), int(data["num_pts"])
     if values.size < stated:
-        raise ImportProblem(f"{place}: {values.size} of {stated} samples can be read: the file is cut short, or its binary part was changed by a text transfer")
+        raise ImportProblem(f"{place}: {values.size} of {stated} samples can be read: the file is cut short, or its binary part was changed by a "
+                            "text transfer")
     values = values[:stated]
     if data["abscissa_spacing"] == 1:
         rate, note = whole_rate(1.0 / data["abscissa_inc"]) if data["abscissa_inc"] > 0.0 else None, ""
@@ -63,7 +64,8 @@ def _signal(data, path, nodes, units):
     unit, unit_from = _unit(data, type_, units)
     direction = tuple(np.sign(axis) * np.eye(3)[abs(axis) - 1]) if abs(axis) in AXES else None
     aliases = tuple(text for text in (_text(data.get("rsp_ent_name")), _text(data.get("id1"))) if text not in NOTHING)
-    return Signal(name, str(path), values, rate, unit, unit_from, KIND_OF_TYPE.get(type_, ""), direction, nodes.get(node), type_ in FORCE_TYPES, aliases, note)
+    return Signal(name, str(path), values, rate, unit, unit_from, KIND_OF_TYPE.get(type_, ""), direction, nodes.get(node), type_ in FORCE_TYPES,
+                  aliases, note)
 
 
 def _axis_text(axis):
