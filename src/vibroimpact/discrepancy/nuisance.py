@@ -91,6 +91,11 @@ def nuisance_of(pulls, modes, channels):
                     1.0 + priors.GAIN_SD * limited[2 * count : 2 * count + channels])  # fmt: skip
 
 
+def without(reading, nuisance):
+    """Return the Reading of a corrected model as that of the model without the corrections."""
+    return replace(reading, log_frequency=reading.log_frequency - np.log(nuisance.frequency), log_damping=reading.log_damping - np.log(nuisance.damping))
+
+
 def corrected(model, nuisance):
     """Return the ModalModel with the frequencies and damping of a Nuisance."""
     if nuisance is None or not len(nuisance.modes):

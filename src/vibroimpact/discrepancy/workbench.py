@@ -38,6 +38,16 @@ class Workbench:
         """Return the configuration in plain values."""
         return self.config.model_dump(mode="json")
 
+    @property
+    def gains(self):
+        """Return (channel,): the gains of the nuisance."""
+        return np.ones(len(self.signals.names)) if self.nuisance is None else self.nuisance.gain
+
+    @cached_property
+    def linear_stage(self):
+        """Return True where the lowest record tells of the linear structure: a mode is seen and the bare model does not touch."""
+        return not self.touches(self.bare) and self.measured_fit is not None
+
     @cached_property
     def linear_record(self):
         """Return the LinearRecord of the lowest record."""
@@ -77,7 +87,7 @@ class Workbench:
             return False
         record = self.linear_record
         transfer = 1.0 / (model.omega[:, None] ** 2 - record.omega**2 + 1j * model.damping[:, None] * record.omega + 1.0e-9)
-        modal = np.fft.irfft((model.drive_shapes @ record.spectrum) * transfer, record.length // record.every, axis=-1)
+        modal = np.fft.irfft((model.drive_shapes @ record.spectrum) * transfer, record.length // record.every, axis=-1) / record.every
         largest = np.abs(points.T @ modal).max(axis=-1).reshape(-1, 2).max(axis=1)
         gap = self.signals.gap[self.signals.lowest]
         clearance = np.where(np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap)
@@ -87,21 +97,8 @@ class Workbench:
         """Return [(record, gap, seed)] of `seeds` runs of every record."""
         return [(int(record), float(self.signals.gap[record]), first_seed + seed) for record in records for seed in range(seeds)]
 
-    def respond(self, model, runs, measuring=None):
-        """Return (run, channel, sample) responses with the gains of the nuisance; measuring: (gain (channel,), delay (channel,), force factor)."""
-        forces = self.forces
-        if measuring is not None and measuring.force_gain != 1.0:
-            forces = Forces(self.signals.force / measuring.force_gain, self.schedule)
-        responses = simulate_records(model, self.schedule, forces, runs, self.signals.kinds)
-        gain = np.ones(responses.shape[1]) if self.nuisance is None else self.nuisance.gain
-        if measuring is not None:
-            gain = gain * measuring.gain
-            responses = measuring.delayed(responses, self.signals.rate)
-        return responses * gain[:, None].astype(np.float32)
-
-    def features(self, model, runs, measuring=None):
-        """Return (run, feature): the features of runs with the measuring noise, each cut to the valid samples of its record."""
-        responses = self.respond(model, runs, measuring)
+    def noisy_features(self, runs, responses):
+        """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each cut to the valid samples of its record."""
         out = []
         for (record, _, seed), response in zip(runs, responses, strict=True):
             keep = np.isfinite(self.signals.force[record][0])
@@ -110,24 +107,41 @@ class Workbench:
             out.append(record_features(self.layout, self.signals.force[record][0, keep], noisy))
         return np.array(out)
 
+    def respond(self, model, runs, measuring=None):
+        """Return (run, channel, sample) responses with the gains of the nuisance; measuring: (gain (channel,), delay (channel,), force factor)."""
+        forces = self.forces
+        if measuring is not None and measuring.force_gain != 1.0:
+            forces = Forces(self.signals.force / measuring.force_gain, self.schedule)
+        responses = simulate_records(model, self.schedule, forces, runs, self.signals.kinds)
+        gain = self.gains
+        if measuring is not None:
+            gain = gain * measuring.gain
+            responses = measuring.delayed(responses, self.signals.rate)
+        return responses * gain[:, None].astype(np.float32)
+
+    def features(self, model, runs, measuring=None):
+        """Return (run, feature): the features of runs with the measuring noise, each cut to the valid samples of its record."""
+        return self.noisy_features(runs, self.respond(model, runs, measuring))
+
     def linear_reading(self, values, modes):
         """Return the Reading of a variant that stays linear below contact, at the modes of the bare model named."""
         model = linearised(attach(check_config(values, "variant of the model"), self.campaign))
         return replace(linear.reading_of_model(model, same_modes(model, modes, self.bare)), modes=modes)
 
-    def low_reading(self, model, bare_response):
-        """Return the Reading of a variant's simulated lowest record, None where it answers as the bare model does.
+    @cached_property
+    def low_response(self):
+        """Return (channel, sample): the simulated lowest record of the corrected bare model, without gains."""
+        return simulate_records(self.model(), self.schedule, self.forces, self.runs([self.signals.lowest], 1), self.signals.kinds)[0]
 
-        model: without nuisance corrections; bare_response: (channel, sample) of the bare model, likewise.
-        """
-        record = self.signals.lowest
-        response = simulate_records(model, self.schedule, self.forces, self.runs([record], 1), self.signals.kinds)[0]
-        change = np.sqrt(np.mean((response - bare_response) ** 2)) / np.sqrt(np.mean(bare_response**2))
+    def low_reading(self, response):
+        """Return the Reading, nuisances taken out, of a variant's lowest record (channel, sample), None where it answers as the bare model does."""
+        change = np.sqrt(np.mean((response - self.low_response) ** 2)) / np.sqrt(np.mean(self.low_response**2))
         if not change > SAME:
             return None
-        keep = np.isfinite(self.signals.force[record][0])
-        fit = fit_modes(self.linear_record, response[:, keep], self.bare, self.signals.kinds, self.signals.noise_in_band, self.measured_fit.modes)
-        return linear.reading_of_fit(fit, self.bare)
+        keep = np.isfinite(self.signals.force[self.signals.lowest][0])
+        start = linear.corrected(self.bare, self.nuisance)
+        fit = fit_modes(self.linear_record, response[:, keep], start, self.signals.kinds, self.signals.noise_in_band, self.measured_fit.modes)
+        return linear.without(linear.reading_of_fit(fit, start), self.nuisance)
 
     def seeds_of_a_batch(self, records):
         """Return how many seeds of every record fill the lanes of a batch, at least 1."""

@@ -1,0 +1,95 @@
+"""Candidates: an effect at a place, its parameters between 0 and 1, and what it does to the features of a campaign."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.discrepancy.measuring import measuring_of, places
+from vibroimpact.effects.registry import EFFECTS
+
+SCREENED = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a location; its name is effect@location."""
+
+    effect_id: str
+    location: str
+
+    @classmethod
+    def named(cls, name):
+        """Return the candidate of a name."""
+        return cls(*name.split("@"))
+
+    @property
+    def name(self):
+        """Return effect@location."""
+        return f"{self.effect_id}@{self.location}"
+
+    @property
+    def effect(self):
+        """Return the Effect."""
+        return EFFECTS[self.effect_id]
+
+    def physical(self, unit, scales):
+        """Return {name: value in SI} of normalised parameters unit (parameter,) from 0 to 1."""
+        out = {}
+        for value, parameter in zip(unit, self.effect.parameters, strict=True):
+            low, high = parameter.low, parameter.high
+            scaled = low * (high / low) ** value if parameter.log else low + (high - low) * value
+            out[parameter.name] = float(scaled * scales[parameter.per])
+        return out
+
+    def normalised(self, physical, scales):
+        """Return (parameter,) from 0 to 1 of {name: value in SI}."""
+        out = []
+        for parameter in self.effect.parameters:
+            value, low, high = physical[parameter.name] / scales[parameter.per], parameter.low, parameter.high
+            out.append(np.log(value / low) / np.log(high / low) if parameter.log else (value - low) / (high - low))
+        return np.array(out)
+
+    def design(self):
+        """Return (point, parameter): the parameters to try first, all combinations of the effect's own design."""
+        axes = np.meshgrid(*[parameter.design for parameter in self.effect.parameters], indexing="ij")
+        return np.stack([axis.ravel() for axis in axes], axis=-1)
+
+    @property
+    def periodic(self):
+        """Return the numbers of the parameters that are angles over a whole period."""
+        return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.name == "angle" and self.effect_id == "foliate_obstacle")
+
+    def variant(self, values, parameters):
+        """Return the configuration in plain values with the effect; unchanged for a fault of the measuring chain."""
+        return values if self.effect.measured else self.effect.apply(values, parameters, self.location)
+
+    def measuring(self, parameters, names):
+        """Return the Measuring of a fault of the measuring chain, None for an effect of the model."""
+        return measuring_of(self.effect_id, parameters, self.location, names) if self.effect.measured else None
+
+
+def linear_candidates(values, names, held):
+    """Return the candidates that the lowest record tells of by itself; held: names of what the campaign holds beyond force and response."""
+    found = []
+    for effect in EFFECTS.values():
+        if effect.linear and set(effect.needs) <= set(held):
+            locations = places(names) if effect.measured else effect.locations(values)
+            found += [Candidate(effect.id, location) for location in locations]
+    return found
+
+
+def local_candidates(values, held):
+    """Return the candidates that only simulation tells of, those to screen first: one place each, or the first few."""
+    found = []
+    for effect in EFFECTS.values():
+        if not effect.linear and set(effect.needs) <= set(held):
+            locations = effect.locations(values)
+            if locations and locations[0] == "all":
+                locations = locations[:1]
+            found += [Candidate(effect.id, location) for location in locations[: SCREENED.get(effect.id, len(locations))]]
+    return found
+
+
+def not_testable(held):
+    """Return the effects that need what the campaign does not hold."""
+    return [effect.id for effect in EFFECTS.values() if not set(effect.needs) <= set(held)]
