@@ -24,6 +24,20 @@ FIGURES = {
 }
 
 
+# What a run is asked to look at; no key of the study.
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign") if name in config}
+
+
+def requested(name, example):
+    """The path that --config name=PATH gives, as an input; a sentence where it is not given or not there."""
+    def path(wildcards):
+        if not os.path.exists(REQUEST.get(name, "")):
+            sys.exit(f"{name} = '{REQUEST.get(name, '')}' is not there: give it as in --config {name}={example}")
+        return REQUEST[name]
+
+    return path
+
+
 def checked_config():
     """The Config of the files and --config values given to snakemake; ends with every problem as a sentence before any job is planned."""
     files = [os.path.relpath(file) for file in workflow.configfiles]
