@@ -14,7 +14,8 @@ from benchmarks.pairs import ONE_RUN, PEAK, Pair
 from benchmarks.peak import PeakRate, flops_per_step
 from benchmarks.peers import plain, scipy_ivp
 from benchmarks.problem import FREE_MODES, RATE, tube_problem
-from benchmarks.table import COLUMNS, benchmark_rows, write_csv
+from benchmarks.table import COLUMNS, benchmark_rows, read_csv, write_csv
+from benchmarks.work_precision_page import section
 
 STEPS_S = 0.01  # 512 steps
 HARD_N = 400.0  # contact within a few milliseconds
@@ -57,6 +58,21 @@ def test_the_page_holds_every_peer_and_says_who_is_absent(tmp_path):
     assert "| slow | 20 | 16.3 min | 7.5 (5 to 10) |" in text
     assert "uses 50 %" in text
     assert "JAX cannot be imported" in text
+
+
+def test_the_page_from_files_is_the_page_of_the_run(tmp_path):
+    rows = benchmark_rows(pairs())
+    write_csv(tmp_path / "benchmark.csv", COLUMNS, rows)
+    for name, found in (("run", rows), ("files", read_csv(tmp_path / "benchmark.csv"))):
+        write_page(tmp_path / f"{name}.md", found, [], [], [], {"processor": "one"}, "figure.png")
+    assert (tmp_path / "run.md").read_text(encoding="utf-8") == (tmp_path / "files.md").read_text(encoding="utf-8")
+    assert read_csv(tmp_path / "not_there.csv") == []
+
+
+def test_work_and_precision_stand_side_by_side():
+    rows = [{"case": "R3", "scheme": scheme, "steps_per_second": "200000", "error": error, "standard_error": "0", "cpu_s_per_simulated_s": "0.17"}
+            for scheme, error in (("exact", "0.0021"), ("newmark", "0.0015"))]  # fmt: skip
+    assert "| R3 | 200000 | 0.0015 | 170 | 0.0021 | 170 |  |" in section(rows, "figure.png")
 
 
 def test_the_plain_loop_ends_where_ours_ends(problem):
