@@ -9,6 +9,7 @@ from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, li
 
 STEPS = (0.08, 0.03)  # of the searched range: how far to either side a round looks
 ROUND_SEEDS = 2
+START_STEP = 0.12
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,11 @@ class Finalist:
     def mean(self):
         """Return (record, feature) the mean over seeds."""
         return self.features.mean(axis=1)
+
+
+def started(bench, null, candidate, unit, scales, first_seed=2000):
+    """Return the Path round normalised parameters of a candidate that was not screened: a pair, or an effect at another place."""
+    return simulate_path(bench, candidate, _around(unit, START_STEP, candidate.periodic), scales, null.records, ROUND_SEEDS, first_seed)
 
 
 def refine(bench, null, measured, candidate, path, scales, fit, rounds=len(STEPS), seeds=priors.FINAL_SEEDS, first_seed=3000):

@@ -12,6 +12,8 @@ from vibroimpact.discrepancy.features import compressed, uncompressed
 from vibroimpact.discrepancy.likelihood import log_likelihood
 
 LEAST_LOW = 300.0  # log likelihood of the lowest record below the best: farther off tells nothing more
+SMOOTHING = 1.0e-3  # points that were simulated twice differ by the seeds
+SWEEPS, SCAN = 3, 21  # of a coordinate search, where a grid over all parameters would be too large
 GRID = {1: 61, 2: 21}  # points per parameter on which the emulator is searched, by the number of parameters
 
 
@@ -112,22 +114,42 @@ def calibrate(bench, null, measured, candidate, path, fit):
     def fit_score(unit):
         return at(unit, np.flatnonzero(fit))[0].sum() + low_at(unit)
 
-    count = path.parameters.shape[1]
-    axis = np.linspace(0.0, 1.0, GRID.get(count, 5))
-    grid = np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * count, indexing="ij")], axis=-1)
-    scores = np.array([fit_score(unit) for unit in grid]).reshape([len(axis)] * count)
-    unit = grid[np.argmax(scores)]
+    start = path.parameters[np.argmax([fit_score(unit) for unit in path.parameters])]
+    unit, profile = (_grid if path.parameters.shape[1] in GRID else _scan)(fit_score, start)
     records, deviation = at(unit, np.arange(len(measured)))
-    profile = [(axis, np.moveaxis(scores, number, 0).reshape(len(axis), -1).max(axis=1)) for number in range(count)]
     interval = np.array([_above(values, score) for values, score in profile])
     return Calibrated(unit, records, low_at(unit), null.mean + uncompressed(deviation, bench.layout), interval, profile)
+
+
+def _grid(score, start):
+    """Return (unit, profile) of the best of a grid over all parameters."""
+    count = len(start)
+    axis = np.linspace(0.0, 1.0, GRID[count])
+    grid = np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * count, indexing="ij")], axis=-1)
+    scores = np.array([score(unit) for unit in grid])
+    unit, scores = grid[np.argmax(scores)], scores.reshape([len(axis)] * count)
+    return unit, [(axis, np.moveaxis(scores, number, 0).reshape(len(axis), -1).max(axis=1)) for number in range(count)]
+
+
+def _scan(score, start):
+    """Return (unit, profile) of a search along one parameter after the other."""
+    unit, axis = np.array(start), np.linspace(0.0, 1.0, SCAN)
+    for _ in range(SWEEPS):
+        profile = []
+        for number in range(len(unit)):
+            along = np.repeat(unit[None], SCAN, axis=0)
+            along[:, number] = axis
+            scores = np.array([score(point) for point in along])
+            unit = along[np.argmax(scores)]
+            profile.append((axis, scores))
+    return unit, profile
 
 
 def _lows(parameters, scores):
     """Return the function unit -> log likelihood of the lowest record, between the simulated parameters (point, parameter)."""
     if np.ptp(scores) == 0.0 or len(scores) <= parameters.shape[1] + 1:
         return lambda unit: float(scores[np.argmin(np.sum((parameters - unit) ** 2, axis=1))])
-    interpolator = RBFInterpolator(parameters, scores, kernel="linear", degree=0)
+    interpolator = RBFInterpolator(parameters, scores, kernel="linear", degree=0, smoothing=SMOOTHING)
     return lambda unit: float(interpolator(np.atleast_2d(unit))[0])
 
 
