@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-TOP_SHARE = 0.01  # width of the bins at the extreme, as a share of it
+TOP_SHARES = (0.01, 0.02, 0.04)  # widths of the bins at the extreme, as shares of it
 FEWEST_AT_TOP = 8  # samples in the outermost bin
 PILE_UP = 8.0  # times as many samples as in the bin beneath: 3 for a sine, below 1 for random vibration
-EQUAL_IN_A_ROW = 3
+SAME_VALUE, NEIGHBOURS = 3, 20  # times that the extreme value is met, for each time that one of the next values is
 DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a value that is held for longer than both
 QUIET_S, QUIET_SHARE = 0.1, 0.01  # a stretch whose RMS and whose differences' RMS fall to this share of the median
 TREND_SEGMENT_S, TREND_SEGMENTS, TREND_BANDS = 2.0, 8, 6
@@ -25,25 +25,31 @@ def missing(signal):
 def clipped(signal):
     """Return the share of samples (0 to 1) at a flat top of a signal (time,) without holes, or None where the tops are round.
 
-    Flat: the same extreme value three times in a row, or far more samples within 1 % of it than in the next 1 %.
+    Flat: the same extreme value three times, when the values next to it are hardly repeated; or far more samples within 1, 2 or 4 % of it
+    than in the next 1, 2 or 4 %.
     """
     found = 0
     for side in (signal - np.median(signal), np.median(signal) - signal):
         top = side.max()
         if top <= 0.0:
             continue
-        at_top = np.count_nonzero(side > (1.0 - TOP_SHARE) * top)
-        beneath = np.count_nonzero(side > (1.0 - 2.0 * TOP_SHARE) * top) - at_top
-        equal = side >= top * (1.0 - 1e-7)
-        pile = at_top >= FEWEST_AT_TOP and at_top > PILE_UP * max(beneath, 1)
-        if pile or _longest(equal) >= EQUAL_IN_A_ROW and not _coarse(signal):
-            found += at_top
+        near = side[side > (1.0 - 2.0 * TOP_SHARES[-1]) * top]
+        counts = [(np.count_nonzero(near > (1.0 - share) * top), np.count_nonzero(near > (1.0 - 2.0 * share) * top)) for share in TOP_SHARES]
+        piles = [inner for inner, both in counts if inner >= FEWEST_AT_TOP and inner > PILE_UP * max(both - inner, 1)]
+        same = _repeated_top(near, top)
+        if piles or same:
+            found += max([*piles, same])
     return found / signal.size if found else None
 
 
-def _coarse(signal):
-    """Whether a signal is written in so few steps that equal neighbours are usual."""
-    return np.mean(np.diff(signal) == 0.0) > 0.05
+def _repeated_top(near, top):
+    """Return how often the extreme value of a side (its samples near the top) is repeated, 0 where that may be the converter's step or the
+    round top of a slow wave, which holds ten times as many samples within 1e-5 as within 1e-7."""
+    values, counts = np.unique(near, return_counts=True)
+    same = np.count_nonzero(near >= top * (1.0 - 1e-7))
+    beneath = counts[values < top * (1.0 - 1e-7)][-NEIGHBOURS:]
+    flat = same > 0.5 * np.count_nonzero(near >= top * (1.0 - 1e-5))
+    return int(same) if flat and same >= SAME_VALUE * max(int(beneath.max(initial=0)), 1) else 0
 
 
 def _longest(flags):

@@ -71,7 +71,8 @@ def swap_hints(measured, spectra):
         return []
     hints = []
     for index in silent:
-        rivals = [other for other in loud if measured.kinds[other] == measured.kinds[index] and spectra.power[other] > OUTSHINES * spectra.power[index]]
+        rivals = [other for other in loud
+                  if measured.kinds[other] == measured.kinds[index] and spectra.power[other] > OUTSHINES * spectra.power[index]]
         beside = [other for other in rivals if np.linalg.norm(measured.points[other] - measured.points[index]) < NEAR_M]
         partner = (beside or rivals or [None])[0]
         hints.append((int(index), None if partner is None else int(partner)))

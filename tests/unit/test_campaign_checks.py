@@ -7,6 +7,7 @@ import pytest
 
 from vibroimpact.campaign import Channel, Level, campaign_dataset, read_campaign
 from vibroimpact.campaign_checks import CHECKS, COLUMNS, check_campaign, check_file, refused, usable_signals
+from vibroimpact.campaign_faults import clipped
 from vibroimpact.records import write_record
 
 DEVELOPMENT = Path(__file__).parents[2].parent / "shared" / "data" / "campaigns"
@@ -87,6 +88,15 @@ def test_clipping_with_noise_behind_it_is_told(sound):
     limit = 0.6 * np.abs(values).max()
     sound["response"].values[2, 1] = np.clip(values, -limit, limit) + 1e-3 * limit * np.random.default_rng(3).standard_normal(values.size)
     assert [(row["check"], row["record"], row["channel"]) for row in complaints(sound)] == [("clipping", *names(sound, 2, 1))]
+
+
+def test_round_tops_are_not_clipping():
+    draw, count = np.random.default_rng(1), np.arange(200_000)
+    for signal in (np.sin(0.0123 * count), np.sin(0.0123 * count).astype(np.float32), np.round(100.0 * np.sin(0.0123 * count)), draw.standard_normal(count.size),
+                   np.round(20.0 * draw.standard_normal(count.size)), draw.standard_normal(count.size) ** 3):
+        assert clipped(signal) is None
+        limit = 0.7 * np.abs(signal).max()
+        assert clipped(np.clip(signal, -limit, limit)) is not None
 
 
 @pytest.mark.parametrize("fill", ["zero", "held", "noise"])
