@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.campaign import CampaignError, contract_problems, decoded, filled
 from vibroimpact.campaign_faults import clipped, dropped_out, drifting, level_trend, missing
-from vibroimpact.campaign_linear_checks import NO_CAUSE, alignment, delayed, delays, mean_coherence, reversed_hint, swap_hints
+from vibroimpact.campaign_linear_checks import NO_CAUSE, alignment, delays, mean_coherence, reversed_hint, swap_hints
 from vibroimpact.campaign_signals import excited_band, measured_signals, transfer
 from vibroimpact.records import RecordError, read_dataset
 
@@ -178,7 +178,7 @@ def _linear(measured, spectra, record):
     if best < 0.8:
         yield _row("coherence", "warn", f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in record {name}: the "
                                         "lowest level is not linear, or noisy.", name)
-    apart, common = delayed(np.where(finite, delays(spectra, measured.kinds, measured.rate), np.nan), spectra.frequency[-1], measured.rate)
+    apart, common = delays(spectra, measured.kinds, measured.rate, finite)
     for index, samples in apart.items():
         yield _row("delay", "warn", f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by {abs(samples):.1f} "
                                     f"samples ({abs(samples) / measured.rate * 1e3:.2f} ms) in record {name}.", name, measured.channels[index])

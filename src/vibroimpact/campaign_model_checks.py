@@ -57,10 +57,8 @@ def compare_with_model(spectra, simulated, names, kinds, record=None):
     for first, second in _swaps(misfit, [kinds[index] for index in heard]):
         one, other = names[heard[first]], names[heard[second]]
         moved |= {first: second, second: first}
-        rows.append(_row("swapped channels", record, one, f"{one} moves as the model does at {other}, and {other} as it does at {one}, in record "
-                                                          f"{record}: the two "
-                                                          f"seem swapped (misfit {misfit[first, second]:.1f} instead of {misfit[first, first]:.1f} "
-                                                          "dB)."))
+        rows += [_row("swapped channels", record, this, f"{this} moves as the model does at {that}, and {that} as it does at {this}, in record {record}: the two "
+                      f"seem swapped (misfit {misfit[first, second]:.1f} instead of {misfit[first, first]:.1f} dB).") for this, that in ((one, other), (other, one))]
     for index, channel in enumerate(heard):
         place = moved.get(index, index)
         cosine = np.real(h1[index] * model[place].conj()) / np.maximum(np.abs(h1[index] * model[place]), np.finfo(float).tiny)

@@ -100,13 +100,31 @@ def test_round_tops_are_not_clipping():
 
 
 @pytest.mark.parametrize("fill", ["zero", "held", "noise"])
-def test_a_drop_out_is_told(sound, fill):
+@pytest.mark.parametrize("start", [1.3, 11.3])
+def test_a_drop_out_is_told(sound, fill, start):
     values, rate = sound["response"].values[1, 2], sound.attrs["sampling_frequency"]
-    part = slice(int(11.3 * rate), int(11.8 * rate))
+    part = slice(int(start * rate), int((start + 0.5) * rate))
     values[part] = {"zero": 0.0, "held": values[part.start], "noise": 1e-4 * values.std() * np.random.default_rng(2).standard_normal(part.stop - part.start)}[fill]
     found = complaints(sound)
     assert [(row["check"], row["record"], row["channel"]) for row in found] == [("drop-outs", *names(sound, 1, 2))]
-    assert "at 11." in found[0]["message"]
+    assert f"at {int(start)}." in found[0]["message"]
+
+
+def test_rest_before_the_first_motion_is_no_drop_out():
+    campaign = made_up()
+    campaign["response"].values[:, :, :1500] = 0.0
+    campaign["force"].values[:, :, :1500] = 0.0
+    campaign["load_rms"].values[:] = np.sqrt(np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1))
+    assert [row for row in complaints(campaign.assign_attrs(start_up="rest")) if row["check"] == "drop-outs"] == []
+    assert {row["record"] for row in complaints(campaign) if row["check"] == "drop-outs"} == {"low", "middle", "high"}
+
+
+def test_motion_that_sets_in_late_is_no_drop_out():
+    # Whirl in the plane grows out of the noise long after the start.
+    campaign = made_up()
+    grown = 1e-4 + 1.0 / (1.0 + np.exp(-3.0 * (campaign["time"].values - 8.0)))
+    campaign["response"].values[1, 5] = grown * np.random.default_rng(9).standard_normal(grown.size)
+    assert [row for row in complaints(campaign.assign_attrs(start_up="rest")) if row["check"] == "drop-outs"] == []
 
 
 @pytest.mark.parametrize("samples", [2, 3, 5, -4])

@@ -7,6 +7,8 @@ import numpy as np
 
 from vibroimpact.campaign import CampaignError, read_campaign
 from vibroimpact.campaign_checks import check_file, refused, usable_signals
+from vibroimpact.campaign_model_checks import compare_with_model
+from vibroimpact.campaign_signals import measured_signals, transfer
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import candidate_named, linear_candidates, not_testable
 from vibroimpact.discrepancy.linear_stage import ModalFit
@@ -64,6 +66,8 @@ def usable_campaign(path, checks):
     force, response = usable_signals(campaign, checks)
     records = np.flatnonzero(force)
     channels = np.flatnonzero(response[records].all(axis=0)) if len(records) else []
+    contradicted = {row["channel"] for row in checks if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None}
+    channels = np.array([channel for channel in channels if str(campaign["channel_name"].values[channel]) not in contradicted], int)
     if len(records) < 2 or len(channels) < 1:
         # a channel that fails in one record alone costs the record where that leaves more to look at
         records = np.flatnonzero(force & response.all(axis=1))
@@ -107,11 +111,16 @@ def adopt(bench, prepared):
 
 def prepare(config, campaign_path, longest_s=None, tables=None):
     """Return the Prepared of a campaign file and a checked Config; tables {candidate name: LinearTable} known from another campaign, extended."""
-    checks = check_file(campaign_path)
+    _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
     if refusal is None:
         try:
             bench = Workbench(config, campaign, longest_s)
+            mixed = mixed_up(bench)
+            if mixed:
+                checks = [*checks, *mixed]
+                campaign, refusal = usable_campaign(campaign_path, checks)
+                bench = bench if refusal else Workbench(config, campaign, longest_s)
         except CampaignError as error:
             checks = [*checks, {"check": "places", "level": "refuse", "record": None, "channel": None, "message": str(error)}]
             refusal = str(error)
@@ -150,6 +159,24 @@ def prepare(config, campaign_path, longest_s=None, tables=None):
         adopt(bench, out)
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
     return out
+
+
+def mixed_up(bench):
+    """Return the rows of checks for channels that the bare linear model contradicts at the lowest level: swapped, reversed, in another unit."""
+    if not bench.linear_stage:
+        return []
+    measured = measured_signals(bench.campaign)
+    spectra = transfer(measured, bench.signals.lowest)
+    if spectra is None:
+        return []
+    omega, model = 2.0 * np.pi * spectra.frequency, bench.bare
+    receptance = np.einsum("mc,m,ml->cl", model.sensor_shapes, model.drive_shapes[:, 0],
+                           1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega))  # fmt: skip
+    power = np.where(np.array([kind == "acceleration" for kind in measured.kinds])[:, None], -(omega**2), 1.0)
+    return compare_with_model(spectra, power * receptance, measured.channels, measured.kinds, measured.records[bench.signals.lowest])
+
+
+CONTRADICTED = ("swapped channels", "directions")  # of the rows of mixed_up: these channels are left out
 
 
 def beyond_prior(row, sizes):
