@@ -111,7 +111,8 @@ def _panel(sheet, axes, rows, names, curves):
                    linestyle="none", markersize=3.5, label=label)
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.set_xlim(-0.6, len(names) - 0.4)
-    axes.set_ylim(-14.0, 14.0)
+    largest = 100.0 * max((abs(_relative(row, "difference")) for row in rows if _shown(row)), default=0.0)
+    axes.set_ylim(-max(14.0, 1.2 * largest), max(14.0, 1.2 * largest))
 
 
 def _shown(row):
