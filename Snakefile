@@ -26,6 +26,7 @@ include: "workflow/rules/validation.smk"
 
 localrules:
     all,
+    discrepancy,
 
 
 rule all:
@@ -34,3 +35,12 @@ rule all:
         targets(),
     message:
         "Study '{STUDY.study}' is complete: tables and figures in {RESULTS}"
+
+
+rule discrepancy:
+    input:
+        verdict=f"{DISCREPANCY}/verdict.json",
+        model=f"{DISCREPANCY}/model_updated.yaml",
+        page=f"{DISCREPANCY}/report.html",
+    message:
+        f"Discrepancy of '{LOOKED_AT}': {DISCREPANCY}/report.html"

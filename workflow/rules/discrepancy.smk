@@ -247,12 +247,3 @@ rule discrepancy_verdict:
         "Verdict, verified on fresh seeds"
     script:
         "../scripts/discrepancy_verdict.py"
-
-
-rule discrepancy:
-    input:
-        verdict=f"{DISCREPANCY}/verdict.json",
-        model=f"{DISCREPANCY}/model_updated.yaml",
-        page=f"{DISCREPANCY}/report.html",
-    message:
-        f"Discrepancy of '{LOOKED_AT}': {DISCREPANCY}/report.html"

@@ -56,7 +56,7 @@ COLUMNS = {
     "wear_work_rate_W": ("Wear work rate (W)", 1.0), "stress_Pa": ("Bending stress (MPa)", 1e-6),
     "cpu_s": ("CPU time (s)", 1.0),
     "discrepancy_dB": ("Measured / simulated (dB)", 1.0), "z": ("z (standard deviations)", 1.0), "heldout_score": ("Score on held-out records (-)", 1.0),
-    "score": ("Score (-)", 1.0), "parameter": ("Parameter", 1.0), "place_in_list": ("", 1.0),
+    "score": ("Score (-)", 1.0), "parameter": ("Parameter (in its unit)", 1.0), "place_in_list": ("", 1.0),
     "psd_N2_per_Hz": ("PSD of force (N²/Hz)", 1.0), "psd_m2_per_s2_per_Hz": ("PSD of velocity ((m/s)²/Hz)", 1.0),
     "psd_V2_per_Hz": ("PSD of voltage (V²/Hz)", 1.0), "psd_unit2_per_Hz": ("PSD (unit²/Hz)", 1.0), "rms_over_lowest": ("RMS / RMS of the lowest level (-)", 1.0),
 }
