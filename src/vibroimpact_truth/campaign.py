@@ -114,22 +114,25 @@ def channels_of(plan):
     return channels, drive
 
 
-def measured(plan, force, response, hidden=True):
-    """(force, response, noise RMS (channel,)) as the instruments give them; without hidden faults where not `hidden`."""
-    names = [channel["name"] for channel in channels_of(plan)[0]]
-    accelerations = np.arange(len(names)) < len(CHANNELS)
-    gains = 1.0 + plan.gain_scatter * plan.stream(GAINS).standard_normal(len(names))
-    response = response * gains[:, None]
+def noise_of(plan, response):
+    """(channel,) noise RMS that goes with the (record, channel, time) responses of all records of a plan."""
     rms = np.sqrt(np.mean(response**2, axis=-1))
     lowest = int(np.argmin([load for load, _, _ in plan.levels]))
+    accelerations = np.arange(response.shape[1]) < len(CHANNELS)
     # A force cell has one range for all levels: its noise is a share of the largest record, where the lowest may not touch at all.
-    noise = plan.noise * np.where(accelerations, rms[lowest, accelerations].max(), rms[:, ~accelerations].max(initial=0.0))
-    data = Measured(force.copy(), response, names, SAMPLING)
+    return plan.noise * np.where(accelerations, rms[lowest, accelerations].max(), rms[:, ~accelerations].max(initial=0.0))
+
+
+def measured(plan, force, response, noise, stream=0, hidden=True):
+    """(force, response) as the instruments give them, with noise RMS (channel,); without hidden faults where not `hidden`."""
+    names = [channel["name"] for channel in channels_of(plan)[0]]
+    gains = 1.0 + plan.gain_scatter * plan.stream(GAINS).standard_normal(len(names))
+    data = Measured(force.copy(), response * gains[:, None], names, SAMPLING)
     for name, parameters in plan.effects if hidden else ():
         if name in INSTRUMENTS:
             INSTRUMENTS[name](data, **parameters)
-    data.response += noise[:, None] * plan.stream(NOISE, int(hidden)).standard_normal(response.shape)
-    return data.force, data.response, noise
+    data.response += noise[:, None] * plan.stream(NOISE, stream).standard_normal(response.shape)
+    return data.force, data.response
 
 
 def strength(plan, force, seen, noise):
@@ -137,7 +140,7 @@ def strength(plan, force, seen, noise):
     rows = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
     bare = records_of(plan, force, hidden=False, start_stream=1, only="holdout")[0]
     again = records_of(plan, force, start_stream=2, only="holdout")[0]
-    pair = [measured(plan, force[rows], one, hidden)[1] for one, hidden in ((bare, False), (again, True))]
+    pair = [measured(plan, force[rows], one, noise, stream, hidden)[1] for one, stream, hidden in ((bare, 1, False), (again, 2, True))]
     return excess(seen[rows], *pair, noise, SAMPLING, ["holdout"] * len(rows), len(CHANNELS))["holdout"]
 
 
@@ -145,7 +148,8 @@ def make_campaign(plan, path, truth_path=None, twin=True):
     """Write the campaign of a plan to `path` and its truth to `truth_path`; twin: also run it with nothing hidden, to state its strength."""
     force = forces(plan)
     response, contact = records_of(plan, force)
-    force_seen, seen, noise = measured(plan, force, response)
+    noise = noise_of(plan, response)
+    force_seen, seen = measured(plan, force, response, noise)
     tube = TUBES[plan.tube].with_changes(**plan.changes)
     records = [{"name": f"L{load:g}_G{percent:g}_{number}", "gap": percent * 0.01 * tube.outer_diameter, "split": split,
                 "repeat": sum(other == (load, percent, split) for other in plan.levels[:number])}
