@@ -58,15 +58,17 @@ def inertia(section, plane, tangent, fluid):
 
 
 class Mesh:
-    """A mesh of the tube: `elements` cubic elements between breakpoints, and the assembled matrices of a plane.
+    """A mesh of the tube: elements of at most element_length m, two within each plate, and the assembled matrices of a plane.
 
     ends: (element + 1,) arc lengths in m. Nodes: 3 element + 1; the roots are the first and the last.
     """
 
     def __init__(self, tube, element_length=0.036):
-        legs = max(4, int(np.ceil(tube.leg / element_length)))
-        bend = max(6, int(np.ceil(np.pi * tube.bend_radius / element_length)))
-        pieces = [(0.0, tube.leg, legs), (tube.leg, tube.length - tube.leg, bend), (tube.length - tube.leg, tube.length, legs)]
+        low, high = tube.plate_height - 0.5 * tube.plate_length, tube.plate_height + 0.5 * tube.plate_length
+        marks = [0.0, low, high, tube.leg]  # elements end where plates end, and are short between
+        marks += [tube.length - s for s in reversed(marks)]
+        sizes = [element_length, 0.5 * tube.plate_length, element_length, element_length, element_length, 0.5 * tube.plate_length, element_length]
+        pieces = [(a, b, max(1, int(np.ceil((b - a) / size - 1e-9)))) for a, b, size in zip(marks[:-1], marks[1:], sizes, strict=True)]
         self.tube = tube
         self.ends = np.concatenate([np.linspace(a, b, n + 1)[:-1] for a, b, n in pieces] + [[tube.length]])
         self.nodes = 3 * (len(self.ends) - 1) + 1
