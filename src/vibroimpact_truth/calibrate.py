@@ -8,8 +8,8 @@ from functools import lru_cache
 import numpy as np
 
 from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.campaign import CHANNELS, SAMPLING, Plan, forces, measured, noise_of, records_of
-from vibroimpact_truth.strength import excess
+from vibroimpact_truth.campaign import SAMPLING, Plan, forces, measured, noise_of, records_of
+from vibroimpact_truth.strength import distance, excess
 
 
 @lru_cache(maxsize=2)
@@ -23,17 +23,19 @@ def bare(seed, duration, tube):
 
 
 def measure(effect, amount, seed, duration=20.0, tube="stand_in"):
-    """(parameters, {lsd_dB, floor_dB, excess_dB, excess_over_floor}) of an amount of an effect."""
+    """(parameters, {floor_dB, excess, either}) of an amount of an effect: its excess in floors, also counting silenced bands."""
     plan, force, noise, *twins = bare(seed, duration, tube)
     parameters = AMOUNTS[effect].parameters(amount, np.random.default_rng([seed, 99]))
     hiding = Plan(plan.seed, ((effect, parameters),), tube=tube, duration=duration, levels=plan.levels)
     response = records_of(hiding, force, start_stream=2, only="holdout")[0]
     one, other = (measured(plan, force[1:], twin, noise, stream)[1] for stream, twin in enumerate(twins, 1))
     seen = measured(hiding, force[1:], response, noise)[1]
-    floor = excess(one, other, other, noise, SAMPLING, ["holdout"], len(CHANNELS))["holdout"]["lsd_dB"]
-    lsd = excess(seen, one, other, noise, SAMPLING, ["holdout"], len(CHANNELS))["holdout"]["lsd_dB"]
-    value = np.sqrt(max(0.0, lsd**2 - floor**2))
-    return parameters, {"lsd_dB": lsd, "floor_dB": floor, "excess_over_floor": round(float(value / floor), 2)}
+    floor = excess(one, other, other, noise, SAMPLING)["lsd_dB"]
+    found = {}
+    for either in (False, True):
+        lsd = distance(seen[0], one[0], noise, SAMPLING, either)
+        found["either" if either else "excess"] = round(float(np.sqrt(max(0.0, lsd**2 - floor**2)) / floor), 2)
+    return parameters, {"floor_dB": floor, **found}
 
 
 def table(effects, seed, duration=20.0, tube="stand_in"):
@@ -46,4 +48,4 @@ def table(effects, seed, duration=20.0, tube="stand_in"):
             except FloatingPointError as problem:
                 print(f"{effect} {amount:g} {problem}", flush=True)
             else:
-                print(f"{effect:26s} {amount:10.4g} {found['excess_over_floor']:6.2f} {found} {parameters}", flush=True)
+                print(f"{effect:26s} {amount:10.4g} {found['excess']:6.2f} {found['either']:6.2f} {parameters}", flush=True)

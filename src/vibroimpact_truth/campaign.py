@@ -140,8 +140,9 @@ def strength(plan, force, seen, noise):
     rows = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
     bare = records_of(plan, force, hidden=False, start_stream=1, only="holdout")[0]
     again = records_of(plan, force, start_stream=2, only="holdout")[0]
-    pair = [measured(plan, force[rows], one, noise, stream, hidden)[1] for one, stream, hidden in ((bare, 1, False), (again, 2, True))]
-    return excess(seen[rows], *pair, noise, SAMPLING, ["holdout"] * len(rows), len(CHANNELS))["holdout"]
+    count = len(CHANNELS)
+    pair = [measured(plan, force[rows], one, noise, stream, hidden)[1][:, :count] for one, stream, hidden in ((bare, 1, False), (again, 2, True))]
+    return excess(seen[rows][:, :count], *pair, noise[:count], SAMPLING)
 
 
 def make_campaign(plan, path, truth_path=None, twin=True):

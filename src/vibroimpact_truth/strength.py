@@ -15,23 +15,28 @@ def band_powers(series, sampling):
     return np.stack([power[..., a:b].sum(axis=-1) for a, b in zip(edges[:-1], edges[1:], strict=True)], axis=-1)
 
 
-def distance(one, other, noise, sampling):
-    """RMS over bands and channels, in dB, of the difference of two (channel, time) responses where the first is 6 dB above noise."""
+def distance(one, other, noise, sampling, either=False):
+    """RMS over bands and channels, in dB, of the difference of two (channel, time) responses where the first is 6 dB above noise.
+
+    either: also where the other alone is, as when an effect silences a channel.
+    """
     a, b = band_powers(one, sampling), band_powers(other, sampling)
     edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
-    counted = a > ABOVE_NOISE * (noise**2)[:, None] * np.diff(edges) / (0.5 * sampling)
+    audible = ABOVE_NOISE * (noise**2)[:, None] * np.diff(edges) / (0.5 * sampling)
+    counted = (a > audible) | (either & (b > audible))
     return float(np.sqrt(np.mean((10.0 * np.log10(a[counted] / b[counted])) ** 2)))
 
 
-def excess(seen, bare, again, noise, sampling, splits, channels):
-    """{split: {lsd_dB, floor_dB, excess_dB, excess_over_floor}} of (record, channel, time) responses: seen, with nothing hidden, and with the
-    same hidden from another start. Only the first `channels` count."""
+def excess(seen, bare, again, noise, sampling):
+    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of (record, channel, time) responses.
+
+    seen against the same with nothing hidden (bare) and with the same hidden from another start (again). The last counts bands that either
+    holds above noise, the others those that `seen` does, as the misfit is defined.
+    """
     found = {}
-    for split in dict.fromkeys(splits):
-        rows = [number for number, name in enumerate(splits) if name == split]
-        lsd, floor = (np.sqrt(np.mean([distance(seen[r, :channels], other[r, :channels], noise[:channels], sampling) ** 2 for r in rows]))
+    for either in (True, False):
+        lsd, floor = (np.sqrt(np.mean([distance(one, two, noise, sampling, either) ** 2 for one, two in zip(seen, other, strict=True)]))
                       for other in (bare, again))
-        value = float(np.sqrt(max(0.0, lsd**2 - floor**2)))
-        found[split] = {"lsd_dB": round(float(lsd), 3), "floor_dB": round(float(floor), 3), "excess_dB": round(value, 3),
-                        "excess_over_floor": round(value / float(floor), 2)}
-    return found
+        value = np.sqrt(max(0.0, lsd**2 - floor**2))
+        found["either_over_floor" if either else "excess_over_floor"] = round(float(value / floor), 2)
+    return {"lsd_dB": round(float(lsd), 3), "floor_dB": round(float(floor), 3), "excess_dB": round(float(value), 3), **found}
