@@ -48,7 +48,7 @@ def test_an_effect_of_nothing_changes_nothing(effect, neutral):
     ("plate_flexibility", {"mass": 0.01, "stiffness": 4.0e8}), ("root_stiffness", {"translation": 1.0e13, "rotation": 1.0e9})])
 def test_a_rigid_limit_is_the_bare_rig(effect, parameters):
     bare, same = (run(effects=effects, duration=0.25)[:, :300] for effects in ((), ((effect, parameters),)))
-    np.testing.assert_allclose(same, bare, rtol=0.0, atol=2e-2 * np.abs(bare).max())
+    np.testing.assert_allclose(same, bare, rtol=0.0, atol=4e-2 * np.abs(bare).max())
 
 
 @pytest.mark.skipif(not DEV_NULL.exists(), reason="the development campaigns (shared data/campaigns) are not beside this checkout")
