@@ -11,7 +11,7 @@ os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENB
 
 from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
-from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, local_names, pair_names
+from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, local_names, pair_names, shard_of
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
 
@@ -26,7 +26,7 @@ FIGURES = {
 
 
 # What a run is asked to look at; no key of the study.
-REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank") if name in config}
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "seed", "count", "shard", "seconds") if name in config}
 
 
 def requested(name, example):

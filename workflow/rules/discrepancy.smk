@@ -24,7 +24,7 @@ def pair_files(wildcards):
 wildcard_constraints:
     part=r"[0-9]+",
     candidate=r"[a-z_]+@[A-Za-z0-9_.-]+",
-    pair=r"[a-z_]+@[A-Za-z0-9_.-]+\+[a-z_]+@[A-Za-z0-9_.-]+",
+    pair=r"[a-z_]+@[A-Za-z0-9_.-]+(\+[a-z_]+@[A-Za-z0-9_.-]+)?",
 
 
 rule discrepancy_prepare:

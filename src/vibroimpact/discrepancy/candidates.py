@@ -146,6 +146,8 @@ def linear_candidates(values, names, held, modes):
             locations = places(names) if effect.measured else effect.locations(values)
             if effect.id == "mode_frequency_error":
                 locations = [f"mode_{mode + 1}" for mode in modes]
+            if effect.id == "lateral_stinger":
+                locations = [location for location in locations if location != "along_z"]
             found += [Candidate(effect.id, location) for location in locations]
     return found
 
@@ -159,7 +161,10 @@ def local_candidates(values, held):
             if locations and locations[0] == "all":
                 locations = locations[:1]
             found += [Candidate(effect.id, location) for location in locations[: SCREENED.get(effect.id, len(locations))]]
-    return found
+    return found + UNSEEN_LINEAR
+
+
+UNSEEN_LINEAR = [Candidate("lateral_stinger", "along_x")]  # linear, but across the plane that a low level shows
 
 
 def not_testable(held):

@@ -57,15 +57,12 @@ def screening(run, path, quick=False):
     ranked = naming.screen(bench, null, measured, paths)
     chosen = naming.finalists(ranked, QUICK_FINALISTS if quick else priors.FINALISTS)
     starts = {row.candidate.name: row.unit.tolist() for row in chosen}
-    for row in [] if quick else chosen[:ELSEWHERE]:
-        starts |= {other.name: row.unit.tolist() for other in elsewhere(row.candidate, bench.values)}
     gains = naming.null_gains(bench, null, paths)
     write_text(json.dumps({"finalists": starts, "threshold": naming.threshold(gains), "null_gains": gains.tolist(),
                            "ranked": [{"name": row.candidate.name, "score": row.score, "unit": row.unit.tolist()} for row in ranked]}, indent=1), path)  # fmt: skip
 
 
 QUICK_FINALISTS = 3
-ELSEWHERE = 2  # the best finalists are also tried at each support by itself
 
 
 def finalist(run, name, unit, path, quick=False):
@@ -105,7 +102,9 @@ def pairs(run, files, screened, path, quick=False):
     if totals[found[0].candidate.name][0] > threshold:
         measured = bench.measured_features[null.records]
         if second.needed(naming.explained(bench, null, found[0], measured)):
-            out = {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}
+            # an effect at one support alone comes before a second effect
+            out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
+            out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}
     write_text(json.dumps({"pairs": out}, indent=1), path)
 
 

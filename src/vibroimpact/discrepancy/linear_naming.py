@@ -12,7 +12,9 @@ from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.linearised import linearised, same_modes
 
-POINTS = {1: 9, 2: 6, 3: 4}  # of the grid along each parameter, by the number of parameters
+POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
+NUISANCES = ("mode_frequency_error", "modal_damping")  # logarithms of readings are straight in their normalised parameters
+STRAIGHT = 3
 COARSE_MESH = {"elements_per_span": 5, "elements_per_bend": 20}
 REACH = 6.0  # the reduced basis for readings reaches to so many times the excited band
 
@@ -43,7 +45,7 @@ def table_of(bench, candidate, scales):
     reduced, values = same_modes(bare, modes, bench.bare), config.model_dump(mode="json")
     reference = linear.reading_of_model(bare, reduced)
     full = linear.reading_of_model(bench.bare, modes)
-    count = POINTS[len(candidate.effect.parameters)]
+    count = STRAIGHT if candidate.effect_id in NUISANCES else POINTS[len(candidate.effect.parameters)]
     axes = tuple(np.linspace(0.0, 1.0, count) for _ in candidate.effect.parameters)
     rows = []
     for unit in np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=-1):

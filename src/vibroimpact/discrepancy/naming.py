@@ -67,11 +67,15 @@ def threshold(gains):
 
 def finalists(screened, count=priors.FINALISTS):
     """Return the candidates to simulate directly: the best of each effect, and the aliases of the first that came near."""
-    chosen = [row for row in screened if row.score > 0.0][:count]
+    chosen = [row for row in screened if row.score > 0.0]
+    chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
     if chosen:
         first = chosen[0].candidate.effect
-        chosen += [row for row in screened if row.candidate.effect_id in first.aliases and row not in chosen and row.score > 0.2 * chosen[0].score][:2]
+        chosen += [row for row in screened if row.candidate.effect_id in first.aliases and row not in chosen and row.score > FAR * chosen[0].score][:2]
     return chosen
+
+
+LEAST_FINALISTS, NEAR, FAR = 3, 0.5, 0.2  # shares of the best screening score: nearer ones are all simulated, aliases also when farther
 
 
 def totals(bench, null, measured, found):

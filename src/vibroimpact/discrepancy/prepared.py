@@ -109,8 +109,8 @@ def adopt(bench, prepared):
         bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
-def prepare(config, campaign_path, longest_s=None, tables=None):
-    """Return the Prepared of a campaign file and a checked Config; tables {candidate name: LinearTable} known from another campaign, extended."""
+def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset()):
+    """Return the Prepared of a campaign file and a checked Config; tables {candidate name: LinearTable} known from another campaign, extended; without: ids of effects that are not in the catalogue this time."""
     _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
     if refusal is None:
@@ -143,7 +143,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None):
     tables = {} if tables is None else tables
     found = []
     for candidate in linear_candidates(bench.values, bench.signals.names, held(campaign), fit.modes):
-        if candidate.effect_id == "sensor_delay":
+        if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
             continue
         if not candidate.effect.measured and candidate.name not in tables:
             tables[candidate.name] = table_of(bench, candidate, out.scales)

@@ -41,7 +41,7 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
         physical = candidate.physical(unit, scales)
         values = candidate.variant(bench.values, physical)
         runs = bench.runs(records, seeds, first_seed + 50 * number)
-        low = bench.linear_stage and not candidate.effect.linear
+        low = bench.linear_stage and not candidate.effect.measured
         try:
             model = bench.model(values)
             responses = bench.respond(model, runs + bench.runs([bench.signals.lowest], 1) * low, candidate.measuring(physical, bench.signals.names))
@@ -50,8 +50,6 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
         kept.append(unit)
         means.append(bench.noisy_features(runs, responses[: len(runs)]).reshape(len(records), seeds, -1).mean(axis=1))
         readings.append(bench.low_reading(responses[-1] / bench.gains[:, None]) if low else None)
-        if candidate.effect.linear and not candidate.effect.measured and bench.linear_stage:
-            readings[-1] = bench.linear_reading(values, bench.measured_fit.modes)
     return Path(np.array(kept), np.array(means), np.full(len(means), seeds), readings) if kept else None
 
 

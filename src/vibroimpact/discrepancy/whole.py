@@ -11,17 +11,17 @@ from vibroimpact.discrepancy.prepared import Prepared, prepare
 from vibroimpact.discrepancy.run import Run
 
 
-def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, say=print):
+def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, say=print, without=frozenset()):
     """Run a campaign file against a configuration in plain values; results as the workflow's in the folder.
 
     bank: folder of another campaign of the same model, loads and gaps, whose candidates' simulations serve this one; tables {name: LinearTable}, likewise
-    of its linear candidates, extended here.
+    of its linear candidates, extended here; without: ids of effects that are not in the catalogue this time.
     """
     folder, config = Path(folder), check_config(values, "model")
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
-        prepare(config, campaign, longest_s, tables).write(prepared_file)
-    prepared, names = Prepared.read(prepared_file), local_names(values)
+        prepare(config, campaign, longest_s, tables, without).write(prepared_file)
+    prepared, names = Prepared.read(prepared_file), [name for name in local_names(values) if name.split("@")[0] not in without]
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
     paths = [Path(bank or folder) / "paths" / f"{name}.npz" for name in names]
     bank_nulls = [Path(bank) / "null" / file.name for file in nulls] if bank else []

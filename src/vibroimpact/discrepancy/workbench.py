@@ -1,6 +1,5 @@
 """All that a campaign and a model give to every job: signals, features of the measurement, the corrected model, and runs of any variant of it."""
 
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +12,7 @@ from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.features import feature_layout, record_features
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.linear_stage import LinearRecord, fit_modes
-from vibroimpact.discrepancy.linearised import linearised, same_modes
+from vibroimpact.discrepancy.linearised import linearised
 from vibroimpact.discrepancy.signals import signals_of
 from vibroimpact.kernels import LANES
 
@@ -125,11 +124,6 @@ class Workbench:
     def features(self, model, runs, measuring=None):
         """Return (run, feature): the features of runs with the measuring noise, each cut to the valid samples of its record."""
         return self.noisy_features(runs, self.respond(model, runs, measuring))
-
-    def linear_reading(self, values, modes):
-        """Return the Reading of a variant that stays linear below contact, at the modes of the bare model named."""
-        model = linearised(attach(check_config(values, "variant of the model"), self.campaign))
-        return replace(linear.reading_of_model(model, same_modes(model, modes, self.bare)), modes=modes)
 
     @cached_property
     def low_response(self):
