@@ -22,6 +22,7 @@ CHANNELS = (("apex", "y"), ("apex", "x"), ("bend45_right", "y"), ("left_leg_uppe
             ("left_leg_lower", "y"))  # fmt: skip
 UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 LEVELS = ((0.5, 1.3, "fit"), (3.0, 1.3, "fit"), (10.0, 1.3, "fit"), (10.0, 0.9, "holdout"))
+TWINS = 3  # runs with and without what is hidden that state the strength
 FORCE, SCATTER, GAINS, NOISE, START, SECOND = range(6)  # random streams of a campaign
 
 
@@ -136,13 +137,15 @@ def measured(plan, force, response, noise, stream=0, hidden=True):
 
 
 def strength(plan, force, seen, noise):
-    """excess of the hold-out records (record, channel, time) over the same with nothing hidden."""
-    rows = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
-    bare = records_of(plan, force, hidden=False, start_stream=1, only="holdout")[0]
-    again = records_of(plan, force, start_stream=2, only="holdout")[0]
-    count = len(CHANNELS)
-    pair = [measured(plan, force[rows], one, noise, stream, hidden)[1][:, :count] for one, stream, hidden in ((bare, 1, False), (again, 2, True))]
-    return excess(seen[rows][:, :count], *pair, noise[:count], SAMPLING)
+    """excess of the hold-out records of seen (record, channel, time) over the same with nothing hidden."""
+    rows, count = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"], len(CHANNELS)
+
+    def twins(hidden, first):
+        """Hold-out records from TWINS other starts, as measured."""
+        runs = [records_of(plan, force, hidden, first + k, "holdout")[0] for k in range(TWINS)]
+        return [measured(plan, force[rows], run, noise, first + k, hidden)[1][:, :count] for k, run in enumerate(runs)]
+
+    return excess(seen[rows][:, :count], twins(False, 1), twins(True, 1 + TWINS), noise[:count], SAMPLING)
 
 
 def make_campaign(plan, path, truth_path=None, twin=True):

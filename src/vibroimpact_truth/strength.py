@@ -15,28 +15,30 @@ def band_powers(series, sampling):
     return np.stack([power[..., a:b].sum(axis=-1) for a, b in zip(edges[:-1], edges[1:], strict=True)], axis=-1)
 
 
-def distance(one, other, noise, sampling, either=False):
-    """RMS over bands and channels, in dB, of the difference of two (channel, time) responses where the first is 6 dB above noise.
+def distance(one, others, audible, either=False):
+    """RMS over bands and channels, in dB, of band powers one (…, band) against the mean of others (twin, …, band), where `one` is audible.
 
-    either: also where the other alone is, as when an effect silences a channel.
+    either: also where the mean alone is, as when an effect silences a channel.
     """
-    a, b = band_powers(one, sampling), band_powers(other, sampling)
-    edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
-    audible = ABOVE_NOISE * (noise**2)[:, None] * np.diff(edges) / (0.5 * sampling)
-    counted = (a > audible) | (either & (b > audible))
-    return float(np.sqrt(np.mean((10.0 * np.log10(a[counted] / b[counted])) ** 2)))
+    mean = np.mean(others, axis=0)
+    counted = (one > audible) | (either & (mean > audible))
+    return float(np.sqrt(np.mean((10.0 * np.log10(one[counted] / mean[counted])) ** 2)))
 
 
 def excess(seen, bare, again, noise, sampling):
-    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of (record, channel, time) responses.
+    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of seen (record, channel, time), noise RMS (channel,).
 
-    seen against the same with nothing hidden (bare) and with the same hidden from another start (again). The last counts bands that either
-    holds above noise, the others those that `seen` does, as the misfit is defined.
+    bare (twin, record, channel, time): the same with nothing hidden, from other starts; again, as many: with the same hidden. lsd: seen against
+    the mean of the bare; floor: each of seen and again against the mean of the rest. Pairs alone scatter by a factor of 1.7 in 20 s records.
+    The last counts bands that either holds 6 dB above noise, the others those that `seen` does, as the misfit is defined.
     """
+    edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
+    audible = ABOVE_NOISE * (noise**2)[:, None] * np.diff(edges) / (0.5 * sampling)
+    powers = band_powers(np.array([seen, *again]), sampling)
     found = {}
     for either in (True, False):
-        lsd, floor = (np.sqrt(np.mean([distance(one, two, noise, sampling, either) ** 2 for one, two in zip(seen, other, strict=True)]))
-                      for other in (bare, again))
+        lsd = distance(powers[0], band_powers(np.asarray(bare), sampling), audible, either)
+        floor = np.sqrt(np.mean([distance(one, np.delete(powers, k, axis=0), audible, either) ** 2 for k, one in enumerate(powers)]))
         value = np.sqrt(max(0.0, lsd**2 - floor**2))
         found["either_over_floor" if either else "excess_over_floor"] = round(float(value / floor), 2)
-    return {"lsd_dB": round(float(lsd), 3), "floor_dB": round(float(floor), 3), "excess_dB": round(float(value), 3), **found}
+    return {"lsd_dB": round(lsd, 3), "floor_dB": round(float(floor), 3), "excess_dB": round(float(value), 3), **found}
