@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, linear_score, simulate_path
 
@@ -38,13 +39,19 @@ def started(bench, null, candidate, unit, scales, first_seed=2000):
 
 
 def refine(bench, null, measured, candidate, path, scales, fit, rounds=len(STEPS), seeds=priors.FINAL_SEEDS, first_seed=3000):
-    """Return the Finalist of a candidate whose Path has been screened; fit (record,) bool: the records its parameters are fitted to."""
+    """Return the Finalist of a candidate whose Path has been screened, None where it can not be simulated; fit (record,) bool: the records its parameters are fitted to."""
     for number, step in enumerate(STEPS[:rounds]):
         unit = calibrate(bench, null, measured, candidate, path, fit).unit
         fresh = simulate_path(bench, candidate, _around(unit, step, candidate.periodic), scales, null.records, ROUND_SEEDS, first_seed + 500 * number)
         path = path if fresh is None else path.joined(fresh)
     found = calibrate(bench, null, measured, candidate, path, fit)
-    return judged(bench, null, measured, candidate, found.unit, path, found, scales, seeds, first_seed + 5000)
+    simulated = path.parameters[np.argmin(np.sum((path.parameters - found.unit) ** 2, axis=1))]
+    for unit in (found.unit, simulated):
+        try:
+            return judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed + 5000)
+        except IntegrationError:
+            continue  # between points that can be simulated lies one that can not
+    return None
 
 
 def judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed):

@@ -76,7 +76,7 @@ def finalist(run, name, unit, path, quick=False):
         store.save_empty(path)
         return
     found = refine(bench, null, measured, candidate, known, sizes, naming.fit_mask(bench, null), rounds=1 if quick else 2)
-    store.save(path, **store.finalist_arrays(found))
+    store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
 def known_finalists(files):

@@ -11,11 +11,14 @@ from scipy import fft, linalg
 
 ITERATIONS = 12
 MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
+LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far above the band leave in every line
+RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 DISCARDED = 0.2  # of a record that did not start from rest
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
-LEAST_LAG_S, SETTLED_LAG_S, LONGEST_LAG_S = 2.0e-5, 3.0e-6, 0.02
+LEAST_LAG_S, LONGEST_LAG_S = 2.0e-5, 0.02
+DEAF = 0.7  # share of a channel that no mode explains: above it the channel has nothing to tell
 RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band's upper end
 SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
 
@@ -27,7 +30,7 @@ class ModalFit:
     modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted over the model's value;
     participation (channel, fitted): response per unit modal response to the force on `drive` (fitted, force_channel); covariance of
     [log_frequency, log_damping] (2 fitted, 2 fitted); delay (channel,) s by which a channel lags the others' fit, 0 where it is not to be told from none;
-    residual (channel,): RMS of what is left over that of the noise, in the band; share (channel,): residual over response, RMS.
+    residual (channel,): RMS of what is left over that of the noise and of RESIDUAL_SHARE of the response, in the band; share (channel,): residual over response, RMS.
     """
 
     modes: np.ndarray
@@ -101,23 +104,26 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
         visible = near[chosen & inside]
     if len(visible) == 0:
         return None
-    weights = 1.0 / np.sqrt(noise[:, None] ** 2 / len(record.lines) + (MODEL_ERROR * _smooth(np.abs(measured))) ** 2)
-    delay, start = np.zeros(len(measured)), np.zeros(len(visible)) if fixed else None
-    for _ in range(4):  # modes that the model does not excite, and delays, are seen once the rest is taken out
+    typical = np.sqrt(np.mean(np.abs(measured) ** 2, axis=-1, keepdims=True))
+    weights = 1.0 / np.sqrt(noise[:, None] ** 2 / len(record.lines) + (MODEL_ERROR * _smooth(np.abs(measured))) ** 2 + (LEAK * typical) ** 2 + 1.0e-300)
+    delay, lag, start = np.zeros(len(measured)), None, np.zeros(len(visible)) if fixed else None
+    for _ in range(3):  # modes that the model does not excite, and delays, are seen once the rest is taken out
         drive = model.drive_shapes[visible].copy()
         drive[np.abs(drive).max(axis=1) < 1.0e-6 * np.abs(model.drive_shapes).max(), 0] = 1.0
         turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
-        found = _gauss_newton(record, turned - _rest(record, model, visible, kind), weights, model, visible, drive, kind, noise, delay, start)
+        rest = _rest(record, model, visible, kind)
+        if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
+            free = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, None, True)
+            lag, start = _lags(free, model), free.log_frequency
+            delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
+            turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
+        found = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
         if fixed:
             break
-        lag = _lags(record, turned, found, weights, drive, model, kind)
         extra = _unexpected(record, turned, found, weights, drive, model, near, kind)
-        late = np.abs(delay + lag).max() > LEAST_LAG_S
-        if not len(extra) and not (late and np.abs(lag).max() > SETTLED_LAG_S):
+        if not len(extra):
             break
-        delay = np.where(np.abs(delay + lag) > LEAST_LAG_S, delay + lag, 0.0)
-        start = None if len(extra) else found.log_frequency
-        visible = np.sort(np.concatenate([visible, extra]))
+        lag, start, visible = None, None, np.sort(np.concatenate([visible, extra]))
     return found
 
 
@@ -128,25 +134,26 @@ def _fitted(record, found, drive, model, kind):
     return found.participation @ record.responses(omega, 2.0 * zeta * omega, drive, kind)
 
 
-def _lags(record, measured, found, weights, drive, model, kind):
-    """Return (channel,) s: by how much each channel lags the fit, up to LONGEST_LAG_S."""
-    fitted = _fitted(record, found, drive, model, kind) + _rest(record, model, found.modes, kind)
-    lags = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.1 / record.frequency[-1])
-    turn = np.exp(2j * np.pi * np.outer(lags, record.frequency))
-    out = np.zeros(len(measured))
-    for channel in range(len(measured)):
-        cross = weights[channel] ** 2 * measured[channel] * fitted[channel].conj()
-        strength = np.sum(np.abs(cross))
-        coherent = np.abs(np.sum(turn * cross, axis=1))
-        if found.share[channel] > 0.95 and coherent.max() < 0.5 * strength:
+def _lags(found, model):
+    """Return (channel,) s: by how much each channel lags, from the phases of its participations in a fit that leaves them free.
+
+    Modes damped in proportion move in phase or against it, as the model says; what turns with the frequency is a delay, the same for all modes.
+    """
+    frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
+    lags = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
+    out = np.zeros(len(found.participation))
+    for channel, (shape, own) in enumerate(zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)):
+        weight = np.where(np.abs(own) > 0.05 * np.abs(own).max(), 1.0, 0.0)
+        if found.share[channel] > DEAF or not np.any(own):
             continue  # a channel of noise
-        best = lags[np.argmax(np.real(turn @ cross))]
-        for _ in range(4):
-            aligned = cross * np.exp(2j * np.pi * record.frequency * best)
-            slope = np.sum(record.frequency * aligned.imag) / max(2.0 * np.pi * np.sum(record.frequency**2 * aligned.real), 1.0e-300)
-            best -= np.clip(slope, -0.05 / record.frequency[-1], 0.05 / record.frequency[-1])
+        unit = weight * shape * np.sign(own) / np.maximum(np.abs(shape), 1.0e-300)
+        match = np.real(np.exp(2j * np.pi * np.outer(lags, frequency)) @ unit)
+        best = lags[np.argmax(match - 1.0e-3 * np.abs(lags) / LONGEST_LAG_S)]
+        for _ in range(5):
+            turned = unit * np.exp(2j * np.pi * frequency * best)
+            best -= np.sum(frequency * turned.imag) / max(2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300)
         out[channel] = best
-    return out - np.median(out) if np.sum(np.abs(out) > LEAST_LAG_S) <= len(out) // 2 else out
+    return out
 
 
 def _unexpected(record, measured, found, weights, drive, model, near, kind):
@@ -191,27 +198,28 @@ def _rest(record, model, visible, kind):
     return record.short_spectra(np.einsum("cfl,fl->cl", transfer, record.spectrum))
 
 
-def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise, delay, start=None):
-    """Return the ModalFit, from the frequency at which each mode's own resonance fits best."""
+def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise, delay, start=None, phases=False):
+    """Return the ModalFit (participations complex where `phases`), from the frequency at which each mode's own resonance fits best."""
     count = len(visible)
     omega, zeta = model.omega[visible], model.damping[visible] / (2.0 * model.omega[visible])
     logs = np.zeros(2 * count)
     logs[:count] = start if start is not None else _start(record, measured, weights, visible, drive, omega, zeta, kind)
-    weighted = (weights * measured).ravel()
+    weighted = weights * measured
 
     def columns(values, chosen=slice(None)):
         w = (omega * np.exp(values[:count]))[chosen]
         return record.responses(w, 2.0 * (zeta * np.exp(values[count:]))[chosen] * w, drive[chosen], kind)
 
     def solve(basis):
-        parts = [linalg.lstsq(_real(weights[c] * basis).T, _real(weights[c] * measured[c]))[0] for c in range(len(measured))]
-        return np.array(parts)
+        if phases:
+            return np.array([linalg.lstsq((weights[c] * basis).T, weights[c] * measured[c])[0] for c in range(len(measured))])
+        return np.array([linalg.lstsq(_real(weights[c] * basis).T, _real(weights[c] * measured[c]))[0] for c in range(len(measured))])
 
     best, best_cost, damp = None, np.inf, 1.0e-3
     for _ in range(ITERATIONS):
         basis = columns(logs)
         shapes = solve(basis)
-        residual = weighted - (weights * (shapes @ basis)).ravel()
+        residual = weighted - weights * (shapes @ basis)
         cost = np.sum(np.abs(residual) ** 2)
         if cost < best_cost:
             converged = best is not None and best_cost - cost < 1.0e-6 * cost
@@ -224,7 +232,7 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
                 break
         jacobian = _jacobian(record, weights, columns, best)
         normal = jacobian.T @ jacobian
-        step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]), assume_a="pos")
+        step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]).ravel(), assume_a="pos")
         step *= min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
         logs = best[0] + step
         logs[count:] = np.clip(logs[count:], -3.0, 3.0)
@@ -232,20 +240,25 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
 
 
 def _jacobian(record, weights, columns, best):
-    """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm, the participations held."""
+    """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm, without what the participations would take up.
+
+    The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of the basis, channel by channel.
+    """
     logs, shapes, basis, _ = best
-    count = len(logs) // 2
-    parts = []
+    count, channels = len(logs) // 2, len(shapes)
+    jacobian = np.zeros((channels, 2 * basis.shape[1], 2 * count))
     for number in range(2 * count):
         moved = logs.copy()
         step = 1.0e-5 if number < count else 1.0e-3
         moved[number] += step
         mode = number % count
         change = (columns(moved, [mode])[0] - basis[mode]) / step
-        parts.append(_real((weights * np.outer(shapes[:, mode], change)).ravel()))
-    # the part that the participations would take up is no evidence for the logarithms
-    jacobian = np.stack(parts, axis=-1)
-    return jacobian
+        jacobian[:, :, number] = _real(weights * np.outer(shapes[:, mode], change))
+    for channel in range(channels):
+        columns_of = [_real(weights[channel] * basis)] + [_real(1j * weights[channel] * basis)] * np.iscomplexobj(shapes)
+        span, _ = np.linalg.qr(np.vstack(columns_of).T)
+        jacobian[channel] -= span @ (span.T @ jacobian[channel])
+    return jacobian.reshape(-1, 2 * count)
 
 
 def _result(best, weights, visible, drive, noise, record, columns, measured, delay):
@@ -253,9 +266,9 @@ def _result(best, weights, visible, drive, noise, record, columns, measured, del
     count = len(visible)
     jacobian = _jacobian(record, weights, columns, best)
     covariance = linalg.pinvh(jacobian.T @ jacobian) * max(1.0, np.mean(np.abs(residual) ** 2))
-    power = np.sqrt(np.sum(np.abs(residual.reshape(len(shapes), -1) / weights) ** 2, axis=-1))
+    power = np.sqrt(np.sum(np.abs(residual / weights) ** 2, axis=-1))
     total = np.sqrt(np.sum(np.abs(measured) ** 2, axis=-1))
-    return ModalFit(visible, drive, logs[:count], logs[count:], shapes, covariance, delay, power / noise, power / np.maximum(total, 1.0e-300))
+    return ModalFit(visible, drive, logs[:count], logs[count:], shapes, covariance, delay, power / np.hypot(noise, RESIDUAL_SHARE * total), power / np.maximum(total, 1.0e-300))
 
 
 def _start(record, measured, weights, visible, drive, omega, zeta, kind):

@@ -101,19 +101,24 @@ def calibrate(bench, null, measured, candidate, path, fit):
     low_at = _lows(path.parameters, np.maximum(low_scores, low_scores.max() - LEAST_LOW))
     spread = emulator.deviations.var(axis=0).reshape(null.mean.shape)
 
-    def at(unit, records):
+    def at(unit, records, law=None):
         deviation, unknown = emulator(unit)
         deviation = deviation.reshape(null.mean.shape)
+        change = deviation if law is None else law
         residual = compressed(measured - null.mean - uncompressed(deviation, bench.layout), bench.layout)
-        scores = np.array([log_likelihood(residual[record], null.covariance[record], deviation[record], null.groups, unknown * spread[record])[0]
+        scores = np.array([log_likelihood(residual[record], null.covariance[record], change[record], null.groups, unknown * spread[record])[0]
                            for record in records])  # fmt: skip
         return scores, deviation
 
-    def fit_score(unit):
-        return at(unit, np.flatnonzero(fit))[0].sum() + low_at(unit)
+    def fit_score(unit, law=None):
+        return at(unit, np.flatnonzero(fit), law)[0].sum() + low_at(unit)
 
     start = path.parameters[np.argmax([fit_score(unit) for unit in path.parameters])]
-    unit, profile = (_grid if path.parameters.shape[1] in GRID else _scan)(fit_score, start)
+    search = _grid if path.parameters.shape[1] in GRID else _scan
+    unit, _ = search(fit_score, start)
+    # what two laws may differ by grows with the effect: held at its best while the parameters are estimated, or more would always be forgiven
+    law = at(unit, [])[1]
+    unit, profile = search(lambda point: fit_score(point, law), unit)
     records, deviation = at(unit, np.arange(len(measured)))
     interval = np.array([_above(values, score) for values, score in profile])
     return Calibrated(unit, records, low_at(unit), null.mean + uncompressed(deviation, bench.layout), interval, profile)

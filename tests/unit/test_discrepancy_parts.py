@@ -1,0 +1,153 @@
+"""The parts of the discrepancy workflow, each against a number from elsewhere."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.dag import shard_of
+from vibroimpact.discrepancy.emulator import Emulator
+from vibroimpact.discrepancy.features import COARSE, FeatureLayout, compressed, record_features, uncompressed
+from vibroimpact.discrepancy.likelihood import log_likelihood, scatter_of
+from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
+from vibroimpact.discrepancy.next_measurement import next_measurement
+from vibroimpact.discrepancy.screening import _above
+from vibroimpact.discrepancy.suite import judged, rates
+
+RATE = 2048.0
+
+
+def layout(channels=1, pairs=()):
+    """A FeatureLayout of 24 bands from 5 to 200 Hz."""
+    rows = [("power", c, b) for c in range(channels) for b in range(24)] + [("coherence", c, b) for c in range(channels) for b in range(COARSE)]
+    rows += [(kind, a, b) for kind in ("co", "quad") for a, _ in pairs for b in range(COARSE)]
+    rows += [(kind, c, -1) for kind in ("skewness", "kurtosis") for c in range(channels)]
+    kind, channel, band = map(np.array, zip(*rows, strict=True))
+    return FeatureLayout(RATE, np.geomspace(5.0, 200.0, 25), np.geomspace(5.0, 200.0, COARSE + 1), list(pairs), kind, channel, band)
+
+
+def test_band_powers_of_white_noise_are_its_density_times_their_width():
+    force, response = np.random.default_rng(1).standard_normal((2, 60 * 2048))
+    found = layout().power(record_features(layout(), force, response[None]))[0]
+    expected = 10.0 * np.log10(2.0 / RATE * np.diff(layout().edges))
+    assert np.abs(found - expected)[12:].max() < 0.7
+    assert abs(np.mean(10 ** (found / 10)) / np.mean(10 ** (expected / 10)) - 1.0) < 0.03
+
+
+def test_a_response_that_is_the_force_is_coherent_and_noise_is_not():
+    force, other = np.random.default_rng(2).standard_normal((2, 60 * 2048))
+    features = record_features(layout(2), force, np.stack([3.0 * force, other]))
+    coherence = np.tanh(features[layout(2).kind == "coherence"]).reshape(2, -1)
+    assert coherence[0].min() > 0.99 and coherence[1].max() < 0.45
+
+
+def test_the_sense_of_two_directions_is_seen():
+    x = np.random.default_rng(3).standard_normal(40 * 2048)
+    chosen = layout(2, [(0, 1)])
+    same, against = (record_features(chosen, x, np.stack([x, sign * x]))[chosen.kind == "co"] for sign in (1.0, -1.0))
+    np.testing.assert_allclose(same, -against)
+    assert same.min() > 3.0
+
+
+def test_compression_has_an_inverse_and_leaves_small_differences():
+    values = np.linspace(-60.0, 60.0, layout().kind.size)
+    np.testing.assert_allclose(uncompressed(compressed(values, layout()), layout()), values, atol=1e-9)
+    assert np.abs(compressed(0.01 * np.ones(layout().kind.size), layout()) - 0.01).max() < 1e-6
+
+
+def test_shrunk_covariance_keeps_variances_and_can_be_inverted():
+    chosen = layout()
+    draws = np.random.default_rng(4).standard_normal((12, chosen.kind.size)) * np.linspace(0.1, 1.0, chosen.kind.size)
+    scatter = scatter_of(draws, chosen)
+    assert np.linalg.eigvalsh(scatter.covariance).min() > 0.0
+    np.testing.assert_allclose(np.diag(scatter.covariance), np.sum(compressed(draws - draws.mean(axis=0), chosen) ** 2, axis=0) / 11.0)
+
+
+def test_likelihood_falls_with_distance_but_not_without_end():
+    scores = [log_likelihood(np.full(40, distance), np.eye(40))[0] for distance in (0.0, 1.0, 10.0, 100.0)]
+    assert scores[0] > scores[1] > scores[2] > scores[3]
+    gaussian = -0.5 * 40 * 100.0**2
+    assert scores[3] - scores[0] > 0.01 * gaussian  # a t law: a hundred sigma are not a hundred times ten
+
+
+def test_what_a_law_may_differ_by_is_forgiven_in_proportion():
+    change = np.full(40, 20.0)
+    plain = log_likelihood(0.1 * change, np.eye(40))[1]
+    forgiven = log_likelihood(0.1 * change, np.eye(40), change, np.zeros(40, int))[1]
+    assert forgiven < 0.1 * plain
+
+
+def test_emulator_meets_its_points_and_the_curve_between():
+    points = np.linspace(0.0, 1.0, 8)[:, None]
+    curve = np.column_stack([np.sin(3.0 * points[:, 0]), points[:, 0] ** 2])
+    emulator = Emulator(points, curve, np.full(8, 1e-6))
+    between, unknown = emulator(np.array([0.37]))
+    np.testing.assert_allclose(between, [np.sin(1.11), 0.37**2], atol=0.01)
+    assert unknown < 0.01
+
+
+def test_emulated_angles_wrap_round():
+    points = np.linspace(0.0, 0.9, 10)[:, None]
+    emulator = Emulator(points, np.cos(2.0 * np.pi * points), np.full(10, 1e-6), periodic=(0,))
+    np.testing.assert_allclose(emulator(np.array([0.999]))[0], 1.0, atol=0.02)
+
+
+def test_interval_of_a_parabola():
+    values = np.linspace(0.0, 1.0, 61)
+    low, high = _above(values, -0.5 * ((values - 0.4) / 0.1) ** 2)
+    np.testing.assert_allclose([low, high], [0.4 - 0.1645, 0.4 + 0.1645], atol=0.006)
+
+
+def test_closed_fraction_is_that_of_the_excess():
+    assert excess(5.0, 3.0) == pytest.approx(4.0)
+    assert closed_fraction(5.0, np.hypot(3.0, 1.0), 3.0) == pytest.approx(0.75)
+    assert closed_fraction(3.1, 3.0, 3.0) is None
+
+
+def test_floor_of_independent_seeds_is_root_two_of_their_scatter():
+    power = np.random.default_rng(5).standard_normal((2, 8, 3, 24))
+    assert floor_of(power, np.ones((2, 3, 24), bool)) == pytest.approx(np.sqrt(2.0), rel=0.1)
+
+
+def test_names_of_candidates_come_back():
+    for name in ("gap@all", "gap@left+dry_friction@all"):
+        assert candidate_named(name).name == name
+    pair = Pair(Candidate("gap", "all"), Candidate("foliate_obstacle", "all"))
+    assert pair.split == 1 and pair.periodic == (2,) and len(pair.effect.parameters) == 3
+
+
+def test_shards_add_up():
+    assert sorted([*shard_of(11, "0/3"), *shard_of(11, "1/3"), *shard_of(11, "2/3")]) == list(range(11))
+
+
+def test_the_exact_alias_is_told_how_to_break():
+    assert "clearance" in next_measurement([["gap"], ["sensor_gain"]])
+    assert next_measurement([["gap"]]) is None
+
+
+def verdict(name, sets, first):
+    return {"verdict": name, "ambiguity_set": sets, "ranking": [{"ids": first}], "checks": [], "effects": [], "misfit": {"holdout": {"closed_fraction": 0.9}}}
+
+
+def test_verdicts_are_held_against_truths():
+    truth = {"arm": "strong", "effects": [["gap", {"factor": 1.2}]]}
+    right = judged(verdict("ambiguous", [["gap"], ["sensor_gain"]], ["gap"]), truth)
+    wrong = judged(verdict("named", [["dry_friction"]], ["dry_friction"]), truth)
+    assert right["in_set"] and right["first"] and not right["wrong"]
+    assert wrong["wrong"] and not wrong["in_set"]
+    table = {(row["arm"], row["quantity"]): row for row in rates([right, wrong, wrong, wrong])}
+    assert table["strong", "in the set"]["rate"] == 0.25
+    assert table["strong", "in the set"]["low"] == pytest.approx(0.0063, abs=1e-4)  # Clopper-Pearson, 1 of 4
+
+
+def test_shuffled_truths_fall_to_chance():
+    rng, names = np.random.default_rng(6), ["gap", "dry_friction", "support_offset", "hertz", "preload"]
+    truths = [names[place] for place in rng.integers(0, 5, 200)]
+    verdicts = [verdict("named", [[name]], [name]) for name in truths]
+    honest = [judged(one, {"arm": "strong", "effects": [[name, {}]]})["in_set"] for one, name in zip(verdicts, truths, strict=True)]
+    shuffled = [judged(one, {"arm": "strong", "effects": [[name, {}]]})["in_set"] for one, name in zip(verdicts, rng.permutation(truths), strict=True)]
+    assert np.mean(honest) == 1.0 and 0.1 < np.mean(shuffled) < 0.3
+
+
+def test_priors_are_those_of_the_contract():
+    assert (priors.FREQUENCY_SD, priors.DAMPING_SD, priors.GAIN_SD, priors.NAMED_BEYOND) == (0.003, 0.10, 0.02, 2.0)
