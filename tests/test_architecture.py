@@ -19,8 +19,8 @@ LAYERS = (
     ("records", "variables"),
     ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "force_stream", "spectra", "spectra_of_case", "spectral_kernel", "units", "campaign", "campaign_checks", "campaign_faults", "campaign_linear_checks", "campaign_signals"),
     ("ritz", "modifications", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),
-    ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "identify", "synthetic_campaign"),
-    ("effects", "discrepancy", "consistency", "statistics_table", "timing", "f16"),
+    ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "multisine", "identified", "steady", "identify", "synthetic_campaign"),
+    ("effects", "discrepancy", "consistency", "statistics_table", "timing", "f16", "completion"),
     ("validation",),
     ("figures",),
 )

@@ -32,6 +32,9 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "figures_checks": ("structure.section", "record.stress_limit_Pa", "identification.stiffness_range_N_per_m"),
     "timing": ("study",),
     "f16": ("f16_data",),
+    "silverbox": ("silverbox_data",),
+    "completion_records": ("f16_data", "silverbox_data"),
+    "completion": (),
     "validation": tuple(Config.model_fields),
 }
 

@@ -55,6 +55,9 @@ COLUMNS = {
     "force_N": ("Support force (N)", 1.0), "impact_velocity_m_per_s": ("Impact velocity (mm/s)", 1e3),
     "wear_work_rate_W": ("Wear work rate (W)", 1.0), "stress_Pa": ("Bending stress (MPa)", 1e-6),
     "cpu_s": ("CPU time (s)", 1.0),
+    "response_per_force": ("|response / force|", 1.0), "share_of_error": ("Running share of error", 1.0),
+    "support_stiffness_change_N_per_m": ("Change of k (MN/m)", 1e-6), "support_damping_change_N_s_per_m": ("Change of c (kN s/m)", 1e-3),
+    "relative_displacement": ("Relative displacement (mm)", 1e3), "restoring_force": ("Force (N)", 1.0),
 }
 
 METHODS = {
