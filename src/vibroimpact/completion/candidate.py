@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.completion.family import fit_family
 from vibroimpact.completion.levels import levels_of, naming_split
-from vibroimpact.completion.linear_models import linear_errors
+from vibroimpact.completion.linear_models import base_of, linear_errors
 from vibroimpact.completion.local_laws import LAWS, Scales
 from vibroimpact.completion.naming import leading
 from vibroimpact.completion.store import modes_of, trial_of, trial_values
@@ -31,6 +31,9 @@ def run_candidate(campaign, study, linear, name, first=None, told=print):
         start = _alone(modes_of(linear["base"]), modes_of(linear["joint"]), records, law, place, row_of(study, place, names))
     else:
         start = _added(trial_of(first["trial"]), records, law, place, row_of(study, place, names))
+    if start is None:
+        told("no start value of this law leaves the motion bounded: the candidate is out")
+        return _without_fit(base_of(linear), name, first, [*fitted], [*tried], names, law)
     trial, minimum = Fit(start, records).run(PASSES, told=lambda done, cost: told(f"pass {done}: {cost:.5g}"))
     both = Records((*fitted, *tried), study.band_Hz, study.mean)
     trial = with_offsets(trial, both)
@@ -40,6 +43,14 @@ def run_candidate(campaign, study, linear, name, first=None, told=print):
             "places": [term.place for term in trial.terms], "trial": trial_values(trial), "cost": minimum.cost, "passes": minimum.passes,
             "errors": dict(zip([level.name for level in both.levels], errors.tolist(), strict=True)),
             "fitted": [level.name for level in fitted], "tried": [level.name for level in tried]}  # fmt: skip
+
+
+def _without_fit(modes, name, first, fitted, tried, names, law):
+    """The values of a candidate that has no bounded motion: the linear model, and errors that are not finite."""
+    ids = sorted({LAWS[law].id, *(first["ids"] if first else ())})
+    errors = {level.name: [np.nan] * len(names) for level in (*fitted, *tried)}
+    return {"name": f"{first['name']}+{name}" if first else name, "ids": ids, "places": [], "trial": trial_values(Trial(modes)), "cost": np.nan, "passes": 0,
+            "errors": errors, "fitted": [level.name for level in fitted], "tried": [level.name for level in tried]}  # fmt: skip
 
 
 def run_addition(campaign, study, linear, name, singles):
@@ -54,7 +65,7 @@ def _alone(base, joint, records, law, place, row):
     """The start of a law by itself: the best of its start values on the modes of the lowest level, of the family, or of all levels."""
     family = fit_family(base, row, records.levels, records.band_Hz)
     motion = [_rms_motion(family, index, level, records) for index, level in enumerate(records.levels)]
-    strength = float(np.max(np.abs(family.k + 1j * _middle(records) * family.c)))
+    strength = min(float(np.max(np.abs(family.k + 1j * _middle(records) * family.c))), _softest(family.modes, np.array(row)))
     scales = Scales(strength, min(motion), max(motion), _middle(records))
     trials = [Trial(modes, (Term(law, place, row, values),)) for modes in (base, family.modes, joint) for values in LAWS[law].starts(scales)]
     return _best(trials, records)
@@ -79,14 +90,17 @@ def _added(first, records, law, place, row):
 
 
 def _best(trials, records):
-    """The trial with the least squared error. Raises ValueError when none has a bounded motion."""
+    """The trial with the least squared error, None when none has a bounded motion."""
     costs = []
     for trial in trials:
         predicted = records.predict(trial)
         costs.append(np.inf if predicted is None else float(np.sum(records.errors(predicted) ** 2)))
-    if not np.isfinite(min(costs)):
-        raise ValueError("no start value of this law leaves the motion bounded: the law is out of proportion to the structure")
-    return trials[int(np.argmin(costs))]
+    return trials[int(np.argmin(costs))] if np.isfinite(min(costs)) else None
+
+
+def _softest(modes, row):
+    """A quarter of the stiffness in N/m that, taken away along a relative displacement, would leave the structure without any there."""
+    return float(0.25 / np.sum((modes.shapes @ row) ** 2 / modes.omega**2))
 
 
 def _strength(modes, along):

@@ -16,7 +16,7 @@ from vibroimpact.completion.store import modes_of, trial_of, trial_values
 from vibroimpact.completion.study import ELSEWHERE
 from vibroimpact.completion.trial import Fit, Records, with_offsets
 
-PASSES = 8
+PASSES = 15
 PERIODS_BEFORE = 4  # before the period that is compared: the transient is gone
 SPLITS = ("fit", "holdout")
 
