@@ -94,8 +94,8 @@ def jobs_of_study():
 
 
 MEASURED = {
-    "f16": ("f16_data", "F16Data_FullMSine_Level*.mat", "the F-16 ground vibration test (Noel and Schoukens, 2017)"),
-    "silverbox": ("silverbox_data", "SNJP_?m_full_FNSI_*.mat", "the Silverbox records (Noel and Schoukens, 2017)"),
+    "f16": ("f16_data", STUDY.f16_data, "F16Data_FullMSine_Level*.mat", "the F-16 ground vibration test (Noel and Schoukens, 2017)"),
+    "silverbox": ("silverbox_data", STUDY.silverbox_data, "SNJP_?m_full_FNSI_*.mat", "the Silverbox records (Noel and Schoukens, 2017)"),
 }
 
 
@@ -106,8 +106,7 @@ def measured_files(wildcards):
 
 def files_of_structure(structure):
     """The record files of a structure in the configured folder."""
-    key, pattern, what = MEASURED[structure]
-    folder = getattr(STUDY, key)
+    key, folder, pattern, what = MEASURED[structure]
     found = sorted(Path(folder).glob(pattern))
     if not found:
         shown = pattern.replace("*", "<N>").replace("?", "u")

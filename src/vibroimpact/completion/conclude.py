@@ -72,9 +72,8 @@ def _verdict(study, choice, records, before, after, parameters, trial, names):
     held = [level.split == "holdout" for level in records.levels]
     parts = {"fit": [not each for each in held], "holdout": held}
     misfit = {split: misfit_summary(first[part], last[part], floor[part]) if any(part) else None for split, part in parts.items()}
-    judged = misfit["holdout"] or misfit["fit"]
     kind = choice.verdict
-    if kind == "named" and judged["closed_fraction"] is not None and judged["closed_fraction"] < PARTLY:
+    if kind == "named" and _closed(choice.scores[choice.chosen]) < PARTLY:
         kind = "partly_explained"
     effects = [{"id": LAWS[term.law].id, "location": _location(study, term),
                 "parameters": {name: each | {"unit": study.unit(each["unit"])} for name, each in told.items()}} for term, told in zip(trial.terms, parameters, strict=True)]

@@ -6,7 +6,7 @@ BANDS = 24
 DB_PER_RELATIVE = 10.0 / np.log(10.0)
 CALIBRATION_DB = 0.1  # what gains and the records' own repeatability leave uncertain in a band
 STRONG_Z, STRONG_DB = 3.0, 1.0
-SHARE = 0.9  # of the squared error of a record that its region holds
+SHARE = 0.8  # of the squared error of a record that its region holds
 
 
 def band_edges(band_Hz, bands=BANDS):

@@ -7,7 +7,7 @@ import numpy as np
 MARGIN_DB = 1.0  # of the tried records' squared error: a candidate within it of the best explains them as well
 LEAST_GAIN_DB = 6.0  # over the linear model fitted to all levels: below it no local law explains what the levels change
 LINEAR_ENOUGH = 1.3  # times the error of the models identified again at every level: below it nothing is missing
-PARTLY = 0.5  # of the excess of the held-out records: less than this closed is a part only
+PARTLY = 0.7  # of the error of the tried records: less than this closed is a part only
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from vibroimpact.local_elements import COLUMNS
 
 AXIS, DIRECTION = "x", [1.0, 0.0, 0.0]  # shapes hold one direction per channel; which way it points in space is the sensor's affair
 STEPS_PER_CYCLE = 200  # of the highest mode or of the band's end: what the ordinary study asks for
-DURATION_PERIODS = 600  # of the lowest frequency of the band, at most
+START_UP_PERIODS = 40  # of the lowest frequency of the band
+DURATION_PERIODS = 600  # of the lowest mode
 DECIMATION = 5
 
 
@@ -37,9 +38,9 @@ def configuration(completed, campaign, study):
         "structure": {"kind": "identified", "modes": described},
         "elements": elements,
         "excitation": {"kind": "band_limited", "point": _point(study.drive), "direction": DIRECTION, "band_Hz": [lowest, study.band_Hz[1]]},
-        "integration": {"scheme": "exact", "steps_per_second": rate, "start_up_s": round(40.0 / lowest, 3), "imperfection": 0.0},
+        "integration": {"scheme": "exact", "steps_per_second": rate, "start_up_s": float(np.ceil(START_UP_PERIODS / lowest)), "imperfection": 0.0},
         "grid": {"load_rms_N": loads, "gap_m": [1.0], "seeds": 1},
-        "record": {"duration_s": round(DURATION_PERIODS / modes.frequency[~modes.residual].min(), 3), "sampling_frequency_Hz": rate // DECIMATION**2},
+        "record": {"duration_s": float(np.ceil(DURATION_PERIODS / modes.frequency[~modes.residual].min())), "sampling_frequency_Hz": rate // DECIMATION**2},
     })  # fmt: skip
 
 
