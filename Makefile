@@ -43,6 +43,7 @@ judges: $(JUDGES_STAMP)
 	$(JUDGES)/bin/python -m pytest tests/judges -rs
 
 benchmark: $(BENCHMARK_STAMP)
+	$(BENCHMARK)/bin/python -m benchmarks.work_precision
 	$(BENCHMARK)/bin/python -m benchmarks
 
 setup: $(STAMP)

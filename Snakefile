@@ -14,6 +14,10 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/identify.smk"
 include: "workflow/rules/campaign.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/import.smk"
+include: "workflow/rules/discrepancy.smk"
+include: "workflow/rules/discrepancy_report.smk"
+include: "workflow/rules/suite.smk"
 include: "workflow/rules/timing.smk"
 include: "workflow/rules/completion.smk"
 include: "workflow/rules/f16.smk"
@@ -25,6 +29,7 @@ include: "workflow/rules/validation.smk"
 
 localrules:
     all,
+    discrepancy,
 
 
 rule all:
@@ -33,3 +38,12 @@ rule all:
         targets(),
     message:
         "Study '{STUDY.study}' is complete: tables and figures in {RESULTS}"
+
+
+rule discrepancy:
+    input:
+        verdict=f"{DISCREPANCY}/verdict.json",
+        model=f"{DISCREPANCY}/model_updated.yaml",
+        page=f"{DISCREPANCY}/report.html",
+    message:
+        f"Discrepancy of '{LOOKED_AT}': {DISCREPANCY}/report.html"

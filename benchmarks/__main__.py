@@ -2,6 +2,7 @@
 
     python -m benchmarks                    everything: results/benchmark/, docs/performance.md and its figure
     python -m benchmarks --quick            the same in small, to results/benchmark_quick/, the page beside the tables
+    python -m benchmarks --page             page and figure anew from the tables of the last run
     python -m benchmarks --peers plain --no-growth --quick      our kernel beside the plain numba loop, in seconds
 """
 
@@ -25,10 +26,23 @@ from benchmarks.machine import description  # noqa: E402
 from benchmarks.page import write_page  # noqa: E402
 from benchmarks.pairs import Clock, cpu_seconds  # noqa: E402
 from benchmarks.peak import PeakRate  # noqa: E402
-from benchmarks.table import COLUMNS, GROWTH_COLUMNS, PEER_COLUMNS, benchmark_rows, cores_rows, growth_rows, write_csv  # noqa: E402
+from benchmarks.table import (  # noqa: E402
+    COLUMNS,
+    GROWTH_COLUMNS,
+    MACHINE_COLUMNS,
+    PEER_COLUMNS,
+    benchmark_rows,
+    cores_rows,
+    growth_rows,
+    read_csv,
+    typed,
+    write_csv,
+)
+from benchmarks.work_precision_page import section  # noqa: E402
 
 QUICK = Clock(repeats=2, ours_s=0.1, peer_scale=0.25)
 PEAK_REPEATS = 3
+ABSENT = "absent peer"
 
 
 def main():
@@ -40,6 +54,9 @@ def main():
     (docs / "figures").mkdir(parents=True, exist_ok=True)
     out.mkdir(parents=True, exist_ok=True)
     say = _teller()
+    if options.page:
+        _present(out, docs, say)
+        return
     found, absent = available(options.peers, say)
     pairs, peers = [], []
     for case in CASES:
@@ -52,12 +69,27 @@ def main():
     write_csv(out / "benchmark.csv", COLUMNS, rows)
     write_csv(out / "growth.csv", GROWTH_COLUMNS, growth_rows(points))
     write_csv(out / "peers.csv", PEER_COLUMNS, peers)
-    draw(rows, docs / "figures" / "performance.png")
-    write_page(docs / "performance.md", rows, growth_rows(points), peers, absent, _machine(), "figures/performance.png")
+    write_csv(out / "machine.csv", MACHINE_COLUMNS, [{"what": what, "value": value} for what, value in {**_machine(), **_absences(absent)}.items()])
     for row in rows:
         print(f"{row['case']:34s} {row['quantity']:26s} {row['unit']:24s} {row['ours_median']:10.4g} {row['peer']:32s} {row['peer_median']:10.4g}"
               f"  ratio {row['ratio_median']:.3g} ({row['ratio_min']:.3g} to {row['ratio_max']:.3g})")  # fmt: skip
-    say(f"written: {out}/benchmark.csv, growth.csv, peers.csv, {docs}/performance.md, {docs}/figures/performance.png")
+    _present(out, docs, say)
+
+
+def _present(out, docs, say):
+    """Write page and figure from the tables in a folder."""
+    rows, growth, peers, described, steps = (read_csv(out / f"{name}.csv") for name in ("benchmark", "growth", "peers", "machine", "work_precision"))
+    absent = [row["value"] for row in described if row["what"].startswith(ABSENT)]
+    machine = {row["what"]: row["value"] for row in described if not row["what"].startswith(ABSENT)}
+    draw(typed(rows), docs / "figures" / "performance.png")
+    worth = section(steps, "figures/work_precision.png") if steps else ""
+    write_page(docs / "performance.md", rows, growth, peers, absent, machine, "figures/performance.png", worth)
+    say(f"written: {out}/benchmark.csv, growth.csv, peers.csv, machine.csv, {docs}/performance.md, {docs}/figures/performance.png")
+
+
+def _absences(sentences):
+    """Return {what: sentence} of the peers that are absent."""
+    return {f"{ABSENT} {number}": sentence for number, sentence in enumerate(sentences, 1)}
 
 
 def _options():
@@ -67,6 +99,7 @@ def _options():
     parser.add_argument("--peers", nargs="+", choices=FILES, default=FILES, help="files of benchmarks/peers to measure")
     parser.add_argument("--cases", nargs="+", type=int, choices=range(1, len(CASES) + 1), help="problems to measure, by number")
     parser.add_argument("--no-growth", action="store_true", help="leave out the growth curves and the two processes")
+    parser.add_argument("--page", action="store_true", help="measure nothing: page and figure from the tables there are")
     parser.add_argument("--out", help="folder of the tables, page and figure (default results/benchmark and docs)")
     return parser.parse_args()
 

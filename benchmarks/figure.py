@@ -35,10 +35,9 @@ def draw(rows, path):
         axis.set_yticks(range(len(peers[case])), peers[case])
         axis.invert_yaxis()
         axis.set_title(case)
-    low, high = axes[0, 0].get_xlim()
-    axes[0, 0].set_xlim(low, 2.5 * high)
+    axes[0, 0].set_xlim(min(0.7, 0.8 * min(row["ratio_min"] for row in rows)), 4.0 * max(row["ratio_max"] for row in rows))  # room for the numbers
     axes[-1, 0].set_xlabel("CPU time of the peer / CPU time of ours, per simulated second and run (-)\n"
                            "Bars: median of the pairs; whiskers: smallest and largest")  # fmt: skip
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(quantities))
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     figure.savefig(path, dpi=130)
     plt.close(figure)

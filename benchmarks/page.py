@@ -4,18 +4,20 @@ import numpy as np
 
 from benchmarks.check import CHECK_S, FIRST_IMPACTS_S, NAMES
 from benchmarks.pairs import PEAK
-from benchmarks.problem import BAND_HZ, GAP_M, RATE
-from benchmarks.table import NANOSECONDS, SECONDS, three_digits
+from benchmarks.problem import BAND_HZ, GAP_M, LOAD_N, RATE, SMALL_BASIS
+from benchmarks.table import NANOSECONDS, SECONDS, three_digits, typed
 
 RECORD_S = 49.0
+SMALL_TO_HZ = SMALL_BASIS["basis.free_modes_to_Hz"]
 
 INTRODUCTION = f"""# Performance
 
-Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmark.csv`, `growth.csv` and `peers.csv`.
+Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmark.csv`, `growth.csv`, `peers.csv` and `machine.csv`.
 
 The problem is the study's stand-in tube: a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 degrees of the bend, two plates of five contact
 points, {GAP_M * 1e3:.3f} mm of gap. "Modes" counts free modes and the residual vectors that carry the local flexibility
-of the contacts; these reach 130 kHz and set the step of every explicit method, so that one case keeps free modes alone.
+of the contacts; these reach 130 kHz and set the step of every explicit method, so that one case keeps free modes alone. 99 modes are the study's
+basis, 61 a smaller one (free modes to {SMALL_TO_HZ:g} Hz). At {LOAD_N:g} N RMS, the study's highest load, a plate bears a force half of the time.
 
 - Every code solves the same problem, and is checked before its time is quoted: displacement at three sensors over {CHECK_S:g} s without contact,
   over the first impacts (to {FIRST_IMPACTS_S:g} s), and its RMS over all of it; obstacles moved off the axis, so that both directions touch.
@@ -24,8 +26,11 @@ of the contacts; these reach 130 kHz and set the step of every explicit method, 
 - A time is CPU time of one core, compiled beforehand. Ours and a peer run in turns in one process; a ratio belongs to a pair measured next
   to each other: median (smallest to largest). A short stretch of a slow peer is compared per simulated second; it holds less
   contact than a long record, which favours the peer.
+- Ours integrates eight runs side by side, one per element of a 512-bit vector. One run alone fills one element of eight and costs nearly as
+  much as eight: it is about as fast as a plain compiled loop. The bits of a run do not depend on how many run beside it. The plain loop, and JAX
+  without its batch, take one case after the other.
 - Ours steps as the plain loop, JAX and Exudyn do: Newmark, {RATE} steps per second. "At the study's step" is the scheme and rate of
-  `config/study.yaml`; `python -m benchmarks.work_precision` compares what steps are worth.
+  `config/study.yaml`; [what a step is worth](#what-a-step-is-worth) is below.
 - Absolute times are those of this machine. Compare ratios.
 """
 
@@ -39,12 +44,17 @@ GROWTH = {
 }
 
 
-def write_page(path, rows, growth, peers, absent, machine, figure):
-    """Write the page: rows (table.COLUMNS), growth (table.GROWTH_COLUMNS), peers (table.PEER_COLUMNS), sentences, {what: value}, figure's path."""
-    parts = [INTRODUCTION, f"![Ratios of CPU time]({figure})\n", "## Machine\n", _table(("", ""), machine.items())]
+def write_page(path, rows, growth, peers, absent, machine, figure, work_precision=""):
+    """Write the page: rows (table.COLUMNS), growth (table.GROWTH_COLUMNS), peers (table.PEER_COLUMNS), sentences, {what: value}, figure's path.
+
+    Rows may come from their files, with text for numbers. work_precision: that section (work_precision_page.section).
+    """
+    rows, growth, peers = (typed(each) for each in (rows, growth, peers))
+    parts = [INTRODUCTION, f"![Ratios of CPU time]({figure})\n", "## Machine\n", _table(("what", "on this machine"), machine.items())]
     for case in dict.fromkeys(row["case"] for row in rows):
         parts += [f"## {case}\n", _times(case, rows), _steps(case, rows), _peak(case, rows)]
     parts += ["## Growth\n", *_growth(growth), _cores(rows)] if growth else []
+    parts += [work_precision] if work_precision else []
     parts += ["## What each peer solves, and whether it agrees\n", *_agreement(peers)]
     parts += ["Not measured:\n\n" + "".join(f"- {sentence}\n" for sentence in absent)] if absent else []
     with open(path, "w", encoding="utf-8") as file:
@@ -97,7 +107,7 @@ def _steps(case, rows):
 def _peak(case, rows):
     """Return the sentence of the fraction of the FMA peak."""
     found = [row for row in rows if row["case"] == case and row["peer"] == PEAK]
-    shares = [[f"{100.0 * row[f'ratio_{name}']:.0f}" for name in ("median", "min", "max")] for row in found]
+    shares = [[f"{100.0 * row[f'ratio_{name}']:.2g}" for name in ("median", "min", "max")] for row in found]
     parts = [f"{middle} % ({low} to {high} %) as {row['quantity'].partition(',')[0]}" for row, (middle, low, high) in zip(found, shares, strict=True)]
     return (f"Of this core's FMA peak ours uses {', '.join(parts)}: the step's own arithmetic would take {found[0]['peer_median']:.0f} ns "
             "(counted in `benchmarks/peak.py`; output filter, statistics and energies do not count).\n") if found else ""  # fmt: skip

@@ -8,7 +8,7 @@ from numba import njit
 def march_plain(shapes, drive_shape, coefficients, compliance, stiffness, gap, offset, drive, q, v, passes):
     """Advance (q, v) in place through the force record drive (step + 1,); return steps with contact.
 
-    shapes (row, mode), rows x then y of each point; coefficients (6, mode) of layout.newmark_coefficients without the
+    shapes (row, mode), rows x then y of each point; coefficients (6, mode) of newmark.newmark_map, without the
     loss; compliance (row, row); stiffness (point,); offset (row,); ``passes`` fixed-point passes per step.
     """
     rows, modes = shapes.shape

@@ -1,6 +1,7 @@
 """The tables of the benchmark as rows, and their files."""
 
 import csv
+import os
 
 import numpy as np
 
@@ -11,6 +12,8 @@ GROWTH_COLUMNS = ("varied", "value", "modes", "contact_points", "supports", "bat
                   "ns_per_step_median", "ns_per_step_min", "ns_per_step_max", "s_per_simulated_s_median")  # fmt: skip
 PEER_COLUMNS = ("case", "peer", "version", "simulated_s", "contact_fraction", "linear", "linear_tolerance",
                 "first_impacts", "first_impacts_tolerance", "rms", "rms_tolerance", "agrees", "failure", "note")  # fmt: skip
+MACHINE_COLUMNS = ("what", "value")
+WORDS = ("case", "quantity", "unit", "peer", "version", "agrees", "failure", "note", "varied", "clock")  # columns that hold no number
 SECONDS, NANOSECONDS = "CPU s per simulated s", "ns per step"
 
 
@@ -54,6 +57,29 @@ def write_csv(path, columns, rows):
             if set(row) != set(columns):
                 raise ValueError(f"{path}: columns {sorted(row)}, expected {sorted(columns)}")
             writer.writerow({name: f"{value:.6g}" if isinstance(value, float) else value for name, value in row.items()})
+
+
+def read_csv(path):
+    """Return [{column: text}] of a CSV file, [] where there is none."""
+    if not os.path.exists(path):
+        return []
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def typed(rows):
+    """Return rows with text that is a number, but for versions and names, as a number: whole ones as int."""
+    return [{name: value if name in WORDS or not isinstance(value, str) else _number(value) for name, value in row.items()} for row in rows]
+
+
+def _number(text):
+    """Return the number that a text is, or the text."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
 
 
 def three_digits(value):

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.campaign import CampaignError, contract_problems, decoded, filled
 from vibroimpact.campaign_faults import clipped, dropped_out, drifting, level_trend, missing
-from vibroimpact.campaign_linear_checks import NO_CAUSE, alignment, delayed, delays, mean_coherence, reversed_hint, swap_hints
+from vibroimpact.campaign_linear_checks import NO_CAUSE, alignment, delays, mean_coherence, reversed_hint, swap_hints
 from vibroimpact.campaign_signals import excited_band, measured_signals, transfer
 from vibroimpact.records import RecordError, read_dataset
 
@@ -111,10 +111,11 @@ def _time(campaign, measured):
     off = np.flatnonzero(~(np.abs(steps - typical) < 0.01 * abs(typical)))
     if not typical > 0.0 or off.size:
         place = int(off[0]) if off.size else 0
-        yield _row("time", "refuse", f"The time between samples {place} and {place + 1} is {steps[place]:.4g} s, elsewhere {typical:.4g} s: resample all "
-                                     "channels to even steps.")
+        yield _row("time", "refuse", f"The time between samples {place} and {place + 1} is {steps[place]:.4g} s, elsewhere {typical:.4g} s: resample "
+                                     "all channels to even steps.")
     elif abs(typical * measured.rate - 1.0) > 1e-3:
-        yield _row("time", "refuse", f"sampling_frequency is {measured.rate:g} Hz but the time steps say {1.0 / typical:g} Hz: correct the one that is wrong.")
+        yield _row("time", "refuse", f"sampling_frequency is {measured.rate:g} Hz but the time steps say {1.0 / typical:g} Hz: correct the one that "
+                                     "is wrong.")
 
 
 def _signal_faults(measured):
@@ -131,20 +132,22 @@ def _faults_of(signal, measured, record, channel, what):
     holes = missing(signal)
     if signal.size == 0 or holes:
         count, first = holes or (0, 0)
-        message = (f"{channel} misses {count} of {signal.size} samples, the first at {first / measured.rate:.3f} s, in record {record}. {what}: repair the gap "
-                   "or shorten valid_samples." if signal.size else f"Record {record} has no valid sample.")
+        message = (f"{channel} misses {count} of {signal.size} samples, the first at {first / measured.rate:.3f} s, in record {record}. {what}: "
+                   "repair the gap or shorten valid_samples." if signal.size else f"Record {record} has no valid sample.")
         yield _row("gaps in time", "warn", message, record, channel)
         return
     if not signal.any():
         yield _row("drop-outs", "warn", f"{channel} is zero throughout record {record}. {what}.", record, channel)
         return
-    share = clipped(signal)
+    # Of a periodic signal the last period: every peak comes back in all of them.
+    share = clipped(signal[-measured.period_samples :] if 0 < measured.period_samples < signal.size else signal)
     if share is not None:
-        yield _row("clipping", "warn", f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in record {record}, {100 * share:.2g} % of the "
-                                       f"samples: the range of the amplifier was too small. {what}.", record, channel)
+        yield _row("clipping", "warn", f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in record {record}, "
+                                       f"{100 * share:.2g} % of the samples: the range of the amplifier was too small. {what}.", record, channel)
     lost = dropped_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
-        yield _row("drop-outs", "warn", f"{channel} is held or vanishes at {lost[0]:.2f} s for {lost[1]:.3f} s in record {record}. {what}.", record, channel)
+        yield _row("drop-outs", "warn", f"{channel} is held or vanishes at {lost[0]:.2f} s for {lost[1]:.3f} s in record {record}. {what}.", record,
+                   channel)
 
 
 def _load_rms(measured):
@@ -152,8 +155,8 @@ def _load_rms(measured):
         found = float(np.sqrt(np.mean(np.square(measured.force[record][0])))) if measured.force[record][0].size else np.nan
         stated = float(measured.load_rms[record])
         if np.isfinite(found) and not abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300):
-            yield _row("load_rms", "warn", f"load_rms is {stated:.4g} but {measured.forces[0]} has an RMS of {found:.4g} in record {name}: the unit or the valid "
-                                           "samples of one of them are wrong; the force itself is used.", name, measured.forces[0])
+            yield _row("load_rms", "warn", f"load_rms is {stated:.4g} but {measured.forces[0]} has an RMS of {found:.4g} in record {name}: the unit "
+                                           "or the valid samples of one of them are wrong; the force itself is used.", name, measured.forces[0])
 
 
 def _lowest_spectra(measured):
@@ -169,16 +172,16 @@ def _linear(measured, spectra, record):
     name, coherence, finite = measured.records[record], mean_coherence(spectra), measured.finite(record)
     best = float(coherence[finite].max())
     if best < NO_CAUSE:
-        yield _row("coherence", "refuse", f"No response follows {measured.forces[0]} in record {name} (mean coherence {best:.2f} at most): it is not the force "
-                                          "that drove them, or clocks differ.", name)
+        yield _row("coherence", "refuse", f"No response follows {measured.forces[0]} in record {name} (mean coherence {best:.2f} at most): it is not "
+                                          "the force that drove them, or clocks differ.", name)
         return
     if best < 0.8:
-        yield _row("coherence", "warn", f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in record {name}: the lowest level is not "
-                                        "linear, or noisy.", name)
-    apart, common = delayed(np.where(finite, delays(spectra, measured.kinds, measured.rate), np.nan), spectra.frequency[-1], measured.rate)
+        yield _row("coherence", "warn", f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in record {name}: the "
+                                        "lowest level is not linear, or noisy.", name)
+    apart, common = delays(spectra, measured.kinds, measured.rate, finite)
     for index, samples in apart.items():
-        yield _row("delay", "warn", f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by {abs(samples):.1f} samples "
-                                    f"({abs(samples) / measured.rate * 1e3:.2f} ms) in record {name}.", name, measured.channels[index])
+        yield _row("delay", "warn", f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by {abs(samples):.1f} "
+                                    f"samples ({abs(samples) / measured.rate * 1e3:.2f} ms) in record {name}.", name, measured.channels[index])
     if common is not None:
         yield _row("delay", "warn", f"All responses {'lag' if common > 0 else 'lead'} {measured.forces[0]} by {abs(common):.1f} samples "
                                     f"({abs(common) / measured.rate * 1e3:.2f} ms) in record {name}.", name, measured.forces[0])
@@ -187,13 +190,16 @@ def _linear(measured, spectra, record):
 
 def _mix_ups(measured, spectra, name):
     for index, other in swap_hints(measured, spectra):
-        partner = f"{measured.channels[other]}, which lies across the force, does: the two seem swapped" if other is not None else "others do: it is dead or wrongly named"
-        yield _row("swapped channels", "warn", f"{measured.channels[index]} lies along the force and does not follow it in record {name} while {partner}.",
+        partner = "others do: it is dead or wrongly named"
+        if other is not None:
+            partner = f"{measured.channels[other]}, which lies across the force, does: the two seem swapped"
+        yield _row("swapped channels", "warn", f"{measured.channels[index]} lies along the force and does not follow it in record {name} while "
+                                               f"{partner}.",
                    name, measured.channels[index])  # fmt: skip
     against = reversed_hint(measured, spectra)
     if against is not None:
-        yield _row("swapped channels", "warn", f"{measured.channels[against]} moves against all other channels below the first resonance in record {name}: "
-                                               "its polarity seems reversed.", name, measured.channels[against])
+        yield _row("swapped channels", "warn", f"{measured.channels[against]} moves against all other channels below the first resonance in record "
+                                               f"{name}: its polarity seems reversed.", name, measured.channels[against])
 
 
 def _directions(measured):
@@ -219,8 +225,8 @@ def _stationarity(measured, usable):
         for channel, signal, kept in signals:
             trend = level_trend(signal, measured.rate, band, measured.starts_at_rest) if kept else None
             if drifting(trend):
-                yield _row("stationarity", "warn", f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by {abs(trend[0]):.1f} dB over record {name} "
-                                                   f"(t = {trend[1]:.1f}).", name, channel)
+                yield _row("stationarity", "warn", f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by {abs(trend[0]):.1f} dB over "
+                                                   f"record {name} (t = {trend[1]:.1f}).", name, channel)
 
 
 def _length(measured):
@@ -234,9 +240,11 @@ def _length(measured):
             too_short += 1
         if duration * width < GOOD_AVERAGES:
             yield _row("record length", "warn", f"Record {name} of {duration:.3g} s holds {duration * width:.1f} independent averages in a band of "
-                                                f"{width:.2g} Hz at {band[0]:.3g} Hz: its lowest bands are uncertain; {GOOD_AVERAGES / width:.0f} s would do.", name)
+                                                f"{width:.2g} Hz at {band[0]:.3g} Hz: its lowest bands are uncertain; {GOOD_AVERAGES / width:.0f} s "
+                                                "would do.", name)
     if too_short == len(measured.records):
-        yield _row("record length", "refuse", f"Every record is shorter than {FEWEST_PERIODS:.0f} periods of the lowest excited frequency, {band[0]:.3g} Hz.")
+        yield _row("record length", "refuse", f"Every record is shorter than {FEWEST_PERIODS:.0f} periods of the lowest excited frequency, "
+                                              f"{band[0]:.3g} Hz.")
 
 
 def _content(measured, usable):

@@ -26,29 +26,34 @@ def mean_coherence(spectra):
     return np.clip((spectra.coherence.mean(axis=-1) - bias) / (1.0 - bias), 0.0, 1.0)
 
 
-def delays(spectra, kinds, rate):
-    """Return (channel,) the delay of each response against the force in samples, NaN where its phase does not tell.
+def delays(spectra, kinds, rate, finite):
+    """Return ({channel: samples} by which channels lag the others, samples by which all lag the force or None).
 
-    The tau at which sum coherence * Re((h/|h|)² exp(2i omega tau)) is largest; a velocity is turned by a quarter first.
+    The lag tau of a channel makes sum coherence * Re((h/|h|)² exp(2i omega tau)) largest, 1 for real modes without noise; a velocity is turned
+    by a quarter first. It is told where it explains half of what is missing to 1, and where its phase can be seen. finite (channel,): judged.
     """
     unit = spectra.h1 / np.maximum(np.abs(spectra.h1), np.finfo(float).tiny)
     squared = unit**2 * np.where(np.array(kinds) == "velocity", -1.0, 1.0)[:, None]
     weights = spectra.coherence / np.maximum(spectra.coherence.sum(axis=-1, keepdims=True), np.finfo(float).tiny)
     lags = np.arange(-LONGEST_DELAY_SAMPLES, LONGEST_DELAY_SAMPLES + DELAY_STEP, DELAY_STEP)
-    turning = np.exp(4j * np.pi * np.outer(spectra.frequency, lags / rate))
-    score = np.real((weights * squared) @ turning)
-    best = np.argmax(score, axis=-1)
-    found = lags[best]
-    trusted = (score.max(axis=-1) > REAL_ENOUGH) & (mean_coherence(spectra) > INCOHERENT)
-    return np.where(trusted, found, np.nan)
+    score = np.real((weights * squared) @ np.exp(4j * np.pi * np.outer(spectra.frequency, lags / rate)))
+    best = score.max(axis=-1)
+    trusted = np.flatnonzero(finite & (best > REAL_ENOUGH) & (mean_coherence(spectra) > INCOHERENT))
+    if trusted.size == 0:
+        return {}, None
+    found = lags[np.argmax(score, axis=-1)]
+    smallest = max(SEEN_SAMPLES, SEEN_RAD * rate / (2.0 * np.pi * spectra.frequency[-1]))
+    common = float(np.median(found[trusted]))
+    here, zero = (int(np.argmin(np.abs(lags - lag))) for lag in (common, 0.0))
+    apart = {int(index): float(found[index] - common) for index in trusted
+             if abs(found[index] - common) > smallest and _explains(score[index, here], best[index])}
+    together = score[trusted].mean(axis=0)
+    return apart, common if abs(common) > smallest and _explains(together[zero], together[here]) else None
 
 
-def delayed(found, highest_Hz, rate):
-    """Return ({channel: samples} delayed against the others, samples by which all lag the force or None) of delays (channel,)."""
-    smallest = max(SEEN_SAMPLES, SEEN_RAD * rate / (2.0 * np.pi * highest_Hz))
-    common = float(np.nanmedian(found)) if np.isfinite(found).any() else 0.0
-    apart = {index: float(value - common) for index, value in enumerate(found) if np.isfinite(value) and abs(value - common) > smallest}
-    return apart, common if abs(common) > smallest else None
+def _explains(without, with_it):
+    """Whether a lag raises the score by half of what is missing to 1."""
+    return with_it - without > 0.5 * (1.0 - with_it)
 
 
 def alignment(measured):
@@ -71,7 +76,8 @@ def swap_hints(measured, spectra):
         return []
     hints = []
     for index in silent:
-        rivals = [other for other in loud if measured.kinds[other] == measured.kinds[index] and spectra.power[other] > OUTSHINES * spectra.power[index]]
+        rivals = [other for other in loud
+                  if measured.kinds[other] == measured.kinds[index] and spectra.power[other] > OUTSHINES * spectra.power[index]]
         beside = [other for other in rivals if np.linalg.norm(measured.points[other] - measured.points[index]) < NEAR_M]
         partner = (beside or rivals or [None])[0]
         hints.append((int(index), None if partner is None else int(partner)))
@@ -81,13 +87,13 @@ def swap_hints(measured, spectra):
 def reversed_hint(measured, spectra):
     """Return the channel that moves against all others below the first resonance, or None.
 
-    Only told of four or more channels along the force, displacements and accelerations, all others in phase with one another.
+    Only told of four or more channels along the force, displacements and accelerations, all coherent, all others in phase with one another.
     """
     signs = np.array([{"acceleration": -1.0, "displacement": 1.0}.get(kind, np.nan) for kind in measured.kinds])
     force = measured.force_directions[0]
     along = measured.directions @ force / max(np.linalg.norm(force), 1e-12)
-    usable = np.flatnonzero((np.abs(along) > ALIGNED) & (mean_coherence(spectra) > 0.5 * COHERENT) & np.isfinite(signs))
-    if usable.size < 4:
+    usable = np.flatnonzero((np.abs(along) > ALIGNED) & np.isfinite(signs))
+    if usable.size < 4 or mean_coherence(spectra)[usable].min() < COHERENT:
         return None
     # Up to just past the first clear peak of the summed receptance all moves as the first mode does.
     omega = 2.0 * np.pi * spectra.frequency

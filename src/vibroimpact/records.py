@@ -154,6 +154,24 @@ def read_variable(path) -> tuple[dict[str, np.ndarray], dict]:
         raise RecordError(f"{path}: can not be read as netCDF ({error})") from error
 
 
+def read_hdf5_arrays(path) -> dict[str, np.ndarray]:
+    """Every array of numbers of an HDF5 file as MATLAB v7.3 writes them: group.name, axes in MATLAB's order. Raises RecordError."""
+    import h5py  # imported here: its HDF5 library is another than netCDF4's, and other stages need only that one
+
+    found = {}
+
+    def collect(name, item):
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and not name.startswith("#") and "MATLAB_empty" not in item.attrs:
+            found[name.replace("/", ".")] = item[()].T
+
+    try:
+        with h5py.File(path, "r") as file:
+            file.visititems(collect)
+    except OSError as error:
+        raise RecordError(f"{path}: can not be read as HDF5 ({error})") from error
+    return found
+
+
 def write_model(model: ModalModel, path, attributes: dict | None = None) -> None:
     """Write a reduced model as netCDF: one variable per field, SI units as in ModalModel."""
     data = {}

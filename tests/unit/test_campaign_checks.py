@@ -7,6 +7,7 @@ import pytest
 
 from vibroimpact.campaign import Channel, Level, campaign_dataset, read_campaign
 from vibroimpact.campaign_checks import CHECKS, COLUMNS, check_campaign, check_file, refused, usable_signals
+from vibroimpact.campaign_faults import clipped
 from vibroimpact.records import write_record
 
 DEVELOPMENT = Path(__file__).parents[2].parent / "shared" / "data" / "campaigns"
@@ -89,14 +90,41 @@ def test_clipping_with_noise_behind_it_is_told(sound):
     assert [(row["check"], row["record"], row["channel"]) for row in complaints(sound)] == [("clipping", *names(sound, 2, 1))]
 
 
+def test_round_tops_are_not_clipping():
+    draw, count = np.random.default_rng(1), np.arange(200_000)
+    for signal in (np.sin(0.0123 * count), np.sin(0.0123 * count).astype(np.float32), np.round(100.0 * np.sin(0.0123 * count)), draw.standard_normal(count.size),
+                   np.round(20.0 * draw.standard_normal(count.size)), draw.standard_normal(count.size) ** 3):
+        assert clipped(signal) is None
+        limit = 0.7 * np.abs(signal).max()
+        assert clipped(np.clip(signal, -limit, limit)) is not None
+
+
 @pytest.mark.parametrize("fill", ["zero", "held", "noise"])
-def test_a_drop_out_is_told(sound, fill):
+@pytest.mark.parametrize("start", [1.3, 11.3])
+def test_a_drop_out_is_told(sound, fill, start):
     values, rate = sound["response"].values[1, 2], sound.attrs["sampling_frequency"]
-    part = slice(int(11.3 * rate), int(11.8 * rate))
+    part = slice(int(start * rate), int((start + 0.5) * rate))
     values[part] = {"zero": 0.0, "held": values[part.start], "noise": 1e-4 * values.std() * np.random.default_rng(2).standard_normal(part.stop - part.start)}[fill]
     found = complaints(sound)
     assert [(row["check"], row["record"], row["channel"]) for row in found] == [("drop-outs", *names(sound, 1, 2))]
-    assert "at 11." in found[0]["message"]
+    assert f"at {int(start)}." in found[0]["message"]
+
+
+def test_rest_before_the_first_motion_is_no_drop_out():
+    campaign = made_up()
+    campaign["response"].values[:, :, :1500] = 0.0
+    campaign["force"].values[:, :, :1500] = 0.0
+    campaign["load_rms"].values[:] = np.sqrt(np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1))
+    assert [row for row in complaints(campaign.assign_attrs(start_up="rest")) if row["check"] == "drop-outs"] == []
+    assert {row["record"] for row in complaints(campaign) if row["check"] == "drop-outs"} == {"low", "middle", "high"}
+
+
+def test_motion_that_sets_in_late_is_no_drop_out():
+    # Whirl in the plane grows out of the noise long after the start.
+    campaign = made_up()
+    grown = 1e-4 + 1.0 / (1.0 + np.exp(-3.0 * (campaign["time"].values - 8.0)))
+    campaign["response"].values[1, 5] = grown * np.random.default_rng(9).standard_normal(grown.size)
+    assert [row for row in complaints(campaign.assign_attrs(start_up="rest")) if row["check"] == "drop-outs"] == []
 
 
 @pytest.mark.parametrize("samples", [2, 3, 5, -4])

@@ -10,8 +10,9 @@ sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
 from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
-from vibroimpact.config import ConfigError, check_config, read_yaml
 from vibroimpact.completion.study import STUDIES
+from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
+from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, local_names, pair_names, shard_of
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
 
@@ -26,6 +27,20 @@ FIGURES = {
 }
 
 
+# What a run is asked to look at; no key of the study.
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "seed", "count", "shard", "seconds") if name in config}
+
+
+def requested(name, example):
+    """The path that --config name=PATH gives, as an input; a sentence where it is not given or not there."""
+    def path(wildcards):
+        if not os.path.exists(REQUEST.get(name, "")):
+            sys.exit(f"{name} = '{REQUEST.get(name, '')}' is not there: give it as in --config {name}={example}")
+        return REQUEST[name]
+
+    return path
+
+
 def checked_config():
     """The Config of the files and --config values given to snakemake; ends with every problem as a sentence before any job is planned."""
     files = [os.path.relpath(file) for file in workflow.configfiles]
@@ -37,7 +52,16 @@ def checked_config():
         sys.exit(str(error))
 
 
+def checked_model():
+    """The Config of the model that a campaign is compared with: that of --config model=FILE, the study's where none is given."""
+    try:
+        return load_config(REQUEST["model"]) if "model" in REQUEST else STUDY
+    except ConfigError as error:
+        sys.exit(str(error))
+
+
 STUDY = checked_config()
+MODEL = checked_model()
 RESULTS = f"results/{STUDY.study}"
 CASES = [case.id for case in all_cases(STUDY.grid)]
 KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series

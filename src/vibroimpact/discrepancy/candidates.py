@@ -10,17 +10,15 @@ from vibroimpact.effects.registry import EFFECTS
 SCREENED = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
 
 
+QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number of parameters
+
+
 @dataclass(frozen=True)
 class Candidate:
     """An effect at a location; its name is effect@location."""
 
     effect_id: str
     location: str
-
-    @classmethod
-    def named(cls, name):
-        """Return the candidate of a name."""
-        return cls(*name.split("@"))
 
     @property
     def name(self):
@@ -49,9 +47,10 @@ class Candidate:
             out.append(np.log(value / low) / np.log(high / low) if parameter.log else (value - low) / (high - low))
         return np.array(out)
 
-    def design(self):
-        """Return (point, parameter): the parameters to try first, all combinations of the effect's own design."""
-        axes = np.meshgrid(*[parameter.design for parameter in self.effect.parameters], indexing="ij")
+    def design(self, quick=False):
+        """Return (point, parameter): the parameters to try first, all combinations of the effect's own design; fewer where it must be quick."""
+        chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
+        axes = np.meshgrid(*[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij")
         return np.stack([axis.ravel() for axis in axes], axis=-1)
 
     @property
@@ -68,12 +67,87 @@ class Candidate:
         return measuring_of(self.effect_id, parameters, self.location, names) if self.effect.measured else None
 
 
-def linear_candidates(values, names, held):
-    """Return the candidates that the lowest record tells of by itself; held: names of what the campaign holds beyond force and response."""
+@dataclass(frozen=True)
+class PairEffect:
+    """What two effects together have of an effect."""
+
+    parameters: tuple
+    linear: bool = False
+    measured: bool = False
+    aliases: tuple = ()
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two candidates at once, the parameters of the first before those of the second; its name joins theirs with a plus."""
+
+    first: Candidate
+    second: Candidate
+
+    @property
+    def name(self):
+        """Return effect@location+effect@location."""
+        return f"{self.first.name}+{self.second.name}"
+
+    @property
+    def effect_id(self):
+        """Return both ids."""
+        return f"{self.first.effect_id}+{self.second.effect_id}"
+
+    @property
+    def effect(self):
+        """Return both effects as one."""
+        return PairEffect(self.first.effect.parameters + self.second.effect.parameters)
+
+    @property
+    def split(self):
+        """Return the number of the first one's parameters."""
+        return len(self.first.effect.parameters)
+
+    @property
+    def periodic(self):
+        """Return the numbers of the parameters that are angles."""
+        return self.first.periodic + tuple(number + self.split for number in self.second.periodic)
+
+    def parts(self, unit):
+        """Return [(candidate, its parameters)] of unit (parameter,)."""
+        return [(self.first, unit[: self.split]), (self.second, unit[self.split :])]
+
+    def physical(self, unit, scales):
+        """Return [{name: value in SI}] of both."""
+        return [candidate.physical(part, scales) for candidate, part in self.parts(unit)]
+
+    def variant(self, values, parameters):
+        """Return the configuration in plain values with both effects."""
+        return self.second.variant(self.first.variant(values, parameters[0]), parameters[1])
+
+    def measuring(self, parameters, names):
+        """Return None: no pair is of the measuring chain."""
+        return None
+
+
+def candidate_named(name):
+    """Return the Candidate or Pair of a name."""
+    parts = [Candidate(*part.split("@")) for part in name.split("+")]
+    return parts[0] if len(parts) == 1 else Pair(*parts)
+
+
+def elsewhere(candidate, values):
+    """Return the candidate at each single support, where it was at all of them."""
+    return [Candidate(candidate.effect_id, place) for place in candidate.effect.locations(values) if place != candidate.location] if candidate.location == "all" else []
+
+
+def linear_candidates(values, names, held, modes):
+    """Return the candidates that the lowest record tells of by itself; held: names of what the campaign holds beyond force and response; modes: those
+    that were seen, from 0."""
     found = []
     for effect in EFFECTS.values():
         if effect.linear and set(effect.needs) <= set(held):
             locations = places(names) if effect.measured else effect.locations(values)
+            if effect.id == "mode_frequency_error":
+                locations = [f"mode_{mode + 1}" for mode in modes]
+            if effect.id == "lateral_stinger":
+                locations = [location for location in locations if location != "along_z"]
             found += [Candidate(effect.id, location) for location in locations]
     return found
 
@@ -87,7 +161,10 @@ def local_candidates(values, held):
             if locations and locations[0] == "all":
                 locations = locations[:1]
             found += [Candidate(effect.id, location) for location in locations[: SCREENED.get(effect.id, len(locations))]]
-    return found
+    return found + UNSEEN_LINEAR
+
+
+UNSEEN_LINEAR = [Candidate("lateral_stinger", "along_x")]  # linear, but across the plane that a low level shows
 
 
 def not_testable(held):

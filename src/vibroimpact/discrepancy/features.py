@@ -5,6 +5,7 @@ correlations, the cube root of skewness, the logarithm of kurtosis.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
@@ -13,7 +14,7 @@ COARSE = 8  # bands of the coherences
 SEGMENT_S = 5.0
 LEAST_SEGMENTS = 7
 SAME_POINT_M = 1.0e-3
-BLEND_DB = 10.0  # powers that differ by more than this are compared in logarithm of the difference
+BLEND = {"power": 10.0, "coherence": 1.0, "co": 1.0, "quad": 1.0, "skewness": 0.5, "kurtosis": 0.5}  # larger differences are drawn in
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,11 @@ class FeatureLayout:
     kind: np.ndarray
     channel: np.ndarray
     band: np.ndarray
+
+    @cached_property
+    def blend(self):
+        """Return (feature,): where differences begin to be drawn in."""
+        return np.array([BLEND[kind] for kind in self.kind])
 
     def power(self, features):
         """Return (..., channel, band) dB from features (..., feature)."""
@@ -86,9 +92,14 @@ def record_features(layout, force, response):
     return np.concatenate(values)
 
 
-def compressed(difference):
-    """Differences of features with those beyond BLEND_DB drawn in: an exact match of what is far off is not asked for."""
-    return BLEND_DB * np.arcsinh(difference / BLEND_DB)
+def compressed(difference, layout):
+    """Differences (..., feature) of features with those beyond BLEND drawn in: an exact match of what is far off is not asked for."""
+    return layout.blend * np.arcsinh(difference / layout.blend)
+
+
+def uncompressed(values, layout):
+    """The inverse of compressed."""
+    return layout.blend * np.sinh(np.clip(values / layout.blend, -20.0, 20.0))
 
 
 def _sums(frequency, edges):

@@ -17,11 +17,11 @@ class Scatter:
     covariance: np.ndarray
 
 
-def scatter_of(features):
+def scatter_of(features, layout):
     """Return the Scatter of (seed, feature): covariance shrunk towards its diagonal (O. Ledoit, M. Wolf, J. Multivariate Anal. 88, 2004)."""
     count, size = features.shape
     mean = features.mean(axis=0)
-    centred = compressed(features - mean)
+    centred = compressed(features - mean, layout)
     variance = np.sum(centred**2, axis=0) / max(count - 1, 1)
     sd = np.sqrt(np.maximum(variance, 1.0e-12))
     unit = centred / sd
@@ -39,15 +39,29 @@ def feature_sd(layout):
     return np.array([priors.FEATURE_SD[kind] for kind in layout.kind])
 
 
-def log_likelihood(measured, mean, scatter, base_sd, seeds, law_change=None):
-    """Return (log likelihood, chi-square) of measured (feature,) under a mean (feature,) estimated from `seeds` runs.
+def free_directions(layout, driven):
+    """Return (direction, feature): common levels of channels driven (channel,) by the force and of those not, one sigma each."""
+    rows = []
+    for group in (True, False):
+        chosen = (layout.kind == "power") & (driven[layout.channel] == group)
+        if chosen.any():
+            rows.append(np.where(chosen, priors.LEVEL_SD[group], 0.0))
+    return np.array(rows).reshape(-1, len(layout.kind))
 
-    law_change (feature,): what the effect changes; LAW_SD of it is what two codes may differ by.
+
+def log_likelihood(residual, covariance, change=None, groups=None, more_variance=None):
+    """Return (log likelihood, chi-square) of a compressed residual (feature,), measured less simulated mean, by a multivariate t law.
+
+    covariance (feature, feature): of seeds and of what two codes differ by; change (feature,): what the effect changes, of which LAW_SD is uncertain feature
+    by feature and LAW_COMMON_SD in each group of features of groups (feature,); more_variance (feature,): of the mean.
     """
-    covariance = scatter.covariance * (1.0 + 1.0 / seeds) + np.diag(base_sd**2)
-    if law_change is not None:
-        covariance = covariance + np.diag((priors.LAW_SD * law_change) ** 2)
-    factor = linalg.cholesky(covariance, lower=True)
-    white = linalg.solve_triangular(factor, compressed(measured - mean), lower=True)
+    total, size = covariance, len(residual)
+    if change is not None:
+        common = [np.where(groups == group, priors.LAW_COMMON_SD * change, 0.0) for group in np.unique(groups)]
+        total = total + np.diag((priors.LAW_SD * change) ** 2) + np.transpose(common) @ np.array(common)
+    if more_variance is not None:
+        total = total + np.diag(more_variance)
+    factor = linalg.cholesky(total, lower=True, check_finite=False)
+    white = linalg.solve_triangular(factor, residual, lower=True, check_finite=False)
     chi_square = float(white @ white)
-    return -0.5 * chi_square - float(np.sum(np.log(np.diag(factor)))), chi_square
+    return -0.5 * (priors.TAIL + size) * np.log1p(chi_square / priors.TAIL) - float(np.sum(np.log(np.diag(factor)))), chi_square

@@ -28,10 +28,9 @@ def same_modes(model, modes, reference):
     out = []
     for mode in modes:
         wanted = reference.sensor_shapes[mode]
-        near = np.flatnonzero(np.abs(np.log(np.maximum(model.omega, 1.0e-3) / reference.omega[mode])) < 0.5)
-        shapes = model.sensor_shapes[near]
-        alike = (shapes @ wanted) ** 2 / np.maximum(np.sum(shapes**2, axis=1) * (wanted @ wanted), 1.0e-300)
-        score = alike * np.exp(-((np.log(model.omega[near] / reference.omega[mode]) / 0.15) ** 2))
-        score[np.isin(near, out)] = -1.0
-        out.append(int(near[np.argmax(score)]))
+        alike = (model.sensor_shapes @ wanted) ** 2 / np.maximum(np.sum(model.sensor_shapes**2, axis=1) * (wanted @ wanted), 1.0e-300)
+        distance = np.log(np.maximum(model.omega, 1.0e-3) / reference.omega[mode])
+        score = alike / (1.0 + (distance / 0.15) ** 2)
+        score[out] = -1.0
+        out.append(int(np.argmax(score)))
     return np.array(out)

@@ -1,27 +1,66 @@
-"""The null: what the bare model, corrected for nuisances, does on the campaign's forces from seed to seed."""
+"""The null: what the bare model, corrected for nuisances, does on the campaign's forces from seed to seed, and what two codes of it may differ by."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.discrepancy.likelihood import feature_sd, scatter_of
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.features import compressed
+from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, scatter_of
 
 
 @dataclass(frozen=True)
 class Null:
-    """features (record, seed, feature); scatter: a Scatter per record; base_sd (feature,)."""
+    """records (record,) of the campaign; features (record, seed, feature); mean (record, feature); covariance (record, feature, feature) of one
+    record about the mean, with what two codes differ by; groups (feature,): channels that the force drives, or does not."""
 
+    records: np.ndarray
     features: np.ndarray
-    scatter: list
-    base_sd: np.ndarray
+    mean: np.ndarray
+    covariance: np.ndarray
+    groups: np.ndarray
+
+    @property
+    def seed_variance(self):
+        """Return (record, feature): the variance of one seed."""
+        return self.features.var(axis=1, ddof=1)
+
+    @property
+    def seeds(self):
+        """Return the number of seeds."""
+        return self.features.shape[1]
 
 
 def null_runs(bench, records, seeds, first_seed=0):
     """Return (record, seed, feature) of the corrected bare model."""
+    return bench.features(bench.model(), bench.runs(records, seeds, first_seed)).reshape(len(records), seeds, -1)
+
+
+def unseen_damping_runs(bench, records, seeds, first_seed=0):
+    """Return (record, seed, feature) with other damping of the modes that the lowest record does not show."""
     model = bench.model()
+    unseen = np.ones(model.modes, bool)
+    if bench.linear_stage:
+        unseen[bench.measured_fit.modes] = False
+    model = replace(model, damping=np.where(unseen, priors.UNSEEN_DAMPING, 1.0) * model.damping)
     return bench.features(model, bench.runs(records, seeds, first_seed)).reshape(len(records), seeds, -1)
 
 
-def null_of(bench, features):
-    """Return the Null of (record, seed, feature)."""
-    return Null(features, [scatter_of(record) for record in features], feature_sd(bench.layout))
+def null_of(bench, records, features, unseen):
+    """Return the Null of (record, seed, feature) of the bare model and of `unseen`, the same with other damping of unseen modes."""
+    driven = driven_channels(bench)
+    common, own = free_directions(bench.layout, driven), np.diag(feature_sd(bench.layout) ** 2)
+    means, covariances = [], []
+    for nominal, other in zip(features, unseen, strict=True):
+        scatter = scatter_of(nominal, bench.layout)
+        direction = compressed(other.mean(axis=0) - scatter.mean, bench.layout)
+        free = np.vstack([common, direction])
+        means.append(scatter.mean)
+        covariances.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + free.T @ free)
+    return Null(np.asarray(records), features, np.array(means), np.array(covariances), driven[bench.layout.channel].astype(int))
+
+
+def driven_channels(bench):
+    """Return (channel,): whether the linear structure answers to the force there."""
+    size = np.abs(bench.bare.sensor_shapes.T * bench.bare.drive_shapes[:, 0]).max(axis=1)
+    return size > 1.0e-3 * size.max()

@@ -9,10 +9,29 @@ CORRECTION_LIMIT = 2.0  # sigma: a nuisance is not corrected beyond it, so that 
 NAMED_BEYOND = 2.0  # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their interval outside
 
 # What two codes of the same physics differ by in a feature, one sigma, beside the scatter of seeds.
-FEATURE_SD = {"power": 0.15, "coherence": 0.03, "co": 0.05, "quad": 0.05, "skewness": 0.05, "kurtosis": 0.04}
-LAW_SD = 0.10  # of an effect's own change of a feature: two codes never share a law to the letter
+FEATURE_SD = {"power": 0.15, "coherence": 0.03, "co": 0.05, "quad": 0.05, "skewness": 0.12, "kurtosis": 0.12}
+TAIL = 100.0  # degrees of freedom of the multivariate t law of a record's features: what no model explains shall not outvote the rest
+UNSEEN_DAMPING = 0.6  # factor of the damping of modes that the lowest record does not show, one sigma: what it changes is a direction left free
+LEVEL_SD = {True: 0.2, False: 0.6}  # dB common to all bands and channels that the force drives in the linear structure, and that it does not
+LAW_SD = 0.08  # of an effect's own change of a feature: two codes never share a law to the letter
+LAW_COMMON_SD = 0.15  # the same, common to all features of the channels that the force drives, or does not
 RESIDUAL_SD = 0.15  # of ln of the low-level residual over noise
 
 NULL_SEEDS = 16  # runs of every record without an effect
 FINAL_SEEDS = 8  # of the finalists and of the verification
 FINALISTS = 5
+
+LINEAR_RESIDUAL = 2.0  # of the lowest record's residual over noise, in a driven channel: above it the structure is not linear there
+LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
+GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside the threshold from null seeds
+PARAMETER_COST = 3.0  # of log likelihood per parameter beyond the first
+AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart
+ALIAS_AMBIGUOUS = 40.0  # the same for effects that the catalogue lists as aliases of the best
+NULL_QUANTILE = 0.98
+NO_EXCESS = 0.5  # floors: below it there is no gap to close
+EXPLAINED_Z = -4.5  # sigma of a record's log likelihood below that of seeds: the model still misses something
+FALSE_DISCOVERY = 0.05  # rate of cells of the map that are marked though nothing is there
+SIGNIFICANT = 0.01  # global p below which the bare model and the measurement disagree
+LINEAR_AMBIGUOUS, LINEAR_ALIAS = 3.0, 8.0  # of log likelihood on the lowest record: linear effects nearer than this to the best; aliases of the catalogue
+PARTLY = 0.5  # closed share above which an explanation that leaves something is still partly one
+LEAST_CLOSED = 0.15  # closed share below which a gain of likelihood is no explanation

@@ -1,6 +1,5 @@
 """All that a campaign and a model give to every job: signals, features of the measurement, the corrected model, and runs of any variant of it."""
 
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +12,7 @@ from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.features import feature_layout, record_features
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.linear_stage import LinearRecord, fit_modes
-from vibroimpact.discrepancy.linearised import linearised, same_modes
+from vibroimpact.discrepancy.linearised import linearised
 from vibroimpact.discrepancy.signals import signals_of
 from vibroimpact.kernels import LANES
 
@@ -31,12 +30,15 @@ class Workbench:
         self.layout = feature_layout(self.signals, campaign["channel_point"].values)
         self.schedule = schedule_of(campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate)
         self.forces = Forces(self.signals.force, self.schedule)
-        self.nuisance = None
+        self.nuisance, self.measuring = None, None
+        self.values = config.model_dump(mode="json")
 
-    @cached_property
-    def values(self):
-        """Return the configuration in plain values."""
-        return self.config.model_dump(mode="json")
+    def rebase(self, values):
+        """Take another configuration, in plain values, for the bare model: an effect that was found belongs to it from here on."""
+        self.values = values
+        self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
+        for name in ("measured_fit", "measured_reading", "low_response"):
+            self.__dict__.pop(name, None)
 
     @property
     def gains(self):
@@ -76,7 +78,7 @@ class Workbench:
 
     def model(self, values=None):
         """Return the attached model of a configuration in plain values, with the nuisance corrections."""
-        model = self.bare if values is None else attach(check_config(values, "variant of the model"), self.campaign)
+        model = self.bare if values is None or values is self.values else attach(check_config(values, "variant of the model"), self.campaign)
         return linear.corrected(model, self.nuisance)
 
     def touches(self, model=None):
@@ -85,7 +87,7 @@ class Workbench:
         points = model.contact_shapes.reshape(model.modes, -1)
         if not points.size:
             return False
-        record = self.linear_record
+        record, model = self.linear_record, linearised(model)
         transfer = 1.0 / (model.omega[:, None] ** 2 - record.omega**2 + 1j * model.damping[:, None] * record.omega + 1.0e-9)
         modal = np.fft.irfft((model.drive_shapes @ record.spectrum) * transfer, record.length // record.every, axis=-1) / record.every
         largest = np.abs(points.T @ modal).max(axis=-1).reshape(-1, 2).max(axis=1)
@@ -108,25 +110,20 @@ class Workbench:
         return np.array(out)
 
     def respond(self, model, runs, measuring=None):
-        """Return (run, channel, sample) responses with the gains of the nuisance; measuring: (gain (channel,), delay (channel,), force factor)."""
-        forces = self.forces
-        if measuring is not None and measuring.force_gain != 1.0:
-            forces = Forces(self.signals.force / measuring.force_gain, self.schedule)
+        """Return (run, channel, sample) responses with the gains of the nuisance and the faults of the measuring chain (Measuring)."""
+        chain = [fault for fault in (self.measuring, measuring) if fault is not None]
+        factor = np.prod([fault.force_gain for fault in chain])
+        forces = self.forces if factor == 1.0 else Forces(self.signals.force / factor, self.schedule)
         responses = simulate_records(model, self.schedule, forces, runs, self.signals.kinds)
         gain = self.gains
-        if measuring is not None:
-            gain = gain * measuring.gain
-            responses = measuring.delayed(responses, self.signals.rate)
+        for fault in chain:
+            gain = gain * fault.gain
+            responses = fault.delayed(responses, self.signals.rate)
         return responses * gain[:, None].astype(np.float32)
 
     def features(self, model, runs, measuring=None):
         """Return (run, feature): the features of runs with the measuring noise, each cut to the valid samples of its record."""
         return self.noisy_features(runs, self.respond(model, runs, measuring))
-
-    def linear_reading(self, values, modes):
-        """Return the Reading of a variant that stays linear below contact, at the modes of the bare model named."""
-        model = linearised(attach(check_config(values, "variant of the model"), self.campaign))
-        return replace(linear.reading_of_model(model, same_modes(model, modes, self.bare)), modes=modes)
 
     @cached_property
     def low_response(self):

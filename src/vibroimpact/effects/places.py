@@ -37,7 +37,9 @@ def with_supports(values, location, change):
 
 
 def with_element(values, name, point, direction, **laws):
-    """Return the configuration with a local element more between a point and the ground; laws: keys of an element."""
+    """Return the configuration with a local element more between a point and the ground; laws: keys of an element; unchanged where all are 0."""
+    if not any(laws.values()):
+        return values
     element = {"name": name, "point": point, "direction": list(direction), **laws}
     return values | {"elements": [*values["elements"], element]}
 

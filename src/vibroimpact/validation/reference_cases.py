@@ -118,10 +118,15 @@ def _elastic_scale(record):
     return 0.5 * abs(force[at]) * (depth[at] - 1e-3)
 
 
+def contact_time_error(record):
+    """Return the RMS error in s of R3's contact times."""
+    return float(np.sqrt(np.mean((contact_times(record)[: len(FORCED_CONTACT_S)] - FORCED_CONTACT_S) ** 2)))
+
+
 def contact_time_order(records):
     """Return (step (run,) s, error (run,) s, order): RMS error of R3's contact times against the step, and the slope of its logarithm."""
     steps = np.array([1.0 / record.attrs["steps_per_second"] for record in records])
-    errors = np.array([np.sqrt(np.mean((contact_times(record)[: len(FORCED_CONTACT_S)] - FORCED_CONTACT_S) ** 2)) for record in records])
+    errors = np.array([contact_time_error(record) for record in records])
     return steps, errors, float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 

@@ -1,0 +1,228 @@
+"""The last job: fresh seeds of the bare and the completed model, the maps before and after, verdict.json, ranking.csv, and the model that runs."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+import yaml
+
+from vibroimpact.discrepancy import jobs, mapping, misfit, priors, verdict
+from vibroimpact.discrepancy.candidates import Pair, candidate_named
+from vibroimpact.discrepancy.nuisance import Nuisance
+from vibroimpact.discrepancy.prepared import workbench
+from vibroimpact.records import read_text, write_record, write_table, write_text
+
+FRESH = 20000  # first seed of the verification: none of the calibration's
+BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
+
+
+def refused(folder, prepared, provenance):
+    """Write the verdict of a campaign that can not be tested."""
+    folder = Path(folder)
+    empty = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
+    content = {"verdict": "not_testable", "effects": [], "ambiguity_set": [], "ranking": [], "next_measurement": prepared.refusal, "broken_invariances": [],
+               "regions": [], "misfit": {"fit": empty, "holdout": empty}, "p_global_before": None, "p_global_after": None,
+               "checks": contract_checks(prepared.checks), "seconds": 0.0, "simulations": 0, "provenance": provenance}  # fmt: skip
+    write_text(json.dumps(content, indent=1), folder / "verdict.json")
+    write_table([], folder / "ranking.csv", columns=COLUMNS)
+    for name in ("map", "map_after"):
+        write_record(xr.Dataset(attrs={"title": "no map: the campaign can not be tested"}), folder / f"{name}.nc")
+    write_text("# not testable: the model is as it was\n", folder / "model_updated.yaml")
+
+
+COLUMNS = ("ids", "location", "fit_score", "heldout_score", "closed_fraction", "threshold", "tested")
+
+
+def contract_checks(rows):
+    """Return the rows of checks with the keys of the contract alone."""
+    return [{key: row.get(key) for key in ("check", "level", "record", "channel", "message")} for row in rows]
+
+
+def conclude(run, screening, final_files, provenance, quick=False):
+    """Decide, verify on fresh seeds, and write everything into the folder of a Run; screening: content of its file."""
+    if run.refused:
+        refused(run.folder, run.prepared, provenance)
+        return
+    folder, prepared, bench, null, paths = run.folder, run.prepared, run.bench, run.null, run.paths
+    found, totals = jobs.ordered(bench, null, jobs.known_finalists(final_files))
+    measured = bench.measured_features[null.records]
+    p_before, _ = mapping.global_p(bench, null, measured)
+    decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
+    seeds = 4 if quick else priors.FINAL_SEEDS
+    everything = np.arange(len(bench.signals.load))
+    before_bench = bench
+    if prepared.adopted is not None:
+        before_bench = workbench(run.config, run.campaign, replace(prepared, adopted=None, fit=None))
+    before, shown_before = runs_of(before_bench, before_bench.model(), everything, seeds)
+    if decision.chosen is None and prepared.adopted is None:
+        after, shown_after = before, shown_before
+    else:
+        model = bench.model()
+        if decision.chosen is not None:
+            chosen = decision.chosen
+            model = bench.model(chosen.candidate.variant(bench.values, chosen.candidate.physical(chosen.unit, prepared.scales)))
+        after, shown_after = runs_of(bench, model, everything, seeds)
+    chosen_cells = misfit.counted(bench)
+    splits = {"fit": bench.signals.fit(), "holdout": bench.signals.holdout()}
+    gaps = {name: misfit.misfit_of(bench, records, chosen_cells, before.mean(axis=1), after.mean(axis=1), after) if len(records) else
+            {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
+    difference, z, _ = mapping.z_of(before_bench, bench.measured_features, before)
+    after_null = replace(null, features=after[null.records], mean=after[null.records].mean(axis=1))
+    p_after = p_before if after is before else mapping.global_p(bench, after_null, measured)[0]
+    ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured)
+    content = {
+        "verdict": decision.verdict,
+        "effects": verdict.effects_of(prepared, decision, prepared.scales) if decision.verdict in ("named", "partly_explained") else [],
+        "ambiguity_set": decision.ambiguity if decision.verdict in ("named", "ambiguous", "partly_explained") else [],
+        "ranking": [{"ids": row["ids"].split("+"), "heldout_score": row["heldout_score"], "closed_fraction": row["closed_fraction"], "location": row["location"]}
+                    for row in ranking],
+        "next_measurement": verdict.next_measurement(decision.ambiguity),
+        "broken_invariances": verdict.broken_invariances(bench, null, prepared),
+        "regions": mapping.regions(before_bench, difference, z, chosen_cells),
+        "misfit": gaps, "p_global_before": p_before, "p_global_after": p_after,
+        "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
+        "seconds": elapsed(folder), "simulations": simulations(null, paths, found, before, after),
+        "not_testable": prepared.not_testable, "linear": prepared.linear[:SHOWN], "explained_z": decision.explained.tolist(),
+        "most_probable": verdict.effects_of(prepared, decision, prepared.scales), "provenance": provenance,
+    }  # fmt: skip
+    write_text(json.dumps(plain(content), indent=1), folder / "verdict.json")
+    write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
+    write_record(mapping.map_dataset(before_bench, before, shown_before), folder / "map.nc")
+    write_record(mapping.map_dataset(bench, after, shown_after), folder / "map_after.nc")
+    write_candidates(found, prepared, totals, folder / "candidates")
+    write_text(updated_model(bench, decision, prepared), folder / "model_updated.yaml")
+
+
+SHOWN = 8
+
+
+def elapsed(folder):
+    """Return the seconds that the jobs of a folder took so far, summed over them, by their benchmark files."""
+    total = 0.0
+    for file in (folder / "benchmarks").glob("*.tsv"):
+        rows = read_text(file).splitlines()
+        if len(rows) > 1 and file.stem != "discrepancy_report":
+            total += float(rows[1].split("\t")[0])
+    return total
+
+
+def runs_of(bench, model, records, seeds):
+    """Return (features (record, seed, feature), noisy responses (record, shown seed, channel, sample)) of fresh seeds."""
+    features, shown = [], []
+    for record in records:
+        runs = bench.runs([record], seeds, FRESH)
+        responses = bench.respond(model, runs)
+        features.append(bench.noisy_features(runs, responses))
+        noise = np.random.default_rng([11, record]).standard_normal(responses[: mapping.SHOWN_SEEDS].shape, dtype=np.float32)
+        noisy = responses[: mapping.SHOWN_SEEDS] + noise * bench.signals.noise[:, None].astype(np.float32)
+        shown.append(np.where(np.isfinite(bench.signals.force[record][0]), noisy, np.nan))
+    return np.array(features), np.array(shown)
+
+
+def ranking_rows(bench, null, prepared, found, totals, screening, measured):
+    """Return the rows of ranking.csv: what was simulated directly, best first, then what was screened, then linear effects that were not adopted."""
+    rows, seen = [], set()
+    prefix = [] if prepared.adopted is None else [candidate_named(prepared.adopted["name"]).effect_id]
+    for row in found:
+        ids = [*prefix, *row.candidate.effect_id.split("+")]
+        gain, on_fit, held_out = totals[row.candidate.name]
+        location = "+".join(part.split("@")[1] for part in row.candidate.name.split("+"))
+        rows.append({"ids": "+".join(ids), "location": location, "fit_score": on_fit, "heldout_score": held_out,
+                     "closed_fraction": float(verdict.closure(bench, null, row, measured)), "threshold": screening["threshold"], "tested": True, "gain": gain})  # fmt: skip
+        seen.add(row.candidate.name)
+    if prefix:
+        only = {"ids": prefix[0], "location": prepared.adopted["name"].split("@")[1], "fit_score": prepared.adopted["gain"], "heldout_score": 0.0,
+                "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True, "gain": screening["threshold"]}  # fmt: skip
+        rows.append(only)
+    rows.sort(key=lambda row: -row["gain"])
+    for row in screening["ranked"]:
+        if row["name"] not in seen:
+            rows.append({"ids": row["name"].split("@")[0], "location": row["name"].split("@")[1], "fit_score": row["score"], "heldout_score": None,
+                         "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
+    for row in prepared.linear[:SHOWN]:
+        if prepared.adopted is None or row["name"] != prepared.adopted["name"]:
+            rows.append({"ids": row["name"].split("@")[0], "location": row["name"].split("@")[1], "fit_score": row["gain"], "heldout_score": None,
+                         "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True})  # fmt: skip
+    return [{key: row[key] for key in COLUMNS} for row in rows]
+
+
+def bounds(decision, prepared):
+    """Return rows of checks for estimates at a bound of their range."""
+    if decision.chosen is None:
+        return []
+    parameters = decision.chosen.candidate.effect.parameters
+    return [{"check": "bounds", "level": "warn", "record": None, "channel": None, "message": f"{parameter.name} of {decision.chosen.candidate.name} is at a bound of its range."}
+            for value, parameter in zip(decision.chosen.unit, parameters, strict=True) if min(value, 1.0 - value) < BOUND and parameter.name != "angle"]  # fmt: skip
+
+
+def write_candidates(found, prepared, totals, folder):
+    """Write candidates/<name>.json: parameters with their intervals, and the score along each of them."""
+    for row in found:
+        parts = [(row.candidate.first, 0), (row.candidate.second, row.candidate.split)] if isinstance(row.candidate, Pair) else [(row.candidate, 0)]
+        profile, parameters = [], {}
+        for candidate, offset in parts:
+            for number, parameter in enumerate(candidate.effect.parameters):
+                values, score = row.profile[offset + number]
+                unit = np.array(row.unit[offset : offset + len(candidate.effect.parameters)])
+                sizes = []
+                for value in (*values, row.unit[offset + number], *row.interval[offset + number]):
+                    moved = unit.copy()
+                    moved[number] = value
+                    sizes.append(candidate.physical(moved, prepared.scales)[parameter.name])
+                name = parameter.name if len(parts) == 1 else f"{candidate.effect_id}.{parameter.name}"
+                profile.append({"parameter": name, "unit": parameter.unit, "values": sizes[:-3], "score": score.tolist()})
+                parameters[name] = {"value": sizes[-3], "unit": parameter.unit, "low": min(sizes[-2:]), "high": max(sizes[-2:])}
+        content = {"ids": row.candidate.effect_id.split("+"), "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
+                   "parameters": parameters}  # fmt: skip
+        write_text(json.dumps(plain(content), indent=1), folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json")
+
+
+def updated_model(bench, decision, prepared):
+    """Return the text of the completed configuration: effects, corrected modes; gains of channels as a comment, for they are not of the model."""
+    values = bench.values
+    if decision.chosen is not None:
+        values = decision.chosen.candidate.variant(values, decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales))
+    if bench.nuisance is not None:
+        values = with_nuisance(values, bench.nuisance, bench.bare)
+    lines = ["# The model with what the campaign showed to be missing. Corrections of modes are in mode_frequency_factors and damping."]
+    if bench.nuisance is not None:
+        gains = ", ".join(f"{name} {gain:.4f}" for name, gain in zip(bench.signals.names, bench.nuisance.gain, strict=True))
+        lines.append(f"# Gains of the channels, measured over true: {gains}")
+    values = values | {"study": f"{values['study']}_updated"}
+    return "\n".join([*lines, yaml.safe_dump(plain(values), sort_keys=False, width=140)])
+
+
+def with_nuisance(values, nuisance: Nuisance, model):
+    """Return the configuration in plain values with the corrected frequencies and damping ratios of its first modes."""
+    count = int(nuisance.modes.max(initial=-1)) + 1
+    factors = [*values["mode_frequency_factors"], *[1.0] * max(0, count - len(values["mode_frequency_factors"]))]
+    damping = dict(values["damping"])
+    for mode, factor in zip(nuisance.modes, nuisance.frequency, strict=True):
+        factors[mode] *= float(factor)
+    if damping["kind"] == "modal":
+        ratios = [*damping["first_ratios"], *[damping["other_ratio"]] * max(0, count - len(damping["first_ratios"]))]
+        for mode, factor in zip(nuisance.modes, nuisance.damping, strict=True):
+            ratios[mode] *= float(factor)
+        damping["first_ratios"] = ratios
+    return values | {"mode_frequency_factors": factors, "damping": damping}
+
+
+def simulations(null, paths, found, before, after):
+    """Return how many records were simulated."""
+    records = len(null.mean)
+    count = records * (null.seeds + jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (1 if after is before else 2)
+    count += sum(int(path.seeds.sum()) * records for path in paths.values())
+    return count + sum(int(row.path.seeds.sum()) * records + row.features.shape[1] * records for row in found)
+
+
+def plain(value):
+    """Return nested values without numpy types and without NaN."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,0 +1,36 @@
+"""What the workflow must know of a discrepancy run before its jobs exist: their number and the names of candidates."""
+
+import hashlib
+import json
+from pathlib import Path
+
+from vibroimpact.discrepancy.candidates import local_candidates
+
+QUICK_S = 16.0  # records are cut to it where the run must be quick
+NULL_PARTS = 4  # jobs; each runs its share of the seeds with and without the damping of unseen modes
+
+
+def local_names(values):
+    """Return the names of the candidates that are screened by simulation, for a configuration in plain values."""
+    return [candidate.name for candidate in local_candidates(values, ())]
+
+
+def finalist_names(path):
+    """Return the names of the finalists that a screening file names."""
+    return list(json.loads(Path(path).read_text(encoding="utf-8"))["finalists"])
+
+
+def pair_names(path):
+    """Return the names of the pairs that a file of pairs names."""
+    return list(json.loads(Path(path).read_text(encoding="utf-8"))["pairs"])
+
+
+def frozen_seed(path):
+    """Return the seed of an acceptance draw: of the content of the file of thresholds and priors, so that the draw can not precede the freeze."""
+    return int(hashlib.sha256(Path(path).read_bytes()).hexdigest()[:8], 16)
+
+
+def shard_of(count, shard):
+    """Return the numbers of the campaigns of a shard "i/n" of the first `count`: every n-th from the i-th on."""
+    first, every = (int(part) for part in shard.split("/"))
+    return range(first, count, every)

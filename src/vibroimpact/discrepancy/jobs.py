@@ -1,0 +1,113 @@
+"""The jobs of a discrepancy run, each from files to a file: null parts, candidates, finalists, pairs."""
+
+import json
+
+import numpy as np
+
+from vibroimpact.discrepancy import naming, priors, second, store
+from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere
+from vibroimpact.discrepancy.dag import NULL_PARTS
+from vibroimpact.discrepancy.finalists import refine, started
+from vibroimpact.discrepancy.null import null_runs, unseen_damping_runs
+from vibroimpact.discrepancy.screening import simulate_path
+from vibroimpact.records import read_text, write_text
+
+UNSEEN_SEEDS = 8
+
+
+def contact_records(bench):
+    """Return (record,): those whose features are compared; the lowest one is read by its modes where it can be."""
+    records = np.arange(len(bench.signals.load))
+    return records[records != bench.signals.lowest] if bench.linear_stage else records
+
+
+def null_part(bench, part, path):
+    """Simulate a part of the null's seeds and of those with other damping of unseen modes."""
+    records, each, unseen = contact_records(bench), priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS // NULL_PARTS
+    store.save(path, records=records, features=null_runs(bench, records, each, each * part),
+               unseen=unseen_damping_runs(bench, records, unseen, 900 + unseen * part))  # fmt: skip
+
+
+def candidate_path(bench, candidate, sizes, path, quick=False):
+    """Simulate a candidate at the points of its design."""
+    found = simulate_path(bench, candidate, candidate.design(quick), sizes, contact_records(bench))
+    store.save_empty(path) if found is None else store.save(path, **store.path_arrays(found))
+
+
+def known_paths(files, null, bank_null=None):
+    """Return {Candidate: Path} of {candidate name: file}; those of another campaign's bank are moved by the difference of the two nulls."""
+    out = {}
+    for name, file in files.items():
+        arrays = store.load(file)
+        if arrays is not None:
+            path = store.path_of(arrays)
+            if bank_null is not None:
+                path.features = path.features - bank_null.mean + null.mean
+            out[candidate_named(name)] = path
+    return out
+
+
+def screening(run, path, quick=False):
+    """Rank all candidates, find the threshold from null seeds, and write who is to be simulated directly: {finalists: {name: unit}, ...}."""
+    if run.refused:
+        write_text(json.dumps({"finalists": {}, "threshold": None, "null_gains": [], "ranked": []}), path)
+        return
+    bench, null, paths = run.bench, run.null, run.paths
+    measured = bench.measured_features[null.records]
+    ranked = naming.screen(bench, null, measured, paths)
+    chosen = naming.finalists(ranked, QUICK_FINALISTS if quick else priors.FINALISTS)
+    starts = {row.candidate.name: row.unit.tolist() for row in chosen}
+    gains = naming.null_gains(bench, null, paths)
+    write_text(json.dumps({"finalists": starts, "threshold": naming.threshold(gains), "null_gains": gains.tolist(),
+                           "ranked": [{"name": row.candidate.name, "score": row.score, "unit": row.unit.tolist()} for row in ranked]}, indent=1), path)  # fmt: skip
+
+
+QUICK_FINALISTS = 3
+
+
+def finalist(run, name, unit, path, quick=False):
+    """Refine one finalist by direct simulation, or a pair from its start."""
+    bench, null, paths, sizes = run.bench, run.null, run.paths, run.prepared.scales
+    candidate, measured = candidate_named(name), bench.measured_features[null.records]
+    known = paths.get(candidate) if isinstance(candidate, Candidate) else None
+    if known is None:
+        known = started(bench, null, candidate, np.array(unit), sizes)
+    if known is None:
+        store.save_empty(path)
+        return
+    found = refine(bench, null, measured, candidate, known, sizes, naming.fit_mask(bench, null), rounds=1 if quick else 2)
+    store.save(path, **store.finalist_arrays(found))
+
+
+def known_finalists(files):
+    """Return [Finalist] of files."""
+    arrays = [store.load(file) for file in files]
+    return [store.finalist_of(row) for row in arrays if row is not None]
+
+
+def ordered(bench, null, found):
+    """Return ([Finalist] best first, totals {name: (all, fit, held-out)})."""
+    totals = naming.totals(bench, null, bench.measured_features[null.records], found)
+    return sorted(found, key=lambda row: -totals[row.candidate.name][0]), totals
+
+
+def pairs(run, files, screened, path, quick=False):
+    """Write the pairs to simulate, {pairs: {name: unit}}: none where one effect explains the measurement, or none is found at all."""
+    out, found, threshold = {}, known_finalists(files), screened["threshold"]
+    if quick or not found:
+        write_text(json.dumps({"pairs": out}), path)
+        return
+    bench, null, paths = run.bench, run.null, run.paths
+    found, totals = ordered(bench, null, found)
+    if totals[found[0].candidate.name][0] > threshold:
+        measured = bench.measured_features[null.records]
+        if second.needed(naming.explained(bench, null, found[0], measured)):
+            # an effect at one support alone comes before a second effect
+            out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
+            out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}
+    write_text(json.dumps({"pairs": out}, indent=1), path)
+
+
+def read_json(path):
+    """Return the content of a JSON file."""
+    return json.loads(read_text(path))

@@ -1,0 +1,111 @@
+"""The discrepancy map: measured against simulated band powers per record, channel and band, with z from seeds, clusters of bands, and a global p."""
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.likelihood import log_likelihood
+from vibroimpact.discrepancy.features import compressed
+
+SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
+SPECTRUM_HZ = 0.4  # resolution of the spectra shown
+SHOWN_SEEDS = 4
+
+
+def z_of(bench, measured, seeds):
+    """Return (D, z, sd), each (record, channel, band): measured (record, feature) against seeds (record, seed, feature)."""
+    layout = bench.layout
+    power = layout.power(seeds)
+    mean = power.mean(axis=1)
+    variance = np.apply_along_axis(lambda row: np.convolve(np.pad(row, 1, mode="edge"), SMOOTH, mode="valid"), -1, power.var(axis=1, ddof=1))
+    sd = np.sqrt(variance * (1.0 + 1.0 / power.shape[1]) + priors.FEATURE_SD["power"] ** 2)
+    difference = layout.power(measured) - mean
+    return difference, difference / sd, sd
+
+
+def global_p(bench, null, measured):
+    """Return (p, scores (record,)): how probable records as far off as the measured ones are among seeds of the model, by simulation.
+
+    Each seed in turn plays the measurement against the covariance of all; the sum of the records' chi-squares is compared with a gamma law
+    of the same mean and variance.
+    """
+    residual = compressed(measured - null.mean, bench.layout)
+    scores = np.array([log_likelihood(residual[record], null.covariance[record])[1] for record in range(len(residual))])
+    seeds = np.array([[log_likelihood(row, null.covariance[record])[1] for row in compressed(null.features[record] - null.mean[record], bench.layout)]
+                      for record in range(len(residual))])  # fmt: skip
+    count = null.seeds
+    total = seeds.sum(axis=0) * ((count + 1.0) / (count - 1.0))  # a seed is part of its own mean
+    mean, variance = total.mean(), max(total.var(ddof=1), 2.0 * total.mean())
+    return float(stats.gamma.sf(scores.sum(), mean**2 / variance, scale=variance / mean)), scores
+
+
+def significant(z, chosen):
+    """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate (Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995)."""
+    p = 2.0 * stats.t.sf(np.abs(z), priors.NULL_SEEDS - 1)
+    inside = np.sort(p[chosen])
+    passed = np.flatnonzero(inside <= priors.FALSE_DISCOVERY * (1 + np.arange(inside.size)) / max(inside.size, 1))
+    return chosen & (p <= inside[passed[-1]]) if passed.size else np.zeros_like(chosen)
+
+
+def regions(bench, difference, z, chosen):
+    """Return the clusters of significant neighbouring bands, as verdict.json has them, the strongest first."""
+    marked, edges, signals = significant(z, chosen), bench.layout.edges, bench.signals
+    found = []
+    for record, channel in np.ndindex(marked.shape[:2]):
+        bands = np.flatnonzero(marked[record, channel])
+        for group in np.split(bands, np.flatnonzero(np.diff(bands) > 1) + 1) if bands.size else []:
+            sign = np.sign(difference[record, channel, group])
+            for part in np.split(group, np.flatnonzero(np.diff(sign) != 0) + 1):
+                peak = part[np.argmax(np.abs(z[record, channel, part]))]
+                found.append({"band_Hz": [float(edges[part[0]]), float(edges[part[-1] + 1])], "load_rms_N": float(signals.load[record]),
+                              "gap_m": None if np.isnan(signals.gap[record]) else float(signals.gap[record]), "channel": signals.names[channel],
+                              "record": signals.record_names[record], "discrepancy_dB": float(difference[record, channel, part].mean()),
+                              "z": float(z[record, channel, peak]), "nearest_modes_Hz": nearest(bench, edges[part[0]], edges[part[-1] + 1])})  # fmt: skip
+    return sorted(found, key=lambda row: -abs(row["z"]))
+
+
+def nearest(bench, low, high):
+    """Return [Hz] of the modes in a band, or the one nearest to its middle."""
+    frequencies = bench.bare.frequencies[bench.bare.frequencies < 3.0 * bench.layout.edges[-1]]
+    inside = frequencies[(frequencies >= low) & (frequencies <= high)]
+    middle = np.sqrt(low * high)
+    return [round(float(value), 2) for value in (inside if len(inside) else [frequencies[np.argmin(np.abs(frequencies - middle))]])]
+
+
+def map_dataset(bench, seeds, responses):
+    """Return the map as a Dataset: seeds (record, seed, feature); responses (record, shown seed, channel, sample) of the same model with noise."""
+    from vibroimpact.discrepancy.misfit import counted
+
+    difference, z, sd = z_of(bench, bench.measured_features, seeds)
+    layout, signals = bench.layout, bench.signals
+    cell, line = ("record", "channel", "band"), ("record", "channel", "frequency")
+    frequency, measured = _spectra(signals, signals.response)
+    shown = np.stack([_spectra(signals, responses[:, seed])[1] for seed in range(responses.shape[1])])
+    data = {
+        "measured_dB": (cell, layout.power(bench.measured_features)), "simulated_dB": (cell, layout.power(seeds).mean(axis=1)), "seed_sd_dB": (cell, sd),
+        "D": (cell, difference), "z": (cell, z), "band_Hz": (("band", "edge"), np.stack([layout.edges[:-1], layout.edges[1:]], axis=1)),
+        "counted": (cell, counted(bench).astype(np.int8)), "record_name": ("record", np.array(signals.record_names, dtype=object)),
+        "load_rms": ("record", signals.load), "gap": ("record", signals.gap), "split": ("record", signals.split.astype(object)),
+        "channel_name": ("channel", np.array(signals.names, dtype=object)), "psd_frequency": ("frequency", frequency),
+        "psd_measured": (line, measured), "psd_simulated_mean": (line, shown.mean(axis=0)),
+        "psd_simulated_low": (line, shown.min(axis=0)), "psd_simulated_high": (line, shown.max(axis=0)),
+    }  # fmt: skip
+    return xr.Dataset(data)
+
+
+def _spectra(signals, response):
+    """Return (frequency Hz, PSD (record, channel, frequency)) up to twice the excited band, averaged over Hann segments of 1/SPECTRUM_HZ."""
+    length = round(signals.rate / SPECTRUM_HZ)
+    window = np.hanning(length)
+    frequency = np.fft.rfftfreq(length, 1.0 / signals.rate)
+    kept = (frequency > 0.0) & (frequency <= min(2.0 * signals.band_Hz[1], 0.4 * signals.rate))
+    out = np.zeros((*response.shape[:2], kept.sum()))
+    for record in range(len(response)):
+        valid = response[record][:, np.isfinite(response[record]).all(axis=0)]
+        starts = range(0, max(valid.shape[-1] - length, 0) + 1, length // 2)
+        for first in starts:
+            piece = valid[:, first : first + length]
+            out[record] += np.abs(np.fft.rfft(piece * window[: piece.shape[-1]], length, axis=-1)[:, kept]) ** 2
+        out[record] *= 2.0 / (signals.rate * np.sum(window**2) * len(starts))
+    return frequency[kept], out

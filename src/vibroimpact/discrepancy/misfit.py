@@ -1,0 +1,58 @@
+"""The misfit between measurement and simulation, its floor, and how much of it an effect closes."""
+
+import numpy as np
+
+from vibroimpact.discrepancy import priors
+
+ABOVE_NOISE_DB = 6.0
+
+
+def counted(bench):
+    """Return (record, channel, band) bool: where the measurement is 6 dB above the noise."""
+    layout = bench.layout
+    power = layout.power(bench.measured_features)
+    width = np.diff(layout.edges)
+    noise = 10.0 * np.log10(np.maximum(bench.signals.noise[:, None] ** 2 * width / (0.5 * layout.rate), 1.0e-300))
+    return power > noise + ABOVE_NOISE_DB
+
+
+def level_distance(difference, chosen):
+    """Return the RMS in dB of (record, channel, band) over the chosen; 0 where none is."""
+    return float(np.sqrt(np.mean(difference[chosen] ** 2))) if chosen.any() else 0.0
+
+
+def excess(distance, floor):
+    """Return what a distance in dB has beyond its floor."""
+    return float(np.sqrt(max(0.0, distance**2 - floor**2)))
+
+
+def closed_fraction(before, after, floor):
+    """Return 1 - excess after / excess before; None where there was next to nothing before."""
+    gap = excess(before, floor)
+    return None if gap < priors.NO_EXCESS * floor else 1.0 - excess(after, floor) / gap
+
+
+def floor_of(power, chosen):
+    """Return the distance in dB between two seeds of a model, RMS over all pairs: power (record, seed, channel, band)."""
+    total, count = 0.0, 0
+    for one in range(power.shape[1]):
+        for other in range(one + 1, power.shape[1]):
+            total += level_distance(power[:, one] - power[:, other], chosen) ** 2
+            count += 1
+    return float(np.sqrt(total / max(count, 1)))
+
+
+def misfit_of(bench, records, chosen, before, after, completed):
+    """Return {before_dB, after_dB, floor_dB, closed_fraction} on some records.
+
+    before, after: (record, feature) means of all records; completed: (record, seed, feature) of the completed model. As the mean of several
+    seeds scatters less than one seed, the distance of measurement to mean is brought to that of two single runs.
+    """
+    layout = bench.layout
+    measured = layout.power(bench.measured_features)[records]
+    inside = chosen[records]
+    seeds = completed.shape[1]
+    floor = floor_of(layout.power(completed)[records], inside)
+    own = floor**2 / 2.0 * (1.0 - 1.0 / seeds)
+    distances = [float(np.hypot(level_distance(measured - layout.power(mean)[records], inside), np.sqrt(own))) for mean in (before, after)]
+    return {"before_dB": distances[0], "after_dB": distances[1], "floor_dB": floor, "closed_fraction": closed_fraction(*distances, floor)}

@@ -1,0 +1,119 @@
+"""Who may be the missing effect: screening scores, the threshold from null seeds, finalists, and whom the evidence can not tell apart."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.features import compressed
+from vibroimpact.discrepancy.likelihood import log_likelihood
+from vibroimpact.discrepancy.screening import calibrate, direct_scores, linear_score, null_scores
+
+
+@dataclass(frozen=True)
+class Screened:
+    """A candidate after screening: score, gain of log likelihood over the null, by the better of emulation and its simulated points; unit there."""
+
+    candidate: object
+    score: float
+    unit: np.ndarray
+
+
+def fit_mask(bench, null):
+    """Return (null record,) bool: the records that parameters are fitted to."""
+    return np.isin(null.records, bench.signals.fit())
+
+
+def screen(bench, null, measured, paths):
+    """Return [Screened], best first. paths {Candidate: Path}; measured (record, feature) of the null's records."""
+    start, low = null_scores(bench, null, measured), linear_score(bench, None)
+    out = []
+    for candidate, path in paths.items():
+        lows = np.array([linear_score(bench, reading) for reading in path.readings]) - low
+        points = np.array([direct_scores(bench, null, measured, mean).sum() for mean in path.features]) - start.sum() + lows
+        found = calibrate(bench, null, measured, candidate, path, fit_mask(bench, null))
+        emulated = found.scores.sum() - start.sum() + found.low - low
+        best = int(np.argmax(points))
+        unit = found.unit if emulated > points[best] else path.parameters[best]
+        out.append(Screened(candidate, float(max(points[best], emulated)) - cost(candidate), unit))
+    return sorted(out, key=lambda row: -row.score)
+
+
+def cost(candidate):
+    """Return what a candidate's parameters beyond the first cost, in log likelihood."""
+    return priors.PARAMETER_COST * (len(candidate.effect.parameters) - 1)
+
+
+def null_gains(bench, null, paths):
+    """Return (seed,): the best gain over all candidates' simulated points where each null seed in turn plays the measurement."""
+    residual = np.array([compressed(null.features[record] - null.mean[record], bench.layout) for record in range(len(null.mean))])
+    start = np.array([[log_likelihood(row, null.covariance[record])[0] for row in residual[record]] for record in range(len(residual))]).sum(axis=0)
+    best = np.full(null.seeds, -np.inf)
+    low = linear_score(bench, None)
+    for candidate, path in paths.items():
+        for mean, reading in zip(path.features, path.readings, strict=True):
+            if linear_score(bench, reading) < low - 10.0:
+                continue
+            scores = np.array([direct_scores(bench, null, null.features[:, seed], mean).sum() for seed in range(0, null.seeds, 2)])
+            best[::2] = np.maximum(best[::2], scores - start[::2] - cost(candidate))
+    return best[np.isfinite(best)]
+
+
+def threshold(gains):
+    """Return the gain that a name must have: the quantile of null gains by a normal law, never less than priors.GAIN."""
+    spread = gains.std(ddof=1) if len(gains) > 1 else 0.0
+    return float(max(priors.GAIN, gains.mean() + 2.054 * spread)) if len(gains) else priors.GAIN
+
+
+def finalists(screened, count=priors.FINALISTS):
+    """Return the candidates to simulate directly: the best of each effect, and the aliases of the first that came near."""
+    chosen = [row for row in screened if row.score > 0.0]
+    chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
+    if chosen:
+        first = chosen[0].candidate.effect
+        chosen += [row for row in screened if row.candidate.effect_id in first.aliases and row not in chosen and row.score > FAR * chosen[0].score][:2]
+    return chosen
+
+
+LEAST_FINALISTS, NEAR, FAR = 3, 0.5, 0.2  # shares of the best screening score: nearer ones are all simulated, aliases also when farther
+
+
+def totals(bench, null, measured, found):
+    """Return {name: (gain in all, gain on fit records and the lowest, gain on held-out records)} of Finalists over the null."""
+    start, low, fit = null_scores(bench, null, measured), linear_score(bench, None), fit_mask(bench, null)
+    out = {}
+    for row in found:
+        gain = row.scores - start
+        on_fit = float(gain[fit].sum() + row.low - low) - cost(row.candidate)
+        out[row.candidate.name] = (on_fit + float(gain[~fit].sum()), on_fit, float(gain[~fit].sum()))
+    return out
+
+
+def explained(bench, null, finalist, measured):
+    """Return (record,) z: a record's log likelihood under a finalist against that of the finalist's own seeds, in sigmas; far below 0: something is missing."""
+    mean, out = finalist.mean, []
+    change = compressed(mean - null.mean, bench.layout)
+    for record in range(len(mean)):
+        residual = compressed(measured[record] - mean[record], bench.layout)
+        own = [log_likelihood(row, null.covariance[record], change[record], null.groups)[0]
+               for row in compressed(finalist.features[record] - mean[record], bench.layout)]  # fmt: skip
+        score = log_likelihood(residual, null.covariance[record], change[record], null.groups)[0]
+        out.append((score - np.mean(own)) / max(np.std(own, ddof=1), LEAST_SD))
+    return np.array(out)
+
+
+LEAST_SD = 8.0  # of a record's log likelihood from seed to seed
+
+
+def not_told_apart(total, best):
+    """Return the names whose total gain is too near the best's: within AMBIGUOUS, or ALIAS_AMBIGUOUS for an alias of the catalogue."""
+    from vibroimpact.discrepancy.candidates import candidate_named
+
+    first, out = candidate_named(best), []
+    for name, (gain, _, _) in total.items():
+        other = candidate_named(name)
+        alias = other.effect_id in first.effect.aliases or first.effect_id in other.effect.aliases
+        near = priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS
+        if other.effect_id != first.effect_id and gain > total[best][0] - near:
+            out.append(name)
+    return out

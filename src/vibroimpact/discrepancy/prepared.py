@@ -1,0 +1,200 @@
+"""The first job of a discrepancy run: checks, the linear stage, the linear effect that is adopted before contact is looked at."""
+
+import json
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from vibroimpact.campaign import CampaignError, read_campaign
+from vibroimpact.campaign_checks import check_file, refused, usable_signals
+from vibroimpact.campaign_model_checks import compare_with_model
+from vibroimpact.campaign_signals import measured_signals, transfer
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.candidates import candidate_named, linear_candidates, not_testable
+from vibroimpact.discrepancy.linear_stage import ModalFit
+from vibroimpact.discrepancy.linear_naming import calibrate, reading_under, table_of
+from vibroimpact.discrepancy.measuring import Measuring
+from vibroimpact.discrepancy.null import driven_channels
+from vibroimpact.discrepancy.scales import scales
+from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
+from vibroimpact.records import read_text, write_text
+
+
+@dataclass
+class Prepared:
+    """What the first job hands on, in plain values.
+
+    checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
+    {name, unit, gain, interval} of the linear effect that belongs to the model from here on; linear: the same of every linear candidate, best
+    first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record, and its
+    number; residual (channel,) over noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; fit: the ModalFit of the lowest record on
+    the model with what was adopted.
+    """
+
+    checks: list
+    refusal: str | None = None
+    scales: dict = field(default_factory=dict)
+    adopted: dict | None = None
+    linear: list = field(default_factory=list)
+    linear_stage: bool = False
+    nonlinear_low: bool = False
+    chi_square: float = 0.0
+    residual: list = field(default_factory=list)
+    delays: dict = field(default_factory=dict)
+    not_testable: list = field(default_factory=list)
+    longest_s: float | None = None
+    fit: dict | None = None
+
+    def write(self, path):
+        """Write as JSON."""
+        write_text(json.dumps(asdict(self), indent=1), path)
+
+    @classmethod
+    def read(cls, path):
+        """Return the Prepared of a file."""
+        return cls(**json.loads(read_text(path)))
+
+
+def usable_campaign(path, checks):
+    """Return (campaign Dataset, sentence or None): without the channels and records that the checks leave out, and why that is too little."""
+    if refused(checks):
+        return None, next(row["message"] for row in checks if row["level"] == "refuse")
+    try:
+        campaign = read_campaign(path)
+    except (CampaignError, ValueError) as error:
+        return None, str(error)
+    force, response = usable_signals(campaign, checks)
+    records = np.flatnonzero(force)
+    channels = np.flatnonzero(response[records].all(axis=0)) if len(records) else []
+    contradicted = {row["channel"] for row in checks if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None}
+    channels = np.array([channel for channel in channels if str(campaign["channel_name"].values[channel]) not in contradicted], int)
+    if len(records) < 2 or len(channels) < 1:
+        # a channel that fails in one record alone costs the record where that leaves more to look at
+        records = np.flatnonzero(force & response.all(axis=1))
+        channels = np.arange(response.shape[1])
+    if len(records) < 2:
+        return None, "Fewer than two records are left after the checks: repair what they name."
+    return campaign.isel(record=records, channel=channels), None
+
+
+def workbench(config, campaign_path, prepared):
+    """Return the Workbench of a campaign as the first job left it: nuisances corrected, the linear effect adopted."""
+    campaign, refusal = usable_campaign(campaign_path, prepared.checks)
+    if refusal:
+        raise CampaignError(refusal)
+    bench = Workbench(config, campaign, prepared.longest_s)
+    if prepared.adopted is not None:
+        adopt(bench, prepared)
+    elif prepared.linear_stage:
+        if prepared.fit is not None:
+            bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
+        bench.nuisance = corrected_nuisance(bench)[0]
+    return bench
+
+
+def adopt(bench, prepared):
+    """Put the adopted linear effect into a Workbench: the model or the measuring chain has it from here on, nuisances are those beside it."""
+    candidate = candidate_named(prepared.adopted["name"])
+    physical = candidate.physical(prepared.adopted["unit"], prepared.scales)
+    if not candidate.effect.measured:
+        bench.rebase(candidate.variant(bench.values, physical))
+    if prepared.fit is not None:
+        bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
+    if candidate.effect.measured:
+        bench.measuring = candidate.measuring(physical, bench.signals.names)
+        fit = bench.measured_fit
+        reading = reading_under(bench, candidate, prepared.adopted["unit"], prepared.scales, None) if fit is not None else None
+        bench.nuisance = corrected_nuisance(bench, reading)[0]
+    else:
+        bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
+
+
+def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset()):
+    """Return the Prepared of a campaign file and a checked Config; tables {candidate name: LinearTable} known from another campaign, extended; without: ids of effects that are not in the catalogue this time."""
+    _, checks = check_file(campaign_path)
+    campaign, refusal = usable_campaign(campaign_path, checks)
+    if refusal is None:
+        try:
+            bench = Workbench(config, campaign, longest_s)
+            mixed = mixed_up(bench)
+            if mixed:
+                checks = [*checks, *mixed]
+                campaign, refusal = usable_campaign(campaign_path, checks)
+                bench = bench if refusal else Workbench(config, campaign, longest_s)
+        except CampaignError as error:
+            checks = [*checks, {"check": "places", "level": "refuse", "record": None, "channel": None, "message": str(error)}]
+            refusal = str(error)
+    if refusal is not None:
+        return Prepared(checks, refusal)
+    out = Prepared(checks, longest_s=longest_s, not_testable=not_testable(held(campaign)))
+    gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
+    reach = float(gap.max()) if len(gap) else float(np.nanstd(bench.signals.response[bench.signals.load.argmax()]) / (2.0 * np.pi * bench.signals.band_Hz[0]) ** 2)
+    first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
+    out.scales = {name: float(value) for name, value in scales(bench.bare, bench.signals, {"displacement": reach, "speed": reach * 2.0 * np.pi * first}).items()}
+    out.linear_stage = bool(bench.linear_stage)
+    if not out.linear_stage:
+        return out
+    fit = bench.measured_fit
+    _, _, out.chi_square, _ = corrected_nuisance(bench)
+    out.residual = fit.residual.tolist()
+    driven = driven_channels(bench)
+    out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
+    out.delays = {name: float(lag) for name, lag in zip(bench.signals.names, fit.delay, strict=True) if lag != 0.0}
+    tables = {} if tables is None else tables
+    found = []
+    for candidate in linear_candidates(bench.values, bench.signals.names, held(campaign), fit.modes):
+        if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
+            continue
+        if not candidate.effect.measured and candidate.name not in tables:
+            tables[candidate.name] = table_of(bench, candidate, out.scales)
+        result = calibrate(bench, candidate, out.scales, tables.get(candidate.name))
+        found.append({"name": candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()})
+    out.linear = sorted(found, key=lambda row: -row["gain"])
+    for name, lag in out.delays.items():
+        out.checks.append({"check": "delay", "level": "warn", "record": None, "channel": name,
+                           "message": f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the force; it is taken out."})  # fmt: skip
+    best = out.linear[0]
+    if best["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(best["unit"]) - 1) and not out.nonlinear_low and beyond_prior(best, out.scales):
+        out.adopted = best
+        adopt(bench, out)
+    out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
+    return out
+
+
+def mixed_up(bench):
+    """Return the rows of checks for channels that the bare linear model contradicts at the lowest level: swapped, reversed, in another unit."""
+    if not bench.linear_stage:
+        return []
+    measured = measured_signals(bench.campaign)
+    spectra = transfer(measured, bench.signals.lowest)
+    if spectra is None:
+        return []
+    omega, model = 2.0 * np.pi * spectra.frequency, bench.bare
+    receptance = np.einsum("mc,m,ml->cl", model.sensor_shapes, model.drive_shapes[:, 0],
+                           1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega))  # fmt: skip
+    power = np.where(np.array([kind == "acceleration" for kind in measured.kinds])[:, None], -(omega**2), 1.0)
+    return compare_with_model(spectra, power * receptance, measured.channels, measured.kinds, measured.records[bench.signals.lowest])
+
+
+CONTRADICTED = ("swapped channels", "directions")  # of the rows of mixed_up: these channels are left out
+
+
+def beyond_prior(row, sizes):
+    """Return whether an effect that is also a nuisance lies, with its whole interval, outside what its prior allows."""
+    candidate = candidate_named(row["name"])
+    sd = {"mode_frequency_error": priors.FREQUENCY_SD, "modal_damping": priors.DAMPING_SD, "sensor_gain": priors.GAIN_SD}.get(candidate.effect_id)
+    if sd is None:
+        return True
+    (parameter,) = candidate.effect.parameters
+    ends = [np.log(candidate.physical([end], sizes)[parameter.name]) for end in np.atleast_2d(row["interval"])[0]]
+    return ends[0] > priors.NAMED_BEYOND * sd or ends[1] < -priors.NAMED_BEYOND * sd
+
+
+def held(campaign):
+    """Return what a campaign holds beyond force and response."""
+    return [name for name in ("voltage",) if name in campaign]
+
+
+def neutral_measuring(names):
+    """Return the Measuring without a fault."""
+    return Measuring(np.ones(len(names)), np.zeros(len(names)))

@@ -1,0 +1,38 @@
+"""A second effect: pairs proposed by adding what each effect changes, those that look best simulated directly."""
+
+import numpy as np
+
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.candidates import Pair
+from vibroimpact.discrepancy.features import compressed, uncompressed
+from vibroimpact.discrepancy.screening import direct_scores, linear_score, null_scores
+
+PAIRS = 4
+FIRSTS = 3
+
+
+def pairs(bench, null, measured, found, paths):
+    """Return [(Pair, unit (parameter,), gain)], best first: the best finalists, each with every other effect at its simulated points.
+
+    What two effects change is added in the compressed features; found: Finalists, best first; paths {Candidate: Path}.
+    """
+    start, low = null_scores(bench, null, measured).sum(), linear_score(bench, None)
+    best = {}
+    for first in found[:FIRSTS]:
+        moved = compressed(first.mean - null.mean, bench.layout)
+        for candidate, path in paths.items():
+            if candidate.effect_id == first.candidate.effect_id:
+                continue
+            for unit, mean, reading in zip(path.parameters, path.features, path.readings, strict=True):
+                both = null.mean + uncompressed(moved + compressed(mean - null.mean, bench.layout), bench.layout)
+                gain = direct_scores(bench, null, measured, both).sum() - start + min(first.low, linear_score(bench, reading)) - low
+                key = frozenset((first.candidate.effect_id, candidate.effect_id))
+                if key not in best or gain > best[key][2]:
+                    best[key] = (Pair(first.candidate, candidate), np.concatenate([first.unit, unit]), float(gain))
+    ordered = sorted(best.values(), key=lambda row: -row[2])
+    return ordered[:PAIRS]
+
+
+def needed(explained):
+    """Return whether the best single effect leaves something: explained (record,) z of naming.explained."""
+    return bool(np.min(explained) < priors.EXPLAINED_Z)

@@ -1,0 +1,71 @@
+"""The files between the jobs of a discrepancy run: arrays as .npz, readings and texts as JSON inside them."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path as File
+
+import numpy as np
+
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.finalists import Finalist
+from vibroimpact.discrepancy.null import null_of
+from vibroimpact.discrepancy.nuisance import Reading
+from vibroimpact.discrepancy.screening import Path
+
+EMPTY = "empty"  # what a job writes where there is nothing to do
+
+
+def save(path, **arrays):
+    """Write arrays to a .npz file, whole or not at all."""
+    path = File(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial.npz")
+    np.savez(partial, **arrays)
+    partial.replace(path)
+
+
+def load(path):
+    """Return {name: array} of a .npz file, None where a job had nothing to do."""
+    with np.load(path, allow_pickle=False) as data:
+        return None if EMPTY in data else {name: data[name] for name in data.files}
+
+
+def save_empty(path):
+    """Write that there was nothing to do."""
+    save(path, **{EMPTY: np.zeros(0)})
+
+
+def path_arrays(path):
+    """Return the arrays of a screening.Path."""
+    readings = [None if reading is None else {name: np.asarray(value).tolist() for name, value in asdict(reading).items()} for reading in path.readings]
+    return {"parameters": path.parameters, "features": path.features, "seeds": path.seeds, "readings": np.array(json.dumps(readings))}
+
+
+def path_of(arrays):
+    """Return the screening.Path of arrays."""
+    readings = [None if row is None else Reading(*[np.array(row[name]) for name in ("modes", "log_frequency", "log_damping", "participation", "residual")])
+                for row in json.loads(str(arrays["readings"]))]  # fmt: skip
+    return Path(arrays["parameters"], arrays["features"], arrays["seeds"], readings)
+
+
+def finalist_arrays(finalist):
+    """Return the arrays of a finalists.Finalist."""
+    profile = json.dumps([[np.asarray(part).tolist() for part in row] for row in finalist.profile])
+    return {"name": np.array(finalist.candidate.name), "unit": finalist.unit, "interval": finalist.interval, "scores": finalist.scores,
+            "low": np.array(finalist.low), "runs": finalist.features, "profile": np.array(profile),
+            **{f"path_{name}": value for name, value in path_arrays(finalist.path).items()}}  # fmt: skip
+
+
+def finalist_of(arrays):
+    """Return the finalists.Finalist of arrays."""
+    path = path_of({name.removeprefix("path_"): value for name, value in arrays.items() if name.startswith("path_")})
+    profile = [tuple(np.array(part) for part in row) for row in json.loads(str(arrays["profile"]))]
+    return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile)
+
+
+def null_from(bench, files):
+    """Return the Null of the files of its parts."""
+    parts = [load(file) for file in files]
+    features = np.concatenate([part["features"] for part in parts if "features" in part], axis=1)
+    unseen = np.concatenate([part["unseen"] for part in parts if "unseen" in part], axis=1)
+    return null_of(bench, parts[0]["records"], features, unseen)

@@ -1,0 +1,136 @@
+"""The verdict: what is missing, whom the evidence can not tell apart, what to measure next, and how far the gap closes on fresh seeds."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.discrepancy import naming, priors
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.invariances import broken_invariances
+from vibroimpact.discrepancy.next_measurement import next_measurement
+
+FIT_TO_HOLDOUT = 0.1  # a gain on held-out records below this share of what the fit records promise is a veto
+
+
+@dataclass
+class Decision:
+    """verdict; chosen: the Finalist that completes the model, None; ambiguity: list of lists of ids; totals, explained; threshold."""
+
+    verdict: str
+    chosen: object
+    ambiguity: list
+    totals: dict
+    explained: np.ndarray
+    threshold: float
+
+
+def decide(bench, null, prepared, found, threshold, p_before):
+    """Return the Decision of Finalists and pairs, best first, over the model that holds the adopted linear effect, if there is one."""
+    measured = bench.measured_features[null.records]
+    totals = naming.totals(bench, null, measured, found)
+    linear = linear_sets(prepared)
+    singles = [row for row in found if isinstance(row.candidate, Candidate)]
+    doubles = [row for row in found if isinstance(row.candidate, Pair)]
+    best = singles[0] if singles else None
+    if best is None or totals[best.candidate.name][0] < threshold:
+        rest = residual_of_null(bench, null, measured)
+        if prepared.adopted is None:
+            return Decision("none" if p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z else "unknown", None, [], totals, rest, threshold)
+        named = "named" if len(linear) == 1 else "ambiguous"
+        return Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
+    if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, null, best, measured).min() < priors.EXPLAINED_Z:
+        best = doubles[0]
+    left = naming.explained(bench, null, best, measured)
+    sets = local_sets(best.candidate, totals, {row.candidate.name for row in (doubles if isinstance(best.candidate, Pair) else singles)})
+    together = [sorted({*one, *other}) for one in (linear or [[]]) for other in sets]
+    share = closure(bench, null, best, measured)
+    if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
+        verdict = "partly_explained" if share > priors.PARTLY else "unknown"
+        return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
+    return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
+
+
+def residual_of_null(bench, null, measured):
+    """Return (record,) z of the measurement under the null, as naming.explained has it for a finalist."""
+    from vibroimpact.discrepancy.features import compressed
+    from vibroimpact.discrepancy.likelihood import log_likelihood
+
+    out = []
+    for record in range(len(null.mean)):
+        own = [log_likelihood(row, null.covariance[record])[0] for row in compressed(null.features[record] - null.mean[record], bench.layout)]
+        score = log_likelihood(compressed(measured[record] - null.mean[record], bench.layout), null.covariance[record])[0]
+        out.append((score - np.mean(own)) / max(np.std(own, ddof=1), naming.LEAST_SD))
+    return np.array(out)
+
+
+def linear_sets(prepared):
+    """Return [[id]] of the adopted linear effect and those that the lowest record can not tell from it."""
+    if prepared.adopted is None:
+        return []
+    best = candidate_named(prepared.adopted["name"])
+    out = [[best.effect_id]]
+    for row in prepared.linear:
+        other = candidate_named(row["name"])
+        alias = other.effect_id in best.effect.aliases or best.effect_id in other.effect.aliases
+        if row["gain"] > prepared.adopted["gain"] - (priors.LINEAR_ALIAS if alias else priors.LINEAR_AMBIGUOUS) and [other.effect_id] not in out:
+            out.append([other.effect_id])
+    return out
+
+
+def local_sets(best, totals, names):
+    """Return [[ids]] of what the contact levels can not tell apart, the best first."""
+    out = [sorted(best.effect_id.split("+"))]
+    if isinstance(best, Candidate):
+        out += [[candidate_named(name).effect_id] for name in naming.not_told_apart({name: totals[name] for name in names}, best.name)]
+        if best.effect_id == "gap" and best.location == "all":
+            out.append(["sensor_gain"])  # force and all responses scaled alike are a gap scaled: an exact alias
+    else:
+        near = totals[best.name][0] - priors.AMBIGUOUS
+        out += [sorted(candidate_named(name).effect_id.split("+")) for name in names if totals[name][0] > near]
+    return [list(row) for row in dict.fromkeys(map(tuple, out))]
+
+
+def closure(bench, null, found, measured):
+    """Return the share of the squared distance beyond the seeds' own that a Finalist closes, on all records."""
+    layout = bench.layout
+    power = layout.power(measured)
+    own = np.mean(layout.power(null.features).var(axis=1))
+    before = max(np.mean((power - layout.power(null.mean)) ** 2) - own, 1.0e-6)
+    after = max(np.mean((power - layout.power(found.mean)) ** 2) - own, 0.0)
+    return 1.0 - np.sqrt(after / before)
+
+
+def vetoed(total, share):
+    """Return whether what was held out contradicts what was fitted: a loss there, or next to nothing closed."""
+    _, on_fit, held_out = total
+    return held_out < FIT_TO_HOLDOUT * min(on_fit, 0.0) - priors.GAIN or share < priors.LEAST_CLOSED
+
+
+def effects_of(prepared, decision, sizes):
+    """Return the rows of `effects` of verdict.json."""
+    rows = []
+    if prepared.adopted is not None:
+        rows.append(_effect(candidate_named(prepared.adopted["name"]), np.array(prepared.adopted["unit"]), np.atleast_2d(prepared.adopted["interval"]), sizes))
+    if decision.chosen is not None:
+        chosen = decision.chosen
+        if isinstance(chosen.candidate, Pair):
+            cut = chosen.candidate.split
+            parts = [(chosen.candidate.first, slice(0, cut)), (chosen.candidate.second, slice(cut, None))]
+            rows += [_effect(candidate, chosen.unit[part], chosen.interval[part], sizes) for candidate, part in parts]
+        else:
+            rows.append(_effect(chosen.candidate, chosen.unit, chosen.interval, sizes))
+    return rows
+
+
+def _effect(candidate, unit, interval, sizes):
+    """Return {id, location, parameters: {name: {value, unit, low, high}}}."""
+    value, low, high = candidate.physical(unit, sizes), candidate.physical(interval[:, 0], sizes), candidate.physical(interval[:, 1], sizes)
+    parameters = {parameter.name: {"value": value[parameter.name], "unit": parameter.unit, "low": min(low[parameter.name], high[parameter.name]),
+                                   "high": max(low[parameter.name], high[parameter.name])} for parameter in candidate.effect.parameters}  # fmt: skip
+    if candidate.effect_id == "gap":
+        nominal = sizes["gap"]
+        parameters["gap"] = {"unit": "m", **{key: nominal * parameters["gap_factor"][key] for key in ("value", "low", "high")}}
+    return {"id": candidate.effect_id, "location": candidate.location, "parameters": parameters}
+
+
+__all__ = ["Decision", "broken_invariances", "decide", "effects_of", "next_measurement"]

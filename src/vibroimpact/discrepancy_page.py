@@ -1,0 +1,125 @@
+"""The report of one campaign as a page in a single file: verdict, effects, misfit, map, ranking, checks; figures are embedded."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+
+from vibroimpact.effects.effect import TESTS
+from vibroimpact.effects.registry import EFFECTS
+
+TEMPLATE = Path(__file__).with_suffix(".html")
+SPLITS = {"fit": "fitted", "holdout": "held out"}
+MOST_ROWS = 20
+LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
+
+
+def discrepancy_page(name, verdict, figures):
+    """Return the HTML page.
+
+    name: of the campaign; verdict: content of verdict.json; figures: PNG files in their order, each with its caption beside it as .txt.
+    """
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
+    tests = [f"{test}, {TESTS[test]}" if test in TESTS else str(test) for test in verdict["broken_invariances"]]
+    return template.render(
+        name=name, verdict=verdict, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
+        sets=sets_in_words(verdict["ambiguity_set"]),
+        misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
+        regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
+        figures=[{"name": file.stem, "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
+                  "data": base64.b64encode(file.read_bytes()).decode()}
+                 for file in map(Path, figures)],
+        ranking=[{"ids": in_words(row["ids"]), "score": _digits(row["heldout_score"]),
+                  "closed": _percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
+        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=_digits(verdict["seconds"]),
+        provenance=[*_flat(verdict["provenance"])])
+
+
+def verdict_sentence(verdict):
+    """Return what the verdict says, in one or two sentences."""
+    kind, closed = verdict["verdict"], (verdict["misfit"].get("holdout") or {}).get("closed_fraction")
+    shrinks = f" Adding it closes {_percent(closed)} of the excess misfit on records that were not fitted." if closed is not None else ""
+    named = "; and ".join(_with_parameters(effect) for effect in verdict["effects"])
+    alternatives = [ids for ids in verdict["ambiguity_set"] if sorted(ids) != sorted(effect["id"] for effect in verdict["effects"])]
+    others = f" This campaign can not tell it from {sets_in_words(alternatives)}." if named and alternatives else ""
+    refusals = " ".join(row["message"] for row in verdict["checks"] if row["level"] == "refuse")
+    sentences = {
+        "none": "No effect is missing: the model explains the campaign within the scatter of its seeds (chance makes such a map with probability "
+                f"{_probability(verdict['p_global_before'])}).",
+        "named": f"The model lacks {named}.{shrinks}{others}",
+        "partly_explained": f"The model lacks {named}, and something else that the catalogue does not hold: the remaining difference is more than "
+                            f"chance.{shrinks}{others}",
+        "ambiguous": f"One of these is missing, and this campaign can not tell which: {sets_in_words(verdict['ambiguity_set'])}.",
+        "unknown": "The model and the measurement disagree, and no effect of the catalogue explains it: the map says where to look.",
+        "not_testable": f"The campaign can not be judged. {refusals}".strip(),
+    }
+    return sentences.get(kind, f"Verdict: {kind}.")
+
+
+def in_words(ids):
+    """Return effect ids as words: dry friction and gap."""
+    return " and ".join(str(name).replace("_", " ") for name in ids)
+
+
+def sets_in_words(sets):
+    """Return the members of an ambiguity set: dry friction, or foliate obstacle."""
+    return ", or ".join(in_words(ids) for ids in sets)
+
+
+def _with_parameters(effect):
+    """Return an effect in words with its parameters: dry friction at both plates (mu 0.149, between 0.128 and 0.171)."""
+    values = ", ".join(f"{name.replace('_', ' ')} {_digits(value['value'])}{_unit(value['unit'])}, between {_digits(value['low'])} and "
+                       f"{_digits(value['high'])}"
+                       for name, value in effect["parameters"].items())
+    place = f" at {effect['location']}" if effect.get("location") not in (None, "", "all") else ""
+    return f"{in_words([effect['id']])}{place}" + (f" ({values})" if values else "")
+
+
+def _effect_rows(verdict):
+    for effect in verdict["effects"]:
+        known = EFFECTS.get(effect["id"])
+        head = {"effect": in_words([effect["id"]]), "explanation": known.explanation if known else "", "location": effect.get("location") or "all"}
+        for name, value in effect["parameters"].items() or [("", None)]:
+            cells = {key: _digits(value[key]) if value else "" for key in ("value", "low", "high")}
+            yield {**head, "parameter": name.replace("_", " "), **cells, "unit": _unit(value["unit"]).strip() or "-" if value else ""}
+            head = {"effect": "", "explanation": "", "location": ""}
+
+
+def _misfit_rows(verdict):
+    for split, words in SPLITS.items():
+        values = verdict["misfit"].get(split) or {}
+        yield {"records": words, **{key: _digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")},
+               "closed": _percent(values.get("closed_fraction"))}
+
+
+def _region_row(region):
+    gap = region.get("gap_m")
+    return {"band": " to ".join(_digits(edge) for edge in region["band_Hz"]), "channel": region["channel"], "load": _digits(region["load_rms_N"]),
+            "gap": _digits(gap * 1e3) if gap is not None else "-", "discrepancy": f"{region['discrepancy_dB']:+.1f}", "z": f"{region['z']:+.1f}"}
+
+
+def _flat(values, prefix=""):
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _unit(unit):
+    return "" if unit in ("1", "", "-", None) else f" {unit}"
+
+
+def _digits(value):
+    return "-" if value is None or value != value else f"{value:.3g}" if abs(value) < 1e5 else f"{value:.3e}"
+
+
+def _percent(fraction):
+    return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"
+
+
+def _probability(value):
+    return "not computed" if value is None else "below 0.001" if value < 1e-3 else f"{value:.2g}"

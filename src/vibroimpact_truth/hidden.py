@@ -1,0 +1,186 @@
+"""The effects that can be hidden in a rig: one function per id, changing a Rig in place; parameters in SI, named as in the catalogue.
+
+EFFECTS are of the catalogue, STRANGERS are not. `places` are the names of geometry.named_places; `plates` is "both", "left" or "right".
+"""
+
+import numpy as np
+
+from vibroimpact_truth.rig import Element, LooseMass
+
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+HERTZ_POINTS = 5  # the catalogue states the coefficient per contact point of a plate with five; here the plate's total is kept
+
+
+def chosen(rig, plates):
+    """The plates of a rig that an effect acts on."""
+    return [plate for plate in rig.plates if plates in ("both", plate.side)]
+
+
+def gap(rig, factor=1.25, plates="both"):
+    """Radial clearance factor times the nominal."""
+    for plate in chosen(rig, plates):
+        plate.gap_factor *= factor
+
+
+def contact_stiffness(rig, factor=0.4, plates="both"):
+    """Stiffness of the plates factor times the nominal."""
+    for plate in chosen(rig, plates):
+        plate.stiffness *= factor
+
+
+def contact_damping(rig, damping=200.0, plates="both"):
+    """Kelvin-Voigt damping [N s/m per plate]; the force never pulls."""
+    for plate in chosen(rig, plates):
+        plate.damping += damping
+
+
+def hunt_crossley(rig, alpha=5.0, plates="both"):
+    """Force k p max(0, 1 + alpha dp/dt), alpha [s/m]."""
+    for plate in chosen(rig, plates):
+        plate.hunt_crossley += alpha
+
+
+def hertz(rig, coefficient=2.0e8, plates="both"):
+    """Force of p^1.5 in place of k p; coefficient [N/m^1.5] per point of a plate with five."""
+    for plate in chosen(rig, plates):
+        plate.hertz = HERTZ_POINTS * coefficient
+
+
+def dry_friction(rig, mu=0.2, slip_speed=0.0, plates="both"):
+    """Coulomb friction mu of the plates: a Dahl bristle, or tanh(v / slip_speed [m/s]) where slip_speed is positive."""
+    for plate in chosen(rig, plates):
+        plate.friction, plate.slip_speed = mu, slip_speed
+
+
+def support_offset(rig, offset_x=0.0, offset_y=1.0e-4, plates="both"):
+    """Centre of the plates away from the tube [m]."""
+    for plate in chosen(rig, plates):
+        plate.offset = (plate.offset[0] + offset_x, plate.offset[1] + offset_y)
+
+
+def foliate_obstacle(rig, lobes=4, depth=2.0e-4, angle=0.3, shape="lobes", plates="both"):
+    """Hole with `lobes` lands at the angle [rad]: shape "lobes" has arcs with recesses of depth [m] between them, "lands" is flat lands."""
+    for plate in chosen(rig, plates):
+        plate.profile, plate.lobes, plate.depth, plate.angle = shape, lobes, depth, angle
+
+
+def preload(rig, force_x=0.0, force_y=5.0, plates="both"):
+    """Dead load [N] on the tube at the plates."""
+    for plate in chosen(rig, plates):
+        plate.preload = (plate.preload[0] + force_x, plate.preload[1] + force_y)
+
+
+def plate_flexibility(rig, mass=0.5, stiffness=2.0e6, plates="both"):
+    """Plates of a mass [kg] on a spring [N/m] in x and y."""
+    for plate in chosen(rig, plates):
+        plate.plate_mass, plate.plate_stiffness = mass, stiffness
+
+
+def root_stiffness(rig, translation=1.0e8, rotation=2.0e4):
+    """Both roots on springs [N/m], [N m/rad]."""
+    rig.root = (translation, rotation)
+
+
+def modal_damping(rig, factor=1.8):
+    """All damping ratios times factor."""
+    rig.damping_factor *= factor
+
+
+def mode_frequency_error(rig, mode=1, factor=0.97):
+    """Frequency of one mode (from 1) times factor."""
+    rig.mode_factor[mode] = factor
+
+
+def added_mass(rig, mass=0.08, place="bend45_right"):
+    """A mass [kg] at a place."""
+    rig.masses.append((place, mass))
+
+
+def lateral_stinger(rig, stiffness=2.0e3, damping=0.0, direction="x"):
+    """Spring [N/m] and dashpot [N s/m] to ground at the drive, along an axis."""
+    rig.springs.append(("drive", AXES[direction], stiffness))
+    if damping:
+        rig.elements.append(Element("linear", "drive", AXES[direction], (0.0, damping)))
+
+
+def fluid_added_mass_damping(rig, mass=0.15, damping=5.0):
+    """Mass [kg/m] and damping [N s/m²] of a fluid about the tube, across it."""
+    rig.fluid = (rig.fluid[0] + mass, rig.fluid[1] + damping)
+
+
+def cubic_stiffness(rig, stiffness=2.0e10, place="apex", direction="y"):
+    """Spring stiffness u³ [N/m³] between a place and the ground."""
+    rig.elements.append(Element("cubic", place, AXES[direction], (stiffness,)))
+
+
+def quadratic_stiffness(rig, stiffness=5.0e6, place="apex", direction="y"):
+    """Spring stiffness u² [N/m²] between a place and the ground."""
+    rig.elements.append(Element("quadratic", place, AXES[direction], (stiffness,)))
+
+
+def saturation_stiffness(rig, stiffness=5.0e3, limit=2.0, place="apex", direction="y"):
+    """Spring [N/m] whose force saturates smoothly at the limit [N]."""
+    rig.elements.append(Element("saturation", place, AXES[direction], (stiffness, limit)))
+
+
+def quadratic_drag(rig, drag=20.0):
+    """Force -drag |v| v [N s²/m² per metre of tube], across it."""
+    rig.drag += drag
+
+
+def coulomb_friction(rig, force=1.0, place="apex", direction="y"):
+    """Friction of a limit [N] between a place and the ground, a Dahl bristle that yields in 10 micrometres."""
+    rig.elements.append(Element("coulomb", place, AXES[direction], (force, force / 1.0e-5)))
+
+
+def clearance(rig, half_gap=5.0e-4, stiffness=5.0e4, place="apex", direction="y"):
+    """Two stops [N/m] at half_gap [m] on either side of a place."""
+    rig.elements.append(Element("clearance", place, AXES[direction], (half_gap, stiffness)))
+
+
+def force_misalignment(rig, angle=0.3):
+    """The force turned by angle [rad] about the tube's axis, from y towards the outside of the bend."""
+    rig.drive_angle += angle
+
+
+def loose_mass(rig, mass=0.05, clearance=2.0e-4, place="apex"):
+    """A mass [kg] that rattles inside the tube within a clearance [m]."""
+    rig.loose.append(LooseMass(place, mass, clearance))
+
+
+def hysteretic_root(rig, stiffness=3.0e3, limit=0.3, translation=1.0e9, rotation=1.2e4):
+    """Roots on springs, of whose rotation [N m/rad] a part `stiffness` slips by hysteresis at the limit [N m] (Bouc-Wen)."""
+    rig.root = (translation, rotation)
+    for root in ("left_root", "right_root"):
+        for axis in ("rx", "ry"):
+            rig.elements.append(Element("bouc_wen", root, axis, (stiffness, limit)))
+
+
+def drifting_gap(rig, rate=0.01, plates="both"):
+    """Gap growing by the relative rate [1/s] over all records one after another."""
+    for plate in chosen(rig, plates):
+        plate.gap_rate += rate
+
+
+def one_sided_stop(rig, distance=4.0e-4, stiffness=2.0e5, place="apex", direction="y"):
+    """A stop [N/m] on one side of a place at a distance [m]."""
+    rig.elements.append(Element("one_sided", place, AXES[direction], (stiffness, distance)))
+
+
+def unmeasured_force(rig, rms=0.5, place="right_leg_upper", direction="y"):
+    """A second random force [N RMS per N RMS of the drive] that nobody measured."""
+    rig.unmeasured = (place, AXES[direction], rms)
+
+
+def tilted_plate(rig, slope=0.012, direction="y", plates="left"):
+    """Plates whose axis leans by the slope [rad] against the tube, so that they touch at an edge first."""
+    for plate in chosen(rig, plates):
+        plate.tilt = tuple(slope * np.array(AXES[direction][:2]))
+
+
+EFFECTS = {function.__name__: function for function in (
+    gap, contact_stiffness, contact_damping, hunt_crossley, hertz, dry_friction, support_offset, foliate_obstacle, preload, plate_flexibility,
+    root_stiffness, modal_damping, mode_frequency_error, added_mass, lateral_stinger, fluid_added_mass_damping, cubic_stiffness,
+    quadratic_stiffness, saturation_stiffness, quadratic_drag, coulomb_friction, clearance, force_misalignment)}  # fmt: skip
+STRANGERS = {function.__name__: function for function in (
+    loose_mass, hysteretic_root, drifting_gap, one_sided_stop, unmeasured_force, tilted_plate)}  # fmt: skip

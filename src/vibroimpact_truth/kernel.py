@@ -1,0 +1,404 @@
+"""The compiled march: kick, drift, kick with the drift exact. All compiled code of the package is in this file.
+
+Per step h: v += h × (all forces at the displacement now), then every mode turns exactly as a damped oscillator left alone. Symmetric, of
+second order, symplectic where nothing is lost; linear motion has no period error at any step. The force of a contact sees the modes kept
+plus the static compliance of those left out (`residual`), by two passes of a contraction of about 0.03.
+Sources: E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), XIII.1 (impulse method); P. Dahl, AIAA J. 14 (1976)
+1675-1682 (friction); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102 (1976) 249-263 (hysteresis).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+SHAPES, ROWS, NODES = 4, 8, 8  # shapes that the nodes of a plate follow in one plane; rows projected at once; places for nodes of a plate
+RUNAWAY = 1.0e6  # m sqrt(kg), where a march is given up; false for what is no number, as isfinite is not with these flags
+# Without references counted (nothing here allocates): counting them costs as much as the contact itself.
+NRT = {"cache": True, "error_model": "numpy", "_nrt": False}
+FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+# Columns of the table of plates.
+STIFFNESS, DAMPING, HUNT, HERTZ, MU, BRISTLE, SLIP_SPEED, MOBILITY = 0, 1, 2, 3, 4, 5, 6, 7
+GAP, GAP_RATE, OFFSET_X, OFFSET_Y, PROFILE, LOBES, DEPTH, ANGLE, LAND = 8, 9, 10, 11, 12, 13, 14, 15, 16
+PLATE_MASS, PLATE_STIFFNESS, PLATE_DAMPING, PLATE_COLUMNS = 17, 18, 19, 20
+LOOSE_MASS, LOOSE_GAP, LOOSE_STIFFNESS, LOOSE_DAMPING = 0, 1, 2, 3
+
+
+class Contacts(NamedTuple):
+    """Contact nodes, eight places per plate, unused ones with no share. The rows of a plate's nodes span few shapes: rows = lift × shape.
+
+    lift_y, lift_x (plate, SHAPES, node); share (plate, node) of the plate's stiffness; residual_y, residual_x (plate, node, node) m/N; tilt_y,
+    tilt_x (plate, node) m: the hole's axis beside the plate's centre; shape_y (8, y mode), shape_x (8, x mode): SHAPES rows per plate, two
+    plates at most.
+    """
+
+    lift_y: np.ndarray
+    lift_x: np.ndarray
+    share: np.ndarray
+    residual_y: np.ndarray
+    residual_x: np.ndarray
+    tilt_y: np.ndarray
+    tilt_x: np.ndarray
+    shape_y: np.ndarray
+    shape_x: np.ndarray
+
+
+class Locals(NamedTuple):
+    """Local elements: law (element,), parameters (element, 4), rows (element, mode); loose masses (mass, 4), rows (mass, mode) along y and x;
+    drag N s²/m² per station (station,) and its rows (station, mode) across the tube along y and in plane."""
+
+    law: np.ndarray
+    parameters: np.ndarray
+    row: np.ndarray
+    loose: np.ndarray
+    loose_y: np.ndarray
+    loose_x: np.ndarray
+    drag: np.ndarray
+    drag_y: np.ndarray
+    drag_x: np.ndarray
+
+
+class State(NamedTuple):
+    """What a march changes: q, v (mode,), bristle, contact force fx, fy (plate, node), memory (element,), plate (plate, 4), loose (mass, 4)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    bristle: np.ndarray
+    fx: np.ndarray
+    fy: np.ndarray
+    memory: np.ndarray
+    plate: np.ndarray
+    loose: np.ndarray
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def obstacle(table, gap, x, y):
+    """Penetration (negative when free) and outward normal of the obstacle of a plate nearest to (x, y); one land only where it has lands."""
+    radius = np.sqrt(x * x + y * y)
+    kind = int(table[PROFILE])
+    if kind == 0:
+        if radius <= gap:
+            return radius - gap, 1.0, 0.0
+        return radius - gap, x / radius, y / radius
+    lobes = table[LOBES]
+    pitch = 2.0 * np.pi / lobes
+    turn = np.arctan2(y, x) - table[ANGLE]
+    nearest = np.round(turn / pitch) * pitch
+    if kind == 1:
+        nx, ny = np.cos(table[ANGLE] + nearest), np.sin(table[ANGLE] + nearest)
+        return x * nx + y * ny - gap, nx, ny
+    # Lobes: an arc of radius gap over each land, then a sine-squared recess of the depth between the lands.
+    off = turn - nearest
+    beyond = abs(off) - table[LAND]
+    edge, slope = gap, 0.0
+    if beyond > 0.0:
+        scale = 0.5 * np.pi / (0.5 * pitch - table[LAND])
+        edge += table[DEPTH] * np.sin(scale * beyond) ** 2
+        slope = table[DEPTH] * scale * np.sin(2.0 * scale * beyond) * np.sign(off)
+    if radius <= edge or radius == 0.0:
+        return radius - edge, 1.0, 0.0
+    steep = slope / radius
+    size = 1.0 / np.sqrt(1.0 + steep * steep)
+    ux, uy = x / radius, y / radius
+    return (radius - edge) * size, (ux + steep * uy) * size, (uy - steep * ux) * size
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def normal_force(table, share, depth, rate):
+    """Normal force in N, never a pull, of a node that carries `share` of the plate: penetration m and its rate m/s."""
+    elastic = table[STIFFNESS] * depth if table[HERTZ] == 0.0 else table[HERTZ] * depth * np.sqrt(depth)
+    return max(0.0, share * (elastic * (1.0 + table[HUNT] * rate) + table[DAMPING] * rate))
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def friction_force(table, share, bristle, normal, speed, step):
+    """Tangential force in N on the tube and the bristle deflection in m after this step.
+
+    A Dahl bristle, integrated exactly over a step of constant speed; with a slip speed, Coulomb smoothed by tanh, limited so that it
+    can not turn the sliding round within a step.
+    """
+    limit = table[MU] * normal
+    if table[SLIP_SPEED] > 0.0:
+        return -np.sign(speed) * min(limit * np.tanh(abs(speed) / table[SLIP_SPEED]), 0.5 * abs(speed) / (step * table[MOBILITY])), 0.0
+    if limit == 0.0:
+        return 0.0, 0.0
+    stiffness = share * table[BRISTLE]
+    end = limit / stiffness
+    way = np.sign(speed)
+    bristle = min(max(bristle, -end), end)
+    bristle = way * end + (bristle - way * end) * np.exp(-abs(speed) * step / end)
+    return -stiffness * bristle, bristle
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def element_force(law, p, d, v, memory, step):
+    """Force in N (or N m) of a local element at displacement d, rate v, and its memory after this step; p: its parameters.
+
+    linear k, c; cubic k3; quadratic k2; saturation k, limit (smooth); coulomb limit, bristle stiffness; clearance half gap, k; bouc_wen k, limit
+    (the spring k of the structure made hysteretic); one_sided k, distance; drag c.
+    """
+    if law == 0:
+        return -p[0] * d - p[1] * v, memory
+    if law == 1:
+        return -p[0] * d * d * d, memory
+    if law == 2:
+        return -p[0] * d * d, memory
+    if law == 3:
+        ratio = p[0] * d / p[1]
+        return -p[0] * d / np.sqrt(1.0 + ratio * ratio), memory
+    if law == 4:
+        end, way = p[0] / p[1], np.sign(v)
+        memory = way * end + (memory - way * end) * np.exp(-abs(v) * step / end)
+        return -p[1] * memory, memory
+    if law == 5:
+        over = max(0.0, d - p[0]) + min(0.0, d + p[0])
+        return -p[1] * over, memory
+    if law == 6:  # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²), and the structure's own k d is given back
+        end = p[1] / p[0]
+        share = memory / end
+        memory += step * v * (1.0 - (0.5 + 0.5 * np.sign(v * memory)) * share * share)
+        return p[0] * (d - memory), memory
+    if law == 7:
+        return -p[0] * max(0.0, d - p[1]), memory
+    return -p[0] * abs(v) * v, memory
+
+
+@njit(fastmath=FAST, **NRT)
+def dot(row, q):
+    """Sum of row × q."""
+    total = 0.0
+    for m in range(len(q)):
+        total += row[m] * q[m]
+    return total
+
+
+@njit(fastmath=FAST, **NRT)
+def add(target, row, factor):
+    """target += factor × row."""
+    for m in range(len(target)):
+        target[m] += factor * row[m]
+
+
+@njit(fastmath=FAST, **NRT)
+def project(rows, first, q, out):
+    """out[first:first + 8] = eight of the rows × q, in one pass over the modes."""
+    a = b = c = d = e = f = g = h = 0.0
+    for m in range(len(q)):
+        u = q[m]
+        a += rows[first, m] * u
+        b += rows[first + 1, m] * u
+        c += rows[first + 2, m] * u
+        d += rows[first + 3, m] * u
+        e += rows[first + 4, m] * u
+        f += rows[first + 5, m] * u
+        g += rows[first + 6, m] * u
+        h += rows[first + 7, m] * u
+    out[first], out[first + 1], out[first + 2], out[first + 3] = a, b, c, d
+    out[first + 4], out[first + 5], out[first + 6], out[first + 7] = e, f, g, h
+
+
+@njit(fastmath=FAST, **NRT)
+def advance(rows, q, v, turn, step, force, drive, extra, load, place):
+    """Kick every mode by force × drive + extra + loads on the eight rows, turn it exactly, and project the new place on the rows.
+
+    Plain: v += step (force drive + extra + rows' load); q, v = turn (q, v); place = rows q. One pass, as memory is what it costs.
+    """
+    a = b = c = d = e = f = g = h = 0.0
+    l0, l1, l2, l3, l4, l5, l6, l7 = load[0], load[1], load[2], load[3], load[4], load[5], load[6], load[7]
+    for m in range(len(q)):
+        r0, r1, r2, r3, r4, r5, r6, r7 = rows[0, m], rows[1, m], rows[2, m], rows[3, m], rows[4, m], rows[5, m], rows[6, m], rows[7, m]
+        kick = force * drive[m] + extra[m] + l0 * r0 + l1 * r1 + l2 * r2 + l3 * r3 + l4 * r4 + l5 * r5 + l6 * r6 + l7 * r7
+        u, w = q[m], v[m] + step * kick
+        x = turn[0, m] * u + turn[1, m] * w
+        q[m] = x
+        v[m] = turn[2, m] * u + turn[3, m] * w
+        a += r0 * x
+        b += r1 * x
+        c += r2 * x
+        d += r3 * x
+        e += r4 * x
+        f += r5 * x
+        g += r6 * x
+        h += r7 * x
+    place[0], place[1], place[2], place[3], place[4], place[5], place[6], place[7] = a, b, c, d, e, f, g, h
+
+
+@njit(fastmath=FAST, **NRT)
+def lifted(lift, p, amplitude, nodes):
+    """nodes[p, :] = displacement (or rate) of the nodes of plate p from the amplitudes (8,) of the shapes."""
+    for i in range(NODES):
+        nodes[p, i] = 0.0
+    for k in range(SHAPES):
+        factor = amplitude[SHAPES * p + k]
+        for i in range(NODES):
+            nodes[p, i] += lift[p, k, i] * factor
+
+
+@njit(fastmath=FAST, **NRT)
+def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, step):
+    """Force fx, fy in N on the tube of a node at (ux, uy) from the plate's centre, moving at the rates; and its bristle."""
+    depth, nx, ny = obstacle(table, gap, ux, uy)
+    if depth <= 0.0:
+        return 0.0, 0.0, 0.0
+    force = normal_force(table, share, depth, nx * rate_x + ny * rate_y)
+    if table[MU] == 0.0:
+        return -force * nx, -force * ny, 0.0
+    along, bristle = friction_force(table, share, bristle, force, nx * rate_y - ny * rate_x, step)
+    return -force * nx - along * ny, -force * ny + along * nx, bristle
+
+
+@njit(fastmath=FAST, **NRT)
+def contact_forces(contacts, plates, state, place_y, place_x, load_y, load_x, work, elapsed, ramp, step, touching):
+    """load_y, load_x (8,): forces of all contacts on the shapes, at their places (8,); touching (plate,) 1.0 where a node touches.
+
+    work (8, plate, 8): displacements x and y, the same with the residual, rates x and y, rates of the shapes x and y.
+    """
+    ux, uy, ex, ey, wx, wy, rate_x, rate_y = work[0], work[1], work[2], work[3], work[4], work[5], work[6, 0], work[7, 0]
+    fx, fy = state.fx, state.fy
+    rates_known = False
+    for k in range(ROWS):
+        load_y[k] = 0.0
+        load_x[k] = 0.0
+    for p in range(len(plates)):
+        lifted(contacts.lift_x, p, place_x, ux)
+        lifted(contacts.lift_y, p, place_y, uy)
+        shift_x = ramp * plates[p, OFFSET_X] + state.plate[p, 0]
+        shift_y = ramp * plates[p, OFFSET_Y] + state.plate[p, 1]
+        gap = plates[p, GAP] * (1.0 + plates[p, GAP_RATE] * elapsed)
+        farthest = 0.0
+        for i in range(NODES):
+            ux[p, i] -= shift_x + ramp * contacts.tilt_x[p, i]
+            uy[p, i] -= shift_y + ramp * contacts.tilt_y[p, i]
+            farthest = max(farthest, ux[p, i] * ux[p, i] + uy[p, i] * uy[p, i])
+        if farthest <= gap * gap and gap > 0.0 and touching[p] == 0.0:
+            continue
+        if plates[p, DAMPING] != 0.0 or plates[p, HUNT] != 0.0 or plates[p, MU] != 0.0:
+            if not rates_known:
+                rates_known = True
+                project(contacts.shape_x, 0, state.v[contacts.shape_y.shape[1] :], rate_x)
+                project(contacts.shape_y, 0, state.v[: contacts.shape_y.shape[1]], rate_y)
+            lifted(contacts.lift_x, p, rate_x, wx)
+            lifted(contacts.lift_y, p, rate_y, wy)
+        touching[p] = 0.0
+        for last in range(2):
+            for i in range(NODES):
+                ex[p, i], ey[p, i] = ux[p, i], uy[p, i]
+            for j in range(NODES):
+                for i in range(NODES):
+                    ex[p, i] += contacts.residual_x[p, j, i] * fx[p, j]
+                    ey[p, i] += contacts.residual_y[p, j, i] * fy[p, j]
+            for i in range(NODES):
+                fx[p, i], fy[p, i], bristle = node_forces(plates[p], contacts.share[p, i], gap, ex[p, i], ey[p, i], wx[p, i] - state.plate[p, 2],
+                                                          wy[p, i] - state.plate[p, 3], state.bristle[p, i], step)
+                if last:
+                    state.bristle[p, i] = bristle
+        for k in range(SHAPES):
+            for i in range(NODES):
+                load_x[SHAPES * p + k] += contacts.lift_x[p, k, i] * fx[p, i]
+                load_y[SHAPES * p + k] += contacts.lift_y[p, k, i] * fy[p, i]
+        for i in range(NODES):
+            if fx[p, i] != 0.0 or fy[p, i] != 0.0:
+                touching[p] = 1.0
+
+
+@njit(fastmath=FAST, **NRT)
+def plate_resultants(state, resultant):
+    """resultant (plate, 2) N: the forces of the plates on the tube."""
+    for p in range(len(resultant)):
+        resultant[p, 0], resultant[p, 1] = 0.0, 0.0
+        for i in range(NODES):
+            resultant[p, 0] += state.fx[p, i]
+            resultant[p, 1] += state.fy[p, i]
+
+
+@njit(fastmath=FAST, **NRT)
+def plate_step(plates, state, step, resultant):
+    """Kick and drift of every plate that yields, under the forces of the tube."""
+    for p in range(len(plates)):
+        table = plates[p]
+        if table[PLATE_MASS] > 0.0:
+            for k in range(2):
+                load = -resultant[p, k] - table[PLATE_STIFFNESS] * state.plate[p, k] - table[PLATE_DAMPING] * state.plate[p, 2 + k]
+                state.plate[p, 2 + k] += step * load / table[PLATE_MASS]
+                state.plate[p, k] += step * state.plate[p, 2 + k]
+
+
+@njit(fastmath=FAST, **NRT)
+def local_kick(local, state, kick, step):
+    """Add the forces of local elements, drag and loose masses to the modal kick; loose masses are kicked and moved here."""
+    for e in range(len(local.law)):
+        force, state.memory[e] = element_force(local.law[e], local.parameters[e], dot(local.row[e], state.q), dot(local.row[e], state.v),
+                                               state.memory[e], step)
+        add(kick, local.row[e], force)
+    for s in range(len(local.drag)):
+        wy, wx = dot(local.drag_y[s], state.v), dot(local.drag_x[s], state.v)
+        factor = -local.drag[s] * np.sqrt(wx * wx + wy * wy)
+        add(kick, local.drag_y[s], factor * wy)
+        add(kick, local.drag_x[s], factor * wx)
+    for b in range(len(local.loose)):
+        mass, gap, stiffness, damping = local.loose[b, 0], local.loose[b, 1], local.loose[b, 2], local.loose[b, 3]
+        x = state.loose[b, 0] - dot(local.loose_x[b], state.q)
+        y = state.loose[b, 1] - dot(local.loose_y[b], state.q)
+        radius = np.sqrt(x * x + y * y)
+        if radius > gap:
+            nx, ny = x / radius, y / radius
+            rate = nx * (state.loose[b, 2] - dot(local.loose_x[b], state.v)) + ny * (state.loose[b, 3] - dot(local.loose_y[b], state.v))
+            force = max(0.0, stiffness * (radius - gap) + damping * rate)
+            add(kick, local.loose_x[b], force * nx)
+            add(kick, local.loose_y[b], force * ny)
+            state.loose[b, 2] -= step * force * nx / mass
+            state.loose[b, 3] -= step * force * ny / mass
+        state.loose[b, 0] += step * state.loose[b, 2]
+        state.loose[b, 1] += step * state.loose[b, 3]
+
+
+@njit(fastmath=FAST, cache=True, error_model="numpy")
+def march(split, turn, contacts, plates, local, drive, force, other, unmeasured, dead, ramp, sensors, step, stride, start, state, out, reaction, touched):
+    """March len(force) steps; out (sample, channel) displacements m, reaction (sample, 2 plate) N, one sample per `stride` steps.
+
+    split: number of the "y" modes, which come first. turn (4, mode): the exact drift q' = t0 q + t1 v, v' = t2 q + t3 v. drive (mode,) and force (step,) N; other (mode,) and unmeasured (step or
+    0,) N a second one; dead (mode,) dead load, ramp (step or 1,) its factor, and that of the offsets. sensors (channel, mode), channels a multiple of 8. start: time in s at the first step. touched
+    (plate,) is increased by the steps in contact. Returns the number of the step at which the state is no longer finite, or -1.
+    """
+    modes, count = len(state.q), len(plates)
+    extra, work = np.zeros(modes), np.zeros((8, max(count, 1), NODES))
+    place_y, place_x, load_y, load_x = np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS)
+    resultant, touching, sample = np.zeros((count, 2)), np.ones(count), np.zeros(len(sensors))
+    qy, qx, vy, vx = state.q[:split], state.q[split:], state.v[:split], state.v[split:]
+    turn_y, turn_x = turn[:, :split].copy(), turn[:, split:].copy()
+    drive_y, drive_x, extra_y, extra_x = drive[:split], drive[split:], extra[:split], extra[split:]
+    yields = False
+    for p in range(count):
+        yields |= plates[p, PLATE_MASS] > 0.0
+    has_local = len(local.law) + len(local.drag) + len(local.loose) > 0
+    project(contacts.shape_y, 0, qy, place_y)
+    project(contacts.shape_x, 0, qx, place_x)
+    for n in range(len(force)):
+        scale = ramp[n] if len(ramp) > 1 else ramp[0]
+        if n == 0 or has_local or len(ramp) > 1 or len(unmeasured):
+            second = unmeasured[n] if len(unmeasured) else 0.0
+            for m in range(modes):
+                extra[m] = scale * dead[m] + second * other[m]
+        contact_forces(contacts, plates, state, place_y, place_x, load_y, load_x, work, start + n * step, scale, step, touching)
+        for p in range(count):
+            touched[p] += touching[p]
+        if has_local:
+            local_kick(local, state, extra, step)
+        if n % stride == 0 and len(sensors):
+            for first in range(0, len(sensors), ROWS):
+                project(sensors, first, state.q, sample)
+            plate_resultants(state, resultant)
+            for c in range(len(sensors)):
+                out[n // stride, c] = sample[c]
+            for p in range(count):
+                reaction[n // stride, 2 * p] = resultant[p, 0]
+                reaction[n // stride, 2 * p + 1] = resultant[p, 1]
+            if not abs(state.q[0]) < RUNAWAY:
+                return n
+        if yields:
+            plate_resultants(state, resultant)
+            plate_step(plates, state, step, resultant)
+        advance(contacts.shape_y, qy, vy, turn_y, step, force[n], drive_y, extra_y, load_y, place_y)
+        advance(contacts.shape_x, qx, vx, turn_x, step, force[n], drive_x, extra_x, load_x, place_x)
+    return -1

@@ -1,0 +1,65 @@
+"""What instruments make of the truth: gains, delays, noise, and faults. Ids that end up here leave the rig alone."""
+
+import numpy as np
+
+
+def sensor_gain(data, channel="apex_y", factor=1.15):
+    """A channel, "force", or "all" (the force and every response: the exact alias of a scaled gap) times factor."""
+    if channel in ("force", "all"):
+        data.force *= factor
+    for number, name in enumerate(data.names):
+        if channel in (name, "all"):
+            data.response[:, number] *= factor
+
+
+def sensor_delay(data, channel="apex_y", delay=1.0e-3):
+    """A channel or "force" late by delay [s]."""
+    for series in data.series(channel):
+        series[:] = delayed(series, delay * data.sampling)
+
+
+def swap(data, channel="apex_y", other="left_leg_upper_y"):
+    """Two channels on each other's cable."""
+    a, b = data.names.index(channel), data.names.index(other)
+    data.response[:, [a, b]] = data.response[:, [b, a]]
+
+
+def clip(data, channel="apex_y", fraction=0.4):
+    """A channel whose range ends at a fraction of its highest peak."""
+    series = data.series(channel)
+    limit = fraction * max(np.abs(one).max() for one in series)
+    for one in series:
+        np.clip(one, -limit, limit, out=one)
+
+
+def dropout(data, channel="apex_y", start=0.4, duration=1.5):
+    """A channel dead (zero) from a fraction `start` of each record, for duration [s]."""
+    for series in data.series(channel):
+        first = int(start * len(series))
+        series[first : first + int(duration * data.sampling)] = 0.0
+
+
+def delayed(series, samples):
+    """(time,) a series late by a number of samples, band-limited, silence before it."""
+    pad = len(series) // 8
+    wide = np.concatenate([np.zeros(pad), series, np.zeros(pad)])
+    turn = np.exp(-2j * np.pi * np.fft.rfftfreq(len(wide)) * samples)
+    return np.fft.irfft(np.fft.rfft(wide) * turn, len(wide))[pad : pad + len(series)]
+
+
+SENSOR_EFFECTS = {"sensor_gain": sensor_gain, "sensor_delay": sensor_delay}
+FAULTS = {"swap": swap, "clip": clip, "dropout": dropout}
+INSTRUMENTS = SENSOR_EFFECTS | FAULTS
+
+
+class Measured:
+    """Force (record, time) and response (record, channel, time) on their way through the instruments; names of the channels, sampling Hz."""
+
+    def __init__(self, force, response, names, sampling):
+        self.force, self.response, self.names, self.sampling = force, response, names, sampling
+
+    def series(self, channel):
+        """The (time,) series of a channel, or of the force, one per record; views."""
+        if channel == "force":
+            return list(self.force)
+        return list(self.response[:, self.names.index(channel)])

@@ -1,0 +1,145 @@
+"""Figures and page of a discrepancy run: what is drawn is what the files hold, and every verdict has its sentence."""
+
+import base64
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+
+from tests.discrepancy_results import CHANNELS, EDGES, RECORDS, made_up_candidates, made_up_map, made_up_ranking, made_up_verdict
+from vibroimpact.discrepancy_page import discrepancy_page, verdict_sentence
+from vibroimpact.discrepancy_results import read_results
+from vibroimpact.figures.discrepancy import discrepancy_figures
+from vibroimpact.figures.discrepancy_ranking import axis_label, shown_unit
+from vibroimpact.figures.discrepancy_spectra import chosen_channels, chosen_records
+from vibroimpact.records import write_record, write_table
+
+KINDS = ("none", "named", "ambiguous", "partly_explained", "unknown", "not_testable")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The files of a run that named friction."""
+    folder = tmp_path_factory.mktemp("named")
+    (folder / "candidates").mkdir()
+    (folder / "verdict.json").write_text(json.dumps(made_up_verdict()))
+    write_record(made_up_map(9.0), folder / "map.nc")
+    write_record(made_up_map(0.8, 2), folder / "map_after.nc")
+    write_table(made_up_ranking(), folder / "ranking.csv")
+    for name, candidate in zip(("b", "a"), made_up_candidates(), strict=True):
+        (folder / "candidates" / f"{name}.json").write_text(json.dumps(candidate))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def figures(folder):
+    """{name: Sheet} of the run, saved."""
+    sheets = discrepancy_figures(read_results(folder))
+    for sheet in sheets:
+        sheet.save(folder / "figures")
+    return {sheet.name: sheet for sheet in sheets}
+
+
+def rows_of(folder, name):
+    """The rows of a figure's table."""
+    with open(folder / "figures" / f"{name}.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_candidates_come_back_best_first(folder):
+    assert [candidate["ids"] for candidate in read_results(folder).candidates] == [["dry_friction"], ["gap"]]
+
+
+def test_axes_say_what_they_are_and_in_which_unit(figures):
+    for sheet in figures.values():
+        for name, axes in sheet.axes.items():
+            shared = not axes.get_xticklabels() or not axes.xaxis.get_tick_params().get("labelbottom", True)
+            assert axes.get_xlabel().endswith(")") or shared or sheet.name in ("discrepancy_psd", "discrepancy_map"), (sheet.name, name)
+        assert any(axes.get_xlabel() for axes in sheet.axes.values()) and sheet.caption.endswith(".")
+
+
+def test_the_map_holds_every_counted_cell(folder, figures):
+    rows = rows_of(folder, "discrepancy_map")
+    assert len(rows) == 4 * len(RECORDS) * len(CHANNELS) * 24
+    before = made_up_map(9.0)
+    shown = [row for row in rows if row["panel"] == "D before" and row["curve"] == "L10_G1.3_2, apex_y"]
+    np.testing.assert_allclose([float(row["discrepancy_dB"]) for row in shown], before["D"].values[2, 0], rtol=1e-6)
+    np.testing.assert_allclose([float(row["frequency_Hz"]) for row in shown], np.sqrt(EDGES[:-1] * EDGES[1:]), rtol=1e-6)
+    quiet = [row["discrepancy_dB"] for row in rows if row["panel"] == "D before" and row["curve"] == "L0.5_G1.3_0, apex_x"]
+    assert set(quiet) == {"nan"}  # not 6 dB above its noise
+    meshes = [figures["discrepancy_map"].axes[f"z {stage}"].collections[0] for stage in ("before", "after")]
+    assert meshes[0].get_clim() == meshes[1].get_clim() and meshes[0].get_clim()[0] == -meshes[0].get_clim()[1]
+
+
+def test_the_spectra_of_the_records_that_say_most_are_shown(folder, figures):
+    before = made_up_map(9.0)
+    assert [RECORDS[index][0] for index in chosen_records(before)] == ["L0.5_G1.3_0", "L10_G1.3_2", "L10_G0.9_3"]
+    assert [CHANNELS[index] for index in chosen_channels(before)] == ["apex_y", "bend45_right_y"]
+    rows = [row for row in rows_of(folder, "discrepancy_psd") if row["record"] == "L10_G1.3_2" and row["channel"] == "apex_y"]
+    assert {row["curve"] for row in rows} == {"measured", "before", "after"}
+    assert all(float(row["psd_m2_per_s4_per_Hz_low"]) <= float(row["psd_m2_per_s4_per_Hz_high"]) for row in rows if row["curve"] != "measured")
+
+
+def test_the_ranking_shows_scores_and_the_null_line(folder, figures):
+    rows = rows_of(folder, "discrepancy_ranking")
+    assert [row["curve"] for row in rows][:2] == ["dry_friction", "dry_friction+gap"]
+    held = [float(row["heldout_score"]) for row in rows]
+    assert held == sorted(held, reverse=True)
+    bars = figures["discrepancy_ranking"].axes["main"].patches
+    assert [bar.get_width() for bar in bars[:3]] == [84.0, 82.0, 61.0]
+    assert bars[0].get_facecolor() != bars[1].get_facecolor() != bars[6].get_facecolor()  # named; simulated; emulated
+    assert "best by chance (98 %)" in [line.get_label() for line in figures["discrepancy_ranking"].axes["main"].lines]
+
+
+def test_parameters_are_shown_in_units_of_the_field():
+    assert shown_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and shown_unit("m", [1.2]) == ("m", 1.0)
+    assert shown_unit("N/m", [4e6]) == ("MN/m", 1e-6) and shown_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3) and shown_unit("1", [0.15]) == ("1", 1.0)
+    assert axis_label("offset_x", "mm") == "offset x (mm)" and axis_label("mu", "1") == "mu (-)"
+
+
+def test_a_run_without_map_or_candidates_says_so(tmp_path):
+    (tmp_path / "verdict.json").write_text(json.dumps(made_up_verdict("not_testable")))
+    sheets = discrepancy_figures(read_results(tmp_path))
+    assert len(sheets) == 5 and all(sheet.tables == [] for sheet in sheets)
+    for sheet in sheets:
+        sheet.save(tmp_path)
+        assert [text.get_text() for axes in sheet.axes.values() for text in axes.texts]
+    page = discrepancy_page("refused", made_up_verdict("not_testable"), [])
+    assert "can not be judged" in page and "a verdict needs two levels" in page
+
+
+def test_a_run_without_a_completed_model_shows_the_map_alone(folder, tmp_path):
+    sheets = {sheet.name: sheet for sheet in discrepancy_figures(read_results_without_after(folder, tmp_path))}
+    assert [text.get_text() for text in sheets["discrepancy_map"].axes["D after"].texts] == ["no completed model"]
+    assert {curve for _, curve, _ in sheets["discrepancy_psd"].tables} == {"measured", "before"}
+
+
+def read_results_without_after(folder, elsewhere):
+    """The Results of the run, had it named nothing."""
+    for name in ("verdict.json", "map.nc", "ranking.csv"):
+        (elsewhere / name).write_bytes((folder / name).read_bytes())
+    return read_results(elsewhere)
+
+
+def test_the_page_is_one_file_with_everything_in_it(folder, figures):
+    verdict = made_up_verdict()
+    files = [folder / "figures" / f"{name}.png" for name in figures]
+    page = discrepancy_page("dev <friction>", verdict, files)
+    assert not re.findall(r'(?:src|href)="(?!data:)', page) and "dev &lt;friction&gt;" in page
+    images = re.findall(r"base64,([^\"]+)", page)
+    assert [base64.b64decode(image) for image in images] == [file.read_bytes() for file in files]
+    for part in ("The model lacks dry friction (mu 0.149, between 0.128 and 0.171)", "the contact rubs", "0.128 to 0.171", "24 to 33", "+7.4", "T5, power balance",
+                 "87 %", "flat tops", "3120 simulations", "0123456789abcdef", "below 0.001"):
+        assert part in page, part
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_verdict_has_its_sentence_and_page(kind):
+    verdict = made_up_verdict(kind)
+    sentence = verdict_sentence(verdict)
+    assert sentence.endswith(".") and {"none": "No effect", "named": "lacks dry friction", "ambiguous": "dry friction, or foliate obstacle", "unknown": "no effect of the catalogue",
+                                       "partly_explained": "something else", "not_testable": "can not be judged"}[kind] in sentence
+    page = discrepancy_page(kind, verdict, [])
+    assert sentence.split(" (")[0] in page and ("Measure next" in page) == (kind == "ambiguous")

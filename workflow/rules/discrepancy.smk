@@ -1,0 +1,249 @@
+# A measured campaign against a model: `snakemake -j2 discrepancy --config campaign=FILE [model=config/x.yaml] [quick=yes]`.
+# bank=FOLDER takes the candidates' simulations from another campaign of the same model, loads and gaps.
+
+DISCREPANCY = f"results/{LOOKED_AT}"
+QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
+BANK = REQUEST.get("bank", "")
+CANDIDATES = local_names(MODEL.model_dump(mode="json"))
+NULLS = [f"{DISCREPANCY}/null/{part}.npz" for part in range(NULL_PARTS)]
+PATHS = [f"{BANK or DISCREPANCY}/paths/{name}.npz" for name in CANDIDATES]
+BANK_NULLS = [f"{BANK}/null/{part}.npz" for part in range(NULL_PARTS)] if BANK else []
+
+
+def finalist_files(wildcards):
+    """The finalists that the screening named."""
+    names = finalist_names(checkpoints.discrepancy_screening.get().output.screening)
+    return [f"{DISCREPANCY}/finalists/{name}.npz" for name in names]
+
+
+def pair_files(wildcards):
+    """The pairs that the finalists left to be tried."""
+    return [f"{DISCREPANCY}/pairs/{name}.npz" for name in pair_names(checkpoints.discrepancy_pairs.get().output.pairs)]
+
+
+wildcard_constraints:
+    part=r"[0-9]+",
+    candidate=r"[a-z_]+@[A-Za-z0-9_.-]+",
+    pair=r"[a-z_]+@[A-Za-z0-9_.-]+(\+[a-z_]+@[A-Za-z0-9_.-]+)?",
+
+
+rule discrepancy_prepare:
+    input:
+        library=library("discrepancy_prepare"),
+        campaign=requested("campaign", "FILE"),
+    output:
+        prepared=f"{DISCREPANCY}/prepared.json",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+    log:
+        f"{DISCREPANCY}/logs/prepare.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/prepare.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=20,
+    message:
+        "Checks and linear stage of the campaign"
+    script:
+        "../scripts/discrepancy_prepare.py"
+
+
+rule discrepancy_null:
+    input:
+        library=library("discrepancy_null"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+    output:
+        null=f"{DISCREPANCY}/null/{{part}}.npz",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+    log:
+        f"{DISCREPANCY}/logs/null_{{part}}.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/null_{{part}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    message:
+        "Null: seeds of the bare model, part {wildcards.part}"
+    script:
+        "../scripts/discrepancy_null.py"
+
+
+rule discrepancy_candidate:
+    input:
+        library=library("discrepancy_candidate"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+    output:
+        path=f"{DISCREPANCY}/paths/{{candidate}}.npz",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+    log:
+        f"{DISCREPANCY}/logs/candidate_{{candidate}}.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/candidate_{{candidate}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    message:
+        "Candidate {wildcards.candidate}: simulated at its first parameters"
+    script:
+        "../scripts/discrepancy_candidate.py"
+
+
+checkpoint discrepancy_screening:
+    input:
+        library=library("discrepancy_screening"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+        null=NULLS,
+        paths=PATHS,
+        bank_null=BANK_NULLS,
+    output:
+        screening=f"{DISCREPANCY}/screening.json",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+        candidates=CANDIDATES,
+    log:
+        f"{DISCREPANCY}/logs/screening.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/screening.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=30,
+    message:
+        "Screening of all candidates"
+    script:
+        "../scripts/discrepancy_screening.py"
+
+
+rule discrepancy_finalist:
+    input:
+        library=library("discrepancy_finalist"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+        null=NULLS,
+        paths=PATHS,
+        bank_null=BANK_NULLS,
+        screening=f"{DISCREPANCY}/screening.json",
+    output:
+        finalist=f"{DISCREPANCY}/finalists/{{candidate}}.npz",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+        candidates=CANDIDATES,
+    log:
+        f"{DISCREPANCY}/logs/finalist_{{candidate}}.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/finalist_{{candidate}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    message:
+        "Finalist {wildcards.candidate}: refined by direct simulation"
+    script:
+        "../scripts/discrepancy_finalist.py"
+
+
+checkpoint discrepancy_pairs:
+    input:
+        library=library("discrepancy_pairs"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+        null=NULLS,
+        paths=PATHS,
+        bank_null=BANK_NULLS,
+        screening=f"{DISCREPANCY}/screening.json",
+        finalists=finalist_files,
+    output:
+        pairs=f"{DISCREPANCY}/pairs.json",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+        candidates=CANDIDATES,
+    log:
+        f"{DISCREPANCY}/logs/pairs.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/pairs.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=30,
+    message:
+        "Second effect: which pairs to simulate"
+    script:
+        "../scripts/discrepancy_pairs.py"
+
+
+rule discrepancy_pair:
+    input:
+        library=library("discrepancy_pair"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+        null=NULLS,
+        paths=PATHS,
+        bank_null=BANK_NULLS,
+        pairs=f"{DISCREPANCY}/pairs.json",
+    output:
+        pair=f"{DISCREPANCY}/pairs/{{pair}}.npz",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+        candidates=CANDIDATES,
+    log:
+        f"{DISCREPANCY}/logs/pair_{{pair}}.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/pair_{{pair}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    message:
+        "Pair {wildcards.pair}: refined by direct simulation"
+    script:
+        "../scripts/discrepancy_pair.py"
+
+
+rule discrepancy_verdict:
+    input:
+        library=library("discrepancy_verdict"),
+        campaign=requested("campaign", "FILE"),
+        prepared=f"{DISCREPANCY}/prepared.json",
+        null=NULLS,
+        paths=PATHS,
+        bank_null=BANK_NULLS,
+        screening=f"{DISCREPANCY}/screening.json",
+        finalists=finalist_files,
+        pairs=pair_files,
+    output:
+        verdict=f"{DISCREPANCY}/verdict.json",
+        map=f"{DISCREPANCY}/map.nc",
+        map_after=f"{DISCREPANCY}/map_after.nc",
+        ranking=f"{DISCREPANCY}/ranking.csv",
+        model=f"{DISCREPANCY}/model_updated.yaml",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        quick=QUICK,
+        candidates=CANDIDATES,
+    log:
+        f"{DISCREPANCY}/logs/verdict.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/verdict.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    message:
+        "Verdict, verified on fresh seeds"
+    script:
+        "../scripts/discrepancy_verdict.py"

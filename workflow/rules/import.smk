@@ -1,0 +1,55 @@
+# Measurements in. `snakemake -j2 import_campaign --config import=FOLDER`, `snakemake -j1 quicklook --config campaign=FILE`
+
+IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
+LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
+
+
+rule import_campaign:
+    input:
+        library=library("import_campaign"),
+        folder=requested("import", "FOLDER"),
+        files=lambda wildcards: sorted(str(file) for file in Path(REQUEST["import"]).iterdir() if file.is_file()),
+    output:
+        campaign=f"results/{IMPORTED}/{IMPORTED}.nc",
+        table=f"results/{IMPORTED}/import.csv",
+        text=f"results/{IMPORTED}/import.txt",
+        checks=f"results/{IMPORTED}/checks.csv",
+        figure=[f"results/{IMPORTED}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
+    params:
+        folder=REQUEST.get("import"),
+    log:
+        f"results/{IMPORTED}/logs/import_campaign.log",
+    benchmark:
+        f"results/{IMPORTED}/benchmarks/import_campaign.tsv"
+    threads: 1
+    resources:
+        mem_mb=4000,
+        runtime=20,
+    message:
+        f"Campaign of the folder {IMPORTED}: results/{IMPORTED}/import.txt says what was found"
+    script:
+        "../scripts/import_campaign.py"
+
+
+rule quicklook:
+    input:
+        library=library("quicklook"),
+        campaign=requested("campaign", "FILE.nc"),
+    output:
+        checks=f"results/{LOOKED_AT}/quicklook_checks.csv",
+        text=f"results/{LOOKED_AT}/quicklook_checks.txt",
+        figure=[f"results/{LOOKED_AT}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
+    params:
+        campaign=REQUEST.get("campaign"),
+    log:
+        f"results/{LOOKED_AT}/logs/quicklook.log",
+    benchmark:
+        f"results/{LOOKED_AT}/benchmarks/quicklook.tsv"
+    threads: 1
+    resources:
+        mem_mb=4000,
+        runtime=10,
+    message:
+        f"Quick look at {LOOKED_AT}: results/{LOOKED_AT}/quicklook.png"
+    script:
+        "../scripts/quicklook.py"

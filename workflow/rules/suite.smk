@@ -1,0 +1,79 @@
+# The hidden-effect suite: `snakemake -j2 suite --config seed=1 count=90 shard=0/1`. Shards add up; what is done is kept. Without a seed it is that of
+# the frozen thresholds.
+
+SUITE_SEED = int(REQUEST.get("seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")))
+SUITE = f"results/suite_{SUITE_SEED}"
+SUITE_S = int(REQUEST.get("seconds", 20))
+SUITE_CAMPAIGNS = shard_of(int(REQUEST.get("count", 12)), REQUEST.get("shard", "0/1"))
+
+
+rule suite_bank:
+    input:
+        library=library("suite_bank"),
+    output:
+        campaign=f"{SUITE}/bank/bank.nc",
+        done=f"{SUITE}/bank/verdict.json",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        seconds=SUITE_S,
+    log:
+        f"{SUITE}/logs/bank.log",
+    benchmark:
+        f"{SUITE}/benchmarks/bank.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=120,
+    message:
+        "Suite: candidates simulated on a campaign with nothing hidden, for all campaigns of the suite"
+    script:
+        "../scripts/suite_bank.py"
+
+
+rule suite_campaign:
+    input:
+        library=library("suite_campaign"),
+        bank=f"{SUITE}/bank/verdict.json",
+    output:
+        verdict=f"{SUITE}/campaign_{{number}}/verdict.json",
+        truth=f"{SUITE}/truth/campaign_{{number}}.json",
+    params:
+        config=MODEL.model_dump(mode="json"),
+        seed=SUITE_SEED,
+        seconds=SUITE_S,
+    log:
+        f"{SUITE}/logs/campaign_{{number}}.log",
+    benchmark:
+        f"{SUITE}/benchmarks/campaign_{{number}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    message:
+        "Suite: campaign {wildcards.number} of seed " + str(SUITE_SEED)
+    script:
+        "../scripts/suite_campaign.py"
+
+
+rule suite:
+    input:
+        library=library("suite"),
+        verdicts=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
+    output:
+        rates=f"{SUITE}/rates.csv",
+        campaigns=f"{SUITE}/campaigns.csv",
+        confusion=f"{SUITE}/confusion.csv",
+    params:
+        folder=SUITE,
+    log:
+        f"{SUITE}/logs/suite.log",
+    benchmark:
+        f"{SUITE}/benchmarks/suite.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    message:
+        f"Suite of seed {SUITE_SEED}: {SUITE}/rates.csv"
+    script:
+        "../scripts/suite.py"

@@ -1,0 +1,16 @@
+"""Make a sealed campaign of the suite, run it, and keep its verdict and its truth."""
+
+import pickle
+import sys
+from pathlib import Path
+
+from vibroimpact.discrepancy.suite import left_out, run_sealed
+from vibroimpact_truth.campaign import LEVELS, make_campaign
+from vibroimpact_truth.draw import drawn
+
+sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+number, bank = int(snakemake.wildcards.number), Path(snakemake.input.bank).parent
+plan = drawn(snakemake.params.seed, number + 1, levels=LEVELS, duration=float(snakemake.params.seconds))[number]
+folder = Path(snakemake.output.verdict).parent
+make_campaign(plan, folder / "campaign.nc", snakemake.output.truth)
+run_sealed(snakemake.params.config, folder, bank, pickle.loads((bank / "tables.pickle").read_bytes()), left_out(plan.effects, plan.arm))
