@@ -22,7 +22,6 @@ FIGURES = {
     "identification": (
         "figure_09_poles", "figure_09_stabilisation", "figure_10_shapes", "figure_11_singular_values", "figure_12_broadband",
     ),
-    "completion": ("frf_overlay", "prediction", "mounting", "where", "restoring_force"),
     "checks": ("figure_13_equivalent_support", "collapse", "energy_balance", "contact_statistics"),
 }
 
@@ -117,6 +116,7 @@ def jobs_of_study():
     return jobs
 
 
+COMPLETION_FIGURES = ("frf_overlay", "prediction", "mounting", "where", "restoring_force")
 MEASURED = {
     "f16": ("f16_data", STUDY.f16_data, "F16Data_FullMSine_Level*.mat", "the F-16 ground vibration test (Noel and Schoukens, 2017)"),
     "silverbox": ("silverbox_data", STUDY.silverbox_data, "SNJP_?m_full_FNSI_*.mat", "the Silverbox records (Noel and Schoukens, 2017)"),
@@ -150,7 +150,7 @@ def addition_files(wildcards):
 
 def completion_figure_files(structure):
     """The figures of a completion; structure may be the wildcard in braces."""
-    return [f"results/{structure}/figures/{name}.{suffix}" for name in FIGURES["completion"] for suffix in ("png", "pdf", "csv", "txt")]
+    return [f"results/{structure}/figures/{name}.{suffix}" for name in COMPLETION_FIGURES for suffix in ("png", "pdf", "csv", "txt")]
 
 
 def completion_files(structure):

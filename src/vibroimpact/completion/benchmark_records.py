@@ -35,7 +35,8 @@ def f16_campaign(paths):
         level, data = int(found.group(1)), _variables(path, ("Force", "Acceleration", "Fs"))
         fitted = level in F16_FITTED and found.group(2) is None
         key = (level, found.group(2) or "")
-        records[key] = (f"level {level}", "fit" if fitted else "holdout", data["Force"].reshape(1, -1), data["Acceleration"], float(data["Fs"].ravel()[0]))
+        name = f"level {level} validation" if found.group(2) and (level, "") in records else f"level {level}"
+        records[key] = (name, "fit" if fitted else "holdout", data["Force"].reshape(1, -1), data["Acceleration"], float(data["Fs"].ravel()[0]))
     channels = [Channel(f"acceleration {number + 1}", (float(number), 0.0, 0.0), (0.0, 0.0, 1.0), "m s-2", "acceleration") for number in range(3)]
     drive = Channel("force", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), "N", "force")
     source = "F-16 ground vibration test, Noel and Schoukens 2017, full multisine; positions nominal"

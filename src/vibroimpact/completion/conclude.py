@@ -35,6 +35,8 @@ def conclude(campaign, study, linear, singles, additions, told=print):
     everything = Records(tuple(levels), study.band_Hz, study.mean)
     trial = with_offsets(trial, everything)
     predicted = everything.predict(trial, PERIODS_BEFORE)
+    if predicted is None:
+        raise ValueError(f"{choice.chosen}: the completed model has no bounded motion at some level that it was not fitted to: leave that level out")
     lines = [everything.kept(level) & (level.frequency > 0.0) for level in levels]
     completed = [part[:, line[everything.kept(level)]] for part, line, level in zip(predicted, lines, levels, strict=True)]
     errors = [_relative(part, level.response[:, line]) for part, line, level in zip(completed, lines, levels, strict=True)]

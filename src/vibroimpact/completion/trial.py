@@ -147,6 +147,8 @@ def with_offsets(trial, records):
     offsets = {level.name: trial.offsets.get(level.name, 0.0) for level in records.levels}
     for _ in range(SETTLINGS):
         predicted = records.predict(replace(trial, offsets=offsets))
+        if predicted is None:
+            return trial
         for level, lines in zip(records.levels, predicted, strict=True):
             offsets[level.name] += float((level.response[modes.drive, 0] - lines[modes.drive, 0]).real) / flexibility
     return replace(trial, offsets=offsets)

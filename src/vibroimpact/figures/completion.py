@@ -13,6 +13,8 @@ from vibroimpact.steady import steady_elements
 
 KINDS = (("error_linear", "linear, lowest level", ORANGE), ("error_refitted", "linear, identified again", BLUE), ("error_completed", "completed", GREEN))
 LOOP_PERIODS = 4
+LOOPS = {ELSEWHERE: ("own_displacement", "own_force")}  # the participation of a hidden place has no scale of its own
+COLUMNS = {"stiffness": "support_stiffness_change_N_per_m", "damping": "support_damping_change_N_s_per_m"}
 
 
 def sheets(campaign, study, linear, completed, verdict, mounting, prediction):
@@ -34,7 +36,7 @@ def frf_overlay(study, levels, names, linear, records, predicted):
     keys += ["."] * (-len(keys) % columns)
     grid = [keys[first : first + columns] for first in range(0, len(keys), columns)]
     sheet = Sheet("frf_overlay", f"{study.name}: response per force",
-                  "Measured response per force at every line (black), the linear model of the lowest level (orange) and the completed model (green). "
+                  "Measured response per force at every line (black dots), the linear model of the lowest level (orange) and the completed model (green). "
                   "The linear model is the same in every panel; the measured peak moves and flattens as the level rises.", grid, size=(7.6, 2.2 * len(grid)), sharex=True)  # fmt: skip
     base = modes_of(linear["base"])
     for channel, index in panels:
@@ -42,13 +44,14 @@ def frf_overlay(study, levels, names, linear, records, predicted):
         kept = records.kept(level)
         lines = np.flatnonzero(kept & (level.frequency > 0.0))
         frequency, force = level.frequency[lines], level.force[lines]
-        curves = (("measured", level.response[channel, lines] / force, BLACK, {"linewidth": 1.0}),
+        curves = (("measured", level.response[channel, lines] / force, BLACK, {"linewidth": 0, "marker": ".", "markersize": 2.2}),
                   ("linear, lowest level", base.frf(frequency)[channel], ORANGE, {"linewidth": 1.0, "linestyle": "--"}),
-                  ("completed", predicted[index][channel, (level.frequency[kept] > 0.0)] / force, GREEN, {"linewidth": 1.0}))  # fmt: skip
+                  ("completed", predicted[index][channel, (level.frequency[kept] > 0.0)] / force, GREEN, {"linewidth": 0.9}))  # fmt: skip
         for name, values, colour, style in curves:
             sheet.line(axes, ("frequency_Hz", frequency), ("response_per_force", np.abs(values)), name, tags={"level": level.name, "channel": names[channel]},
                        color=colour, label=name, **style)  # fmt: skip
         axes.set_yscale("log")
+        axes.set_ylabel("V/V" if study.units else "(m/s²)/N")
         axes.set_title(f"{names[channel]}, {level.name} ({level.split})", fontsize=8)
     sheet.legend(sheet.axes[grid[0][0]], fontsize=7)
     return sheet
@@ -85,10 +88,10 @@ def prediction_errors(study, rows):
 
 def equivalent_support(study, rows):
     """Equivalent stiffness and damping of the mounting against level, by each method."""
-    unit = "N" if study.name == "f16" else "V"
+    unit = study.unit("N")
     sheet = Sheet("mounting", f"{study.name}: equivalent stiffness and damping ({study.mounting}) against level",
                   "Change of the equivalent bilateral stiffness and damping against the lowest level, that give the linear model the pole of the peak, the deflection "
-                  "shape round it, the spectra of the band, or the whole response with all levels fitted together (frf). Filled: held-out levels.",
+                  "shape round it, the spectra of the band, or the whole response with all levels fitted together.",
                   [["stiffness", "damping"]], size=(7.6, 3.4))  # fmt: skip
     styles = {"peak": METHODS["lscf"], "ods": METHODS["ods"], "broadband": METHODS["broadband"], "frf": ("all levels together", BLACK, "x")}
     for method, (name, colour, marker) in styles.items():
@@ -97,12 +100,15 @@ def equivalent_support(study, rows):
             values = np.array([float(row[column]) for row in own])
             load = np.array([float(row["load_rms_N"]) for row in own])
             if own and np.isfinite(values).any():
-                shown = "support_stiffness_change_N_per_m" if panel == "stiffness" else "support_damping_change_N_s_per_m"
+                shown = f"{panel}_change" if study.units else COLUMNS[panel]
                 sheet.line(sheet.axes[panel], ("load_rms_N", load), (shown, values), name, tags={"method": method}, color=colour, marker=marker, label=name,
                            markersize=5, linewidth=1, markerfacecolor="none")  # fmt: skip
     for axes in sheet.axes.values():
         axes.axhline(0.0, color="0.7", linewidth=0.8)
         axes.set_xlabel(f"Load ({unit} RMS)")
+    if study.units:
+        sheet.axes["stiffness"].set_ylabel("Change of k (-)")
+        sheet.axes["damping"].set_ylabel("Change of c (s)")
     sheet.legend(sheet.axes["stiffness"], fontsize=7)
     return sheet
 
@@ -144,10 +150,11 @@ def restoring_force(study, trial, records):
             own = np.flatnonzero(counts == place)
             signals = [np.fft.irfft(_padded(lines, drive.steps), drive.steps) * drive.steps for lines in (motion[own[0], lane], -force[own, lane].sum(axis=0))]
             keep = slice(0, drive.steps, max(1, drive.steps // 12000))
-            sheet.line(sheet.axes[place], ("relative_displacement", signals[0][keep]), ("restoring_force", signals[1][keep]), records.levels[index].name,
+            across, up = ("output_V", "restoring_V") if study.units else LOOPS.get(place, ("relative_displacement", "restoring_force"))
+            sheet.line(sheet.axes[place], (across, signals[0][keep]), (up, signals[1][keep]), records.levels[index].name,
                        color=colour, linewidth=0.4, label=records.levels[index].name)  # fmt: skip
     for place in places:
-        sheet.axes[place].set_title("elsewhere (own units)" if place == ELSEWHERE else place, fontsize=9)
+        sheet.axes[place].set_title(place, fontsize=9)
     sheet.legend(sheet.axes[places[0]], fontsize=7)
     return sheet
 

@@ -58,6 +58,8 @@ COLUMNS = {
     "response_per_force": ("|response / force|", 1.0), "share_of_error": ("Running share of error", 1.0),
     "support_stiffness_change_N_per_m": ("Change of k (MN/m)", 1e-6), "support_damping_change_N_s_per_m": ("Change of c (kN s/m)", 1e-3),
     "relative_displacement": ("Relative displacement (mm)", 1e3), "restoring_force": ("Force (N)", 1.0),
+    "stiffness_change": ("Change of k (-)", 1.0), "damping_change": ("Change of c (s)", 1.0), "output_V": ("Output (V)", 1.0),
+    "restoring_V": ("Force (V)", 1.0), "own_displacement": ("Motion of the hidden place (arbitrary scale)", 1.0), "own_force": ("Its force (arbitrary scale)", 1.0),
     "discrepancy_dB": ("Measured / simulated (dB)", 1.0), "z": ("z (standard deviations)", 1.0), "heldout_score": ("Score on held-out records (-)", 1.0),
     "score": ("Score (-)", 1.0), "parameter": ("Parameter (in its unit)", 1.0), "place_in_list": ("", 1.0),
     "psd_N2_per_Hz": ("PSD of force (N²/Hz)", 1.0), "psd_m2_per_s2_per_Hz": ("PSD of velocity ((m/s)²/Hz)", 1.0),
