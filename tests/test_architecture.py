@@ -21,8 +21,8 @@ LAYERS = (
      "units", "campaign", "campaign_checks", "campaign_faults", "campaign_linear_checks", "campaign_model_checks", "campaign_signals"),
     ("importing",),
     ("ritz", "modifications", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),
-    ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "identify", "synthetic_campaign"),
-    ("effects", "discrepancy", "consistency", "statistics_table", "timing", "f16"),
+    ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "multisine", "identified", "steady", "identify", "synthetic_campaign"),
+    ("effects", "discrepancy", "consistency", "statistics_table", "timing", "f16", "completion"),
     ("validation", "discrepancy_results", "discrepancy_page"),
     ("figures",),
 )

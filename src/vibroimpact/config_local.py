@@ -91,7 +91,7 @@ class LocalElement(Section):
     drag_N_s2_per_m2: Non_negative = 0.0
     slip_limit_N: Non_negative = 0.0
     stick_stiffness_N_per_m: Non_negative = 0.0
-    saturation_stiffness_N_per_m: Non_negative = 0.0
+    saturation_stiffness_N_per_m: Number = 0.0
     saturation_limit_N: Non_negative = 0.0
 
 

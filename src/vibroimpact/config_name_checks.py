@@ -19,7 +19,8 @@ def names_twice(supports):
 
 def known_points(structure, points, excitation, record, supports, elements):
     """Yield a problem unless points that the configuration names are there."""
-    known = {"chain": lambda: [mass.name for mass in structure.masses], "matrices": lambda: list(structure.points)}
+    known = {"chain": lambda: [mass.name for mass in structure.masses], "matrices": lambda: list(structure.points),
+             "identified": lambda: sorted({name for mode in structure.modes for name in mode.shape})}
     names = known.get(structure.kind, lambda: list(points))()
     named = list(_force_points(excitation))
     named += [(f"record.sensors.points[{i}]", name) for i, name in enumerate(record.sensors.points if record.sensors else ())]
@@ -83,8 +84,8 @@ def chain_names(structure):
 
 def initial_points(structure, initial):
     """Yield a problem unless only a chain or matrices start in motion."""
-    if structure.kind in TUBES and (initial.displacement_m or initial.velocity_m_per_s):
-        yield "initial", "given", "sets dofs of a chain or of matrices: a tube starts at rest"
+    if structure.kind in (*TUBES, "identified") and (initial.displacement_m or initial.velocity_m_per_s):
+        yield "initial", "given", "sets dofs of a chain or of matrices: a tube and measured modes start at rest"
 
 
 def sensors(record):

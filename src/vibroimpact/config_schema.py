@@ -13,6 +13,7 @@ from vibroimpact.config_types import (Axis, Band_Hz, Duration_s, Force_N, Fracti
                            Positive_factor, Section, Start_up_s, Stiffness_range, Stress_Pa, Study_name, Vector, count, one_or_list, within)
 
 F16_DATA = "../shared/data/f16_ground_vibration"
+SILVERBOX_DATA = "../shared/data/silverbox"
 
 
 class Basis(Section):
@@ -139,3 +140,4 @@ class Config(Section):
     identification: Identification | None = None
     overlay: Overlay = Overlay()
     f16_data: str = F16_DATA
+    silverbox_data: str = SILVERBOX_DATA

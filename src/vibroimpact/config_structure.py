@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from vibroimpact.config_types import (Angle_deg, Axis, Coefficient, Damping_ratio, Density, Diameter_m, Length_m, Name, Poisson_ratio,
+from vibroimpact.config_types import (Angle_deg, Axis, Coefficient, Damping_ratio, Density, Diameter_m, Frequency_Hz, Length_m, Name, Number, Poisson_ratio,
                            Positive_factor, Rotation_stiffness, Section, Shear_coefficient, Stiffness, Vector, Wall_m,
-                           Youngs_modulus_Pa, choice, count, row)
+                           Youngs_modulus_Pa, choice, count, row, within)
 
 
 class TubeSection(Section):
@@ -140,7 +140,26 @@ class Matrices(Section):
     points: dict[Name, dict[Axis, count(0, 10**7, "dofs are counted from 0")]]
 
 
-Structure = choice(UTube, Path, Chain, Matrices)
+class MeasuredMode(Section):
+    """A mode of a measured structure: shape {point: {direction: displacement}} in kg^-1/2, scaled by the drive point; zero where left out.
+
+    residual: it stands for what lies outside the measured band, and its frequency means nothing by itself.
+    """
+
+    frequency_Hz: Frequency_Hz
+    damping_ratio: Annotated[Number, within("a fraction, not per cent: 1.5 % is 0.015", at_least=0, at_most=10)]
+    shape: dict[Name, dict[Axis, Number]]
+    residual: bool = False
+
+
+class Identified(Section):
+    """A structure known by its measured modes; its points are those that the shapes name, and its damping is that of the modes."""
+
+    kind: Literal["identified"]
+    modes: Annotated[tuple[MeasuredMode, ...], Field(min_length=1)]
+
+
+Structure = choice(UTube, Path, Chain, Matrices, Identified)
 
 
 class ModalDamping(Section):

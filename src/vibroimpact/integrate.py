@@ -229,10 +229,13 @@ class _Run:
         )
 
 
-def start_state(layout: ModalLayout, modal, contact, laws, state, work, drive) -> None:
-    """Put the model's initial displacement and velocity, and the force drive (force_channel, LANES) N of that time, into the state."""
+def start_state(layout: ModalLayout, modal, contact, laws, state, work, drive, initial=None) -> None:
+    """Put the initial displacement and velocity, and the force drive (force_channel, LANES) N of that time, into the state.
+
+    initial: (displacement, velocity), modal amplitudes (mode, LANES) each; the model's own, the same in every lane, when left out.
+    """
     model, shapes = layout.model, layout.row_shapes
-    q, v = (np.outer(values, np.ones(LANES)) for values in (model.initial_displacement, model.initial_velocity))
+    q, v = initial or (np.outer(values, np.ones(LANES)) for values in (model.initial_displacement, model.initial_velocity))
     if np.any(q) or np.any(v):
         state.displacement[-1] = layout.per_mode(q)
         state.row_displacement[...], state.row_velocity[...] = shapes @ q, shapes @ v

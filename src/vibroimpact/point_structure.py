@@ -62,18 +62,40 @@ class PointStructure:
         return (self.mass @ rigid).T
 
 
+@dataclass(frozen=True, eq=False)
+class IdentifiedStructure(PointStructure):
+    """A structure known by its measured modes: its dofs are modal amplitudes (kg^1/2 m), a point moves by the modes' shapes.
+
+    rows {point: (3, dof)} kg^-1/2; directions {point: {axis: axis}} name what was measured, and are no dofs.
+    """
+
+    rows: dict
+
+    def point_rows(self, name):
+        """Return (3, dof): displacement of a named point along x, y and z per unit modal amplitude. Raises ValueError."""
+        if name not in self.rows:
+            raise ValueError(f"point '{name}' is not among the structure's: {', '.join(sorted(self.rows))}")
+        return self.rows[name]
+
+    @property
+    def inertia(self):
+        """Refuse: measured modes do not tell what moves with the base. Raises ValueError."""
+        raise ValueError("structure.kind identified can not be driven by its base: its mass is not known, only its modes")
+
+
 def build_point_structure(config):
-    """Return the PointStructure of a configuration with structure.kind chain or matrices.
+    """Return the PointStructure of a configuration with structure.kind chain, matrices or identified.
 
     Raises ValueError: a spring or support names a mass or point that is not there; MatrixFileError.
     """
-    parts = _chain(config.structure) if config.structure.kind == "chain" else _matrices(config.structure)
+    parts = {"chain": _chain, "matrices": _matrices, "identified": _identified}[config.structure.kind](config.structure)
+    kind = IdentifiedStructure if config.structure.kind == "identified" else PointStructure
     directions = parts["directions"]
     for support in config.supports:
         for name in filter(None, (support.point, support.other_point)):
             if name not in directions:
                 raise ValueError(f"support {support.name}: point '{name}' is not among the structure's: {', '.join(sorted(directions))}")
-    return PointStructure(**parts, contact=place_at_points(config.supports), contact_points=[(each.point, each.other_point) for each in config.supports])
+    return kind(**parts, contact=place_at_points(config.supports), contact_points=[(each.point, each.other_point) for each in config.supports])
 
 
 def _chain(chain):
@@ -103,6 +125,20 @@ def _matrices(structure):
             if dof >= mass.shape[0]:
                 raise MatrixFileError(f"structure.points.{name}.{axis} = {dof}: {structure.mass} has {mass.shape[0]} dofs, counted from 0")
     return {"mass": mass, "stiffness": stiffness, "damping": damping, "dampers": [], "directions": directions}
+
+
+def _identified(structure):
+    modes = sorted(structure.modes, key=lambda mode: mode.frequency_Hz)
+    omega = 2.0 * np.pi * np.array([mode.frequency_Hz for mode in modes])
+    ratios = np.array([mode.damping_ratio for mode in modes])
+    rows, directions = {}, {}
+    for number, mode in enumerate(modes):
+        for name, axes in mode.shape.items():
+            for axis, value in axes.items():
+                rows.setdefault(name, np.zeros((3, len(modes))))[AXES[axis], number] = value
+                directions.setdefault(name, {})[axis] = AXES[axis]
+    diagonal = [sparse.diags_array(values, format="csr") for values in (np.ones(len(modes)), omega**2, 2.0 * ratios * omega)]
+    return {"mass": diagonal[0], "stiffness": diagonal[1], "damping": diagonal[2], "dampers": [], "directions": directions, "rows": rows}
 
 
 def read_matrix(path, name):

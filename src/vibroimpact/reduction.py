@@ -45,7 +45,7 @@ def build_model(config):
     damping, damper_shapes, coefficients = modal_damping(omega, config.damping), np.zeros((len(omega), 0)), []
     if not tube:
         own, damper_shapes, coefficients = split_damping(shapes.T @ structure.damping @ shapes)
-        damping = damping + own
+        damping = own + (0.0 if config.structure.kind == "identified" else damping)  # measured modes bring their own
         coefficients = [*(coefficient for _, coefficient in structure.dampers), *coefficients]
     names, laws = element_laws(config.elements, coefficients)
     contact = structure.contact

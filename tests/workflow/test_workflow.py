@@ -180,11 +180,12 @@ def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
     assert "Traceback" not in told and "Building DAG" not in told
 
 
-def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study):
-    run = study.snakemake("--dry-run", "f16", "--config", "f16_data=nowhere")
+@pytest.mark.parametrize("structure", ["f16", "silverbox"])
+def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, structure):
+    run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")
     told = run.stdout + run.stderr
     assert run.returncode == 1
-    assert "f16_data = 'nowhere' holds no file" in told and "nonlinearbenchmark.org" in told
+    assert f"{structure}_data = 'nowhere' holds no file" in told and "nonlinearbenchmark.org" in told
 
 
 def test_lint_has_no_advice_but_on_conda_and_containers(study):

@@ -10,6 +10,7 @@ sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
 from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
+from vibroimpact.completion.study import STUDIES
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, local_names, pair_names, shard_of
 from vibroimpact.provenance import imported_files
@@ -115,15 +116,47 @@ def jobs_of_study():
     return jobs
 
 
-def f16_records(wildcards):
-    """The level files in the configured folder; a sentence where they are missing."""
-    found = sorted(Path(STUDY.f16_data).glob("F16Data_FullMSine_Level*.mat"))
+COMPLETION_FIGURES = ("frf_overlay", "prediction", "mounting", "where", "restoring_force")
+MEASURED = {
+    "f16": ("f16_data", STUDY.f16_data, "F16Data_FullMSine_Level*.mat", "the F-16 ground vibration test (Noel and Schoukens, 2017)"),
+    "silverbox": ("silverbox_data", STUDY.silverbox_data, "SNJP_?m_full_FNSI_*.mat", "the Silverbox records (Noel and Schoukens, 2017)"),
+}
+
+
+def measured_files(wildcards):
+    """The record files of wildcard {structure} in the configured folder; a sentence where they are missing."""
+    return files_of_structure(wildcards.structure)
+
+
+def files_of_structure(structure):
+    """The record files of a structure in the configured folder."""
+    key, folder, pattern, what = MEASURED[structure]
+    found = sorted(Path(folder).glob(pattern))
     if not found:
-        sys.exit(
-            f"f16_data = '{STUDY.f16_data}' holds no file F16Data_FullMSine_Level<N>.mat: download the F-16 ground vibration test "
-            "(Noel and Schoukens, 2017) from nonlinearbenchmark.org and give its folder: --config f16_data=FOLDER"
-        )
+        shown = pattern.replace("*", "<N>").replace("?", "u")
+        sys.exit(f"{key} = '{folder}' holds no file {shown}: download {what} from nonlinearbenchmark.org and give its folder: --config {key}=FOLDER")
     return [str(file) for file in found]
+
+
+def candidate_files(wildcards):
+    """The files of all single candidates of wildcard {structure}."""
+    return [f"results/{wildcards.structure}/candidates/{name}.json" for name in STUDIES[wildcards.structure].candidates]
+
+
+def addition_files(wildcards):
+    """The files of all second effects tried with the best candidate of wildcard {structure}."""
+    return [f"results/{wildcards.structure}/additions/{name}.json" for name in STUDIES[wildcards.structure].additions]
+
+
+def completion_figure_files(structure):
+    """The figures of a completion; structure may be the wildcard in braces."""
+    return [f"results/{structure}/figures/{name}.{suffix}" for name in COMPLETION_FIGURES for suffix in ("png", "pdf", "csv", "txt")]
+
+
+def completion_files(structure):
+    """What a completion of a measured structure holds."""
+    tables = ("campaign.nc", "mounting.csv", "prediction.csv", "verdict.json", "model_updated.yaml")
+    return [*(f"results/{structure}/{name}" for name in tables), *completion_figure_files(structure)]
 
 
 def targets():
@@ -140,4 +173,6 @@ def targets():
 
 
 wildcard_constraints:
+    structure="|".join(STUDIES),
+    candidate=r"[a-z_.]+",
     load=r"[0-9.e+-]+",

@@ -1,10 +1,11 @@
-# Optional: the methods on measured records of an aircraft. `snakemake -j2 f16 --config f16_data=FOLDER`
+# Optional: the ground vibration test of an F-16. `snakemake -j2 f16 --config f16_data=FOLDER`
 
 
 rule f16:
     input:
+        completion_files("f16"),
         library=library("f16"),
-        records=f16_records,
+        records=lambda wildcards: files_of_structure("f16"),
     output:
         poles="results/f16/poles.csv",
     params:

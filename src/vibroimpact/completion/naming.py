@@ -1,0 +1,65 @@
+"""Which candidate is chosen, which others explain the tried records as well, and what may be said of it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+MARGIN_DB = 1.0  # of the tried records' squared error: a candidate within it of the best explains them as well
+FIT_MARGIN = 2.0  # times the cost of the chosen one on what it was fitted to: a candidate above it does not explain the records as well
+LEAST_GAIN_DB = 6.0  # over the linear model fitted to all levels: below it no local law explains what the levels change
+LINEAR_ENOUGH = 1.3  # times the error of the models identified again at every level: below it nothing is missing
+PARTLY = 0.7  # of the error of the tried records: less than this closed is a part only
+
+
+@dataclass(frozen=True)
+class Choice:
+    """chosen: name of the candidate; verdict; ambiguity: list of lists of ids; scores {name: dB}; ids {name: list}."""
+
+    chosen: str
+    verdict: str
+    ambiguity: list
+    scores: dict
+    ids: dict
+
+
+def score(errors, reference):
+    """Return dB: mean squared error of the reference over that of a candidate, (level, channel) each; -inf where the candidate has none."""
+    errors = np.asarray(errors, float)
+    return -np.inf if not np.isfinite(errors).all() else float(10.0 * np.log10(np.mean(np.square(reference)) / np.mean(errors**2)))
+
+
+def leading(candidates, reference):
+    """Return (values of the best candidate by the records it was tried on, {name: score in dB}).
+
+    candidates: values of candidate.run_candidate; reference {level name: (channel,)} errors of the linear model.
+    """
+    scores = {each["name"]: score([each["errors"][name] for name in each["tried"]], [reference[name] for name in each["tried"]]) for each in candidates}
+    return max(candidates, key=lambda each: scores[each["name"]]), scores
+
+
+def choose(singles, additions, reference, joint, refitted):
+    """Return the Choice among single candidates and additions to the best of them.
+
+    reference, joint, refitted {level name: (channel,)}: errors of the linear model of the lowest level, of the one fitted to all levels, and
+    of those identified again at every level. An addition is chosen when it gains more than MARGIN_DB.
+    """
+    best, scores = leading(singles, reference)
+    tried = best["tried"]
+    added, more = leading(additions, reference) if additions else (best, {})
+    chosen = added if more and more[added["name"]] > scores[best["name"]] + MARGIN_DB else best
+    scores |= more
+    ids = {each["name"]: each["ids"] for each in (*singles, *additions)}
+    costs = {each["name"]: each["cost"] for each in (*singles, *additions) if each["cost"] is not None}
+    as_good = [name for name, value in scores.items()
+               if value >= scores[chosen["name"]] - MARGIN_DB and costs.get(name, np.inf) <= FIT_MARGIN * costs[chosen["name"]]]  # fmt: skip
+    ambiguity = [ids[chosen["name"]]]
+    ambiguity += [ids[name] for name in sorted(as_good, key=lambda name: -scores[name]) if ids[name] not in ambiguity]
+    ambiguity = [each for index, each in enumerate(ambiguity) if each not in ambiguity[:index]]
+    linear, again = (np.mean([np.square(errors[name]) for name in tried]) for errors in (reference, refitted))
+    if linear < LINEAR_ENOUGH**2 * again:
+        return Choice(chosen["name"], "none", [], scores, ids)
+    gain = scores[chosen["name"]] - score([joint[name] for name in tried], [reference[name] for name in tried])
+    if gain < LEAST_GAIN_DB:
+        return Choice(chosen["name"], "unknown", [], scores, ids)
+    common = set(best["ids"]).issubset(set.intersection(*map(set, ambiguity)))
+    return Choice(chosen["name"], "named" if common else "ambiguous", ambiguity, scores, ids)

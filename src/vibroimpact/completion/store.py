@@ -1,0 +1,61 @@
+"""Completed models as plain values, for the JSON files between the steps of the workflow."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.completion.trial import Term, Trial
+from vibroimpact.identified import IdentifiedModes
+
+
+def modes_values(modes):
+    """Return a dict of lists of IdentifiedModes."""
+    return plain(asdict(modes))
+
+
+def modes_of(values):
+    """Return the IdentifiedModes of modes_values."""
+    arrays = {name: np.array(values[name], bool if name == "residual" else float) for name in ("frequency", "damping_ratio", "shapes", "residual")}
+    return IdentifiedModes(**arrays, drive=int(values["drive"]), kinds=tuple(values["kinds"]), names=tuple(values["names"]))
+
+
+def trial_values(trial):
+    """Return a dict of plain values of a Trial."""
+    return {"modes": modes_values(trial.modes), "terms": [plain(asdict(term)) for term in trial.terms], "offsets": plain(trial.offsets)}
+
+
+def trial_of(values):
+    """Return the Trial of trial_values."""
+    terms = tuple(Term(each["law"], each["place"], None if each["row"] is None else tuple(each["row"]), np.array(each["values"], float),
+                       None if each["participation"] is None else np.array(each["participation"], float)) for each in values["terms"])
+    return Trial(modes_of(values["modes"]), terms, dict(values["offsets"]))
+
+
+def write_values(values, path):
+    """Write plain values as JSON; numbers that are not finite become null."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).write_text(json.dumps(plain(values), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def read_values(path):
+    """Return the values of a JSON file."""
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def plain(value):
+    """Return a value in dicts, lists, numbers, texts and None."""
+    if isinstance(value, dict):
+        return {str(key): plain(each) for key, each in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [plain(each) for each in value]
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, (int, np.integer)):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        return float(value) if np.isfinite(value) else None
+    return value

@@ -1,0 +1,49 @@
+"""Which candidate is named, when a set is told instead, and when nothing or no law is."""
+
+import pytest
+
+from vibroimpact.completion.naming import choose, score
+
+LINEAR, JOINT, AGAIN = {"one": [1.0, 1.2]}, {"one": [0.8, 0.9]}, {"one": [0.1, 0.1]}
+
+
+def candidate(name, ids, error, cost=0.01):
+    """Values of a candidate with one error on the level it is tried on."""
+    return {"name": name, "ids": ids, "errors": {"one": [error, error]}, "tried": ["one"], "cost": cost}
+
+
+def test_a_score_is_the_gain_in_squared_error():
+    assert score([[0.1, 0.1]], [[1.0, 1.0]]) == pytest.approx(20.0)
+    assert score([[None, None]], [[1.0, 1.0]]) == -float("inf")
+
+
+def test_the_best_is_named_alone_when_the_others_are_far():
+    choice = choose([candidate("a", ["cubic_stiffness"], 0.05), candidate("b", ["clearance"], 0.3)], [], LINEAR, JOINT, AGAIN)
+    assert (choice.verdict, choice.chosen, choice.ambiguity) == ("named", "a", [["cubic_stiffness"]])
+
+
+def test_two_that_explain_as_well_are_a_set():
+    choice = choose([candidate("a", ["cubic_stiffness"], 0.050), candidate("b", ["clearance"], 0.052)], [], LINEAR, JOINT, AGAIN)
+    assert choice.verdict == "ambiguous" and choice.ambiguity == [["cubic_stiffness"], ["clearance"]]
+
+
+def test_one_that_fits_worse_does_not_join_the_set_by_luck():
+    choice = choose([candidate("a", ["cubic_stiffness"], 0.050), candidate("b", ["clearance"], 0.052, cost=0.05)], [], LINEAR, JOINT, AGAIN)
+    assert choice.verdict == "named" and choice.ambiguity == [["cubic_stiffness"]]
+
+
+def test_a_second_effect_must_earn_its_place():
+    first = candidate("a", ["cubic_stiffness"], 0.05)
+    little, much = (candidate("a+b", ["cubic_stiffness", "quadratic_stiffness"], error) for error in (0.048, 0.02))
+    assert choose([first], [little], LINEAR, JOINT, AGAIN).chosen == "a"
+    choice = choose([first], [much], LINEAR, JOINT, AGAIN)
+    assert choice.chosen == "a+b" and choice.ambiguity == [["cubic_stiffness", "quadratic_stiffness"]]
+
+
+def test_a_linear_structure_lacks_nothing():
+    choice = choose([candidate("a", ["cubic_stiffness"], 0.09)], [], {"one": [0.1, 0.1]}, JOINT, AGAIN)
+    assert (choice.verdict, choice.ambiguity) == ("none", [])
+
+
+def test_a_law_that_explains_little_more_than_a_linear_model_is_not_named():
+    assert choose([candidate("a", ["cubic_stiffness"], 0.6)], [], LINEAR, JOINT, AGAIN).verdict == "unknown"

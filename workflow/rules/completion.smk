@@ -1,0 +1,148 @@
+# Measured structures (f16, silverbox): records by their lines, linear models, a job per candidate effect, verdict, prediction, figures.
+
+
+rule completion_records:
+    input:
+        library=library("completion_records"),
+        records=measured_files,
+    output:
+        campaign="results/{structure}/campaign.nc",
+    params:
+        config=settings("completion_records"),
+    log:
+        "results/{structure}/logs/completion_records.log",
+    benchmark:
+        "results/{structure}/benchmarks/completion_records.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    message:
+        "Records of {wildcards.structure} as a campaign"
+    script:
+        "../scripts/completion_records.py"
+
+
+rule completion_linear:
+    input:
+        library=library("completion_linear"),
+        campaign="results/{structure}/campaign.nc",
+    output:
+        linear="results/{structure}/linear.json",
+        mounting="results/{structure}/mounting.csv",
+    params:
+        config=settings("completion"),
+    log:
+        "results/{structure}/logs/completion_linear.log",
+    benchmark:
+        "results/{structure}/benchmarks/completion_linear.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    message:
+        "Linear models of {wildcards.structure}, level by level"
+    script:
+        "../scripts/completion_linear.py"
+
+
+rule completion_candidate:
+    input:
+        library=library("completion_candidate"),
+        campaign="results/{structure}/campaign.nc",
+        linear="results/{structure}/linear.json",
+    output:
+        candidate="results/{structure}/candidates/{candidate}.json",
+    params:
+        config=settings("completion"),
+    log:
+        "results/{structure}/logs/candidate_{candidate}.log",
+    benchmark:
+        "results/{structure}/benchmarks/candidate_{candidate}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    message:
+        "{wildcards.structure}: {wildcards.candidate}"
+    script:
+        "../scripts/completion_candidate.py"
+
+
+rule completion_addition:
+    input:
+        library=library("completion_addition"),
+        campaign="results/{structure}/campaign.nc",
+        linear="results/{structure}/linear.json",
+        singles=candidate_files,
+    output:
+        candidate="results/{structure}/additions/{candidate}.json",
+    params:
+        config=settings("completion"),
+    log:
+        "results/{structure}/logs/addition_{candidate}.log",
+    benchmark:
+        "results/{structure}/benchmarks/addition_{candidate}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    message:
+        "{wildcards.structure}: {wildcards.candidate} as second effect"
+    script:
+        "../scripts/completion_addition.py"
+
+
+rule completion_verdict:
+    input:
+        library=library("completion_verdict"),
+        campaign="results/{structure}/campaign.nc",
+        linear="results/{structure}/linear.json",
+        singles=candidate_files,
+        additions=addition_files,
+    output:
+        verdict="results/{structure}/verdict.json",
+        prediction="results/{structure}/prediction.csv",
+        completed="results/{structure}/completed.json",
+        model="results/{structure}/model_updated.yaml",
+    params:
+        config=settings("completion"),
+    log:
+        "results/{structure}/logs/completion_verdict.log",
+    benchmark:
+        "results/{structure}/benchmarks/completion_verdict.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    message:
+        "{wildcards.structure}: verdict and prediction of every level"
+    script:
+        "../scripts/completion_verdict.py"
+
+
+rule completion_figures:
+    input:
+        library=library("completion_figures"),
+        campaign="results/{structure}/campaign.nc",
+        linear="results/{structure}/linear.json",
+        mounting="results/{structure}/mounting.csv",
+        prediction="results/{structure}/prediction.csv",
+        verdict="results/{structure}/verdict.json",
+        completed="results/{structure}/completed.json",
+    output:
+        figures=completion_figure_files("{structure}"),
+    params:
+        config=settings("completion"),
+    log:
+        "results/{structure}/logs/completion_figures.log",
+    benchmark:
+        "results/{structure}/benchmarks/completion_figures.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    message:
+        "{wildcards.structure}: figures"
+    script:
+        "../scripts/completion_figures.py"

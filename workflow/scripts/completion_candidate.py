@@ -1,0 +1,13 @@
+"""One candidate of a completion, fitted and tried."""
+
+import sys
+
+from vibroimpact.campaign import read_campaign
+from vibroimpact.completion.candidate import run_candidate
+from vibroimpact.completion.store import read_values, write_values
+from vibroimpact.completion.study import STUDIES
+
+sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+campaign, study = read_campaign(snakemake.input.campaign), STUDIES[snakemake.wildcards.structure]
+linear = read_values(snakemake.input.linear)
+write_values(run_candidate(campaign, study, linear, snakemake.wildcards.candidate), snakemake.output.candidate)
