@@ -48,7 +48,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     folder, prepared, bench, null, paths = run.folder, run.prepared, run.bench, run.null, run.paths
     found, totals = jobs.ordered(bench, null, jobs.known_finalists(final_files))
     measured = bench.measured_features[null.records]
-    p_before, _ = mapping.global_p(bench, null, measured)
+    p_before = mapping.global_p(bench, null, measured)
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
     seeds = 4 if quick else priors.FINAL_SEEDS
     everything = np.arange(len(bench.signals.load))
@@ -69,8 +69,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     gaps = {name: misfit.misfit_of(bench, records, chosen_cells, before.mean(axis=1), after.mean(axis=1), after) if len(records) else
             {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
     difference, z, _ = mapping.z_of(before_bench, bench.measured_features, before)
-    after_null = replace(null, features=after[null.records], mean=after[null.records].mean(axis=1))
-    p_after = p_before if after is before else mapping.global_p(bench, after_null, measured)[0]
+    p_after = p_before if after is before else mapping.global_p(bench, null, measured, after[null.records].mean(axis=1))
     ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured)
     content = {
         "verdict": decision.verdict,

@@ -101,7 +101,7 @@ def pairs(run, files, screened, path, quick=False):
     found, totals = ordered(bench, null, found)
     if totals[found[0].candidate.name][0] > threshold:
         measured = bench.measured_features[null.records]
-        if second.needed(naming.explained(bench, null, found[0], measured)):
+        if second.needed(naming.explained(bench, null, found[0].mean, measured)):
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}

@@ -4,9 +4,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.likelihood import log_likelihood
-from vibroimpact.discrepancy.features import compressed
+from vibroimpact.discrepancy import naming, priors
 
 SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
@@ -24,20 +22,17 @@ def z_of(bench, measured, seeds):
     return difference, difference / sd, sd
 
 
-def global_p(bench, null, measured):
-    """Return (p, scores (record,)): how probable records as far off as the measured ones are among seeds of the model, by simulation.
+def global_p(bench, null, measured, mean=None):
+    """Return p: how probable records as far off as the measured ones are, from seeds and what two codes differ by.
 
-    Each seed in turn plays the measurement against the covariance of all; the sum of the records' chi-squares is compared with a gamma law
-    of the same mean and variance.
+    mean (record, feature) of a completed model, whose change counts as uncertain as its law; the null's where None. The sum of the records'
+    chi-squares is compared with a gamma law of its expectation, widened as in naming.explained.
     """
-    residual = compressed(measured - null.mean, bench.layout)
-    scores = np.array([log_likelihood(residual[record], null.covariance[record])[1] for record in range(len(residual))])
-    seeds = np.array([[log_likelihood(row, null.covariance[record])[1] for row in compressed(null.features[record] - null.mean[record], bench.layout)]
-                      for record in range(len(residual))])  # fmt: skip
-    count = null.seeds
-    total = seeds.sum(axis=0) * ((count + 1.0) / (count - 1.0))  # a seed is part of its own mean
-    mean, variance = total.mean(), max(total.var(ddof=1), 2.0 * total.mean())
-    return float(stats.gamma.sf(scores.sum(), mean**2 / variance, scale=variance / mean)), scores
+    z = naming.explained(bench, null, null.mean if mean is None else mean, measured, mean is not None)
+    size, records = measured.shape[1], len(measured)
+    total = np.sum(size - z * naming.SPREAD * np.sqrt(2.0 * size))
+    expected, variance = size * records, 2.0 * size * records * naming.SPREAD**2
+    return float(stats.gamma.sf(total, expected**2 / variance, scale=variance / expected))
 
 
 def significant(z, chosen):

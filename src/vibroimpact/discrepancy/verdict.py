@@ -33,14 +33,14 @@ def decide(bench, null, prepared, found, threshold, p_before):
     doubles = [row for row in found if isinstance(row.candidate, Pair)]
     best = singles[0] if singles else None
     if best is None or totals[best.candidate.name][0] < threshold:
-        rest = residual_of_null(bench, null, measured)
+        rest = naming.explained(bench, null, null.mean, measured, False)
         if prepared.adopted is None:
             return Decision("none" if p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z else "unknown", None, [], totals, rest, threshold)
         named = "named" if len(linear) == 1 else "ambiguous"
         return Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
-    if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, null, best, measured).min() < priors.EXPLAINED_Z:
+    if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, null, best.mean, measured).min() < priors.EXPLAINED_Z:
         best = doubles[0]
-    left = naming.explained(bench, null, best, measured)
+    left = naming.explained(bench, null, best.mean, measured)
     sets = local_sets(best.candidate, totals, {row.candidate.name for row in (doubles if isinstance(best.candidate, Pair) else singles)})
     together = [sorted({*one, *other}) for one in (linear or [[]]) for other in sets]
     share = closure(bench, null, best, measured)
@@ -48,19 +48,6 @@ def decide(bench, null, prepared, found, threshold, p_before):
         verdict = "partly_explained" if share > priors.PARTLY else "unknown"
         return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
-
-
-def residual_of_null(bench, null, measured):
-    """Return (record,) z of the measurement under the null, as naming.explained has it for a finalist."""
-    from vibroimpact.discrepancy.features import compressed
-    from vibroimpact.discrepancy.likelihood import log_likelihood
-
-    out = []
-    for record in range(len(null.mean)):
-        own = [log_likelihood(row, null.covariance[record])[0] for row in compressed(null.features[record] - null.mean[record], bench.layout)]
-        score = log_likelihood(compressed(measured[record] - null.mean[record], bench.layout), null.covariance[record])[0]
-        out.append((score - np.mean(own)) / max(np.std(own, ddof=1), naming.LEAST_SD))
-    return np.array(out)
 
 
 def linear_sets(prepared):
