@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft, linalg
 
-ITERATIONS = 12
+ITERATIONS = 12  # of Gauss-Newton at most
 MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
 LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far above the band leave in every line
 RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
@@ -233,8 +233,7 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
         jacobian = _jacobian(record, weights, columns, best)
         normal = jacobian.T @ jacobian
         step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]).ravel(), assume_a="pos")
-        step *= min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
-        logs = best[0] + step
+        logs = best[0] + step * min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
         logs[count:] = np.clip(logs[count:], -3.0, 3.0)
     return _result(best, weights, visible, drive, noise, record, columns, measured, delay)
 

@@ -1,13 +1,13 @@
 """All that a campaign and a model give to every job: signals, features of the measurement, the corrected model, and runs of any variant of it."""
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from vibroimpact.config import check_config
-from vibroimpact.contraction import IntegrationError
+from vibroimpact.contraction import CONTRACTION_LIMIT, contact_contraction
 from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.features import feature_layout, record_features
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
@@ -16,6 +16,7 @@ from vibroimpact.discrepancy.linearised import linearised
 from vibroimpact.discrepancy.signals import signals_of
 from vibroimpact.kernels import LANES
 
+FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
 TOUCHES = 0.98  # of the gap: a linear response that comes that near is not taken for free of contact
 SAME = 1.0e-5  # relative difference of two responses without contact
 
@@ -30,6 +31,7 @@ class Workbench:
         self.layout = feature_layout(self.signals, campaign["channel_point"].values)
         self.schedule = schedule_of(campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate)
         self.forces = Forces(self.signals.force, self.schedule)
+        self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring = None, None
         self.values = config.model_dump(mode="json")
 
@@ -109,12 +111,23 @@ class Workbench:
             out.append(record_features(self.layout, self.signals.force[record][0, keep], noisy))
         return np.array(out)
 
+    def stepped(self, model):
+        """Return (Schedule, Forces) with as many steps as the contact of a model needs, up to FINER times the usual; the usual ones where that is too few."""
+        for finer in (1, *FINER):
+            if contact_contraction(model, 1.0 / (finer * self.schedule.steps_per_second), self.schedule.scheme) < CONTRACTION_LIMIT:
+                if finer not in self._finer:
+                    schedule = replace(self.schedule, steps_per_second=finer * self.schedule.steps_per_second)
+                    self._finer[finer] = schedule, Forces(self.signals.force, schedule)
+                return self._finer[finer]
+        return self.schedule, self.forces
+
     def respond(self, model, runs, measuring=None):
         """Return (run, channel, sample) responses with the gains of the nuisance and the faults of the measuring chain (Measuring)."""
+        schedule, forces = self.stepped(model)
         chain = [fault for fault in (self.measuring, measuring) if fault is not None]
         factor = np.prod([fault.force_gain for fault in chain])
-        forces = self.forces if factor == 1.0 else Forces(self.signals.force / factor, self.schedule)
-        responses = simulate_records(model, self.schedule, forces, runs, self.signals.kinds)
+        forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
+        responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)
         gain = self.gains
         for fault in chain:
             gain = gain * fault.gain
@@ -158,6 +171,3 @@ def corrected_nuisance(bench, reading=None):
     simulated = linear.reading_of_model(bench.bare, fit.modes) if reading is None else reading
     score, chi_square, pulls = linear.likelihood(bench.measured_reading, simulated, fit.covariance)
     return linear.nuisance_of(pulls, fit.modes, len(bench.signals.names)), score, chi_square, pulls
-
-
-__all__ = ["IntegrationError", "Workbench", "corrected_nuisance", "priors"]
