@@ -174,5 +174,5 @@ def targets():
 
 wildcard_constraints:
     structure="|".join(STUDIES),
-    candidate=r"[a-z_.]+",
+    law=r"[a-z_]+\.[a-z_]+",
     load=r"[0-9.e+-]+",
