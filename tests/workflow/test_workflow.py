@@ -180,6 +180,14 @@ def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
     assert "Traceback" not in told and "Building DAG" not in told
 
 
+@pytest.mark.parametrize(("structure", "file", "jobs"), [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)])
+def test_a_measured_structure_is_planned_candidate_by_candidate(study, tmp_path, structure, file, jobs):
+    (tmp_path / file).touch()
+    run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data={tmp_path}")
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert re.search(rf"^total +{jobs}$", run.stdout + run.stderr, flags=re.M)
+
+
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
 def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, structure):
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")

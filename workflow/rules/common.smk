@@ -159,6 +159,17 @@ def completion_files(structure):
     return [*(f"results/{structure}/{name}" for name in tables), *completion_figure_files(structure)]
 
 
+def finalist_files(wildcards):
+    """The finalists that the screening named."""
+    names = finalist_names(checkpoints.discrepancy_screening.get().output.screening)
+    return [f"results/{LOOKED_AT}/finalists/{name}.npz" for name in names]
+
+
+def pair_files(wildcards):
+    """The pairs that the finalists left to be tried."""
+    return [f"results/{LOOKED_AT}/pairs/{name}.npz" for name in pair_names(checkpoints.discrepancy_pairs.get().output.pairs)]
+
+
 def targets():
     """What a complete study holds: the tables, every figure, and the time series where they are kept.
 
@@ -174,5 +185,5 @@ def targets():
 
 wildcard_constraints:
     structure="|".join(STUDIES),
-    candidate=r"[a-z_.]+",
+    law=r"[a-z_]+\.[a-z_]+",
     load=r"[0-9.e+-]+",

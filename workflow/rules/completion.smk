@@ -52,19 +52,19 @@ rule completion_candidate:
         campaign="results/{structure}/campaign.nc",
         linear="results/{structure}/linear.json",
     output:
-        candidate="results/{structure}/candidates/{candidate}.json",
+        candidate="results/{structure}/candidates/{law}.json",
     params:
         config=settings("completion"),
     log:
-        "results/{structure}/logs/candidate_{candidate}.log",
+        "results/{structure}/logs/candidate_{law}.log",
     benchmark:
-        "results/{structure}/benchmarks/candidate_{candidate}.tsv"
+        "results/{structure}/benchmarks/candidate_{law}.tsv"
     threads: 1
     resources:
         mem_mb=1500,
         runtime=30,
     message:
-        "{wildcards.structure}: {wildcards.candidate}"
+        "{wildcards.structure}: {wildcards.law}"
     script:
         "../scripts/completion_candidate.py"
 
@@ -76,19 +76,19 @@ rule completion_addition:
         linear="results/{structure}/linear.json",
         singles=candidate_files,
     output:
-        candidate="results/{structure}/additions/{candidate}.json",
+        candidate="results/{structure}/additions/{law}.json",
     params:
         config=settings("completion"),
     log:
-        "results/{structure}/logs/addition_{candidate}.log",
+        "results/{structure}/logs/addition_{law}.log",
     benchmark:
-        "results/{structure}/benchmarks/addition_{candidate}.tsv"
+        "results/{structure}/benchmarks/addition_{law}.tsv"
     threads: 1
     resources:
         mem_mb=1500,
         runtime=30,
     message:
-        "{wildcards.structure}: {wildcards.candidate} as second effect"
+        "{wildcards.structure}: {wildcards.law} as second effect"
     script:
         "../scripts/completion_addition.py"
 

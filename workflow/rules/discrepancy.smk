@@ -10,17 +10,6 @@ PATHS = [f"{BANK or DISCREPANCY}/paths/{name}.npz" for name in CANDIDATES]
 BANK_NULLS = [f"{BANK}/null/{part}.npz" for part in range(NULL_PARTS)] if BANK else []
 
 
-def finalist_files(wildcards):
-    """The finalists that the screening named."""
-    names = finalist_names(checkpoints.discrepancy_screening.get().output.screening)
-    return [f"{DISCREPANCY}/finalists/{name}.npz" for name in names]
-
-
-def pair_files(wildcards):
-    """The pairs that the finalists left to be tried."""
-    return [f"{DISCREPANCY}/pairs/{name}.npz" for name in pair_names(checkpoints.discrepancy_pairs.get().output.pairs)]
-
-
 wildcard_constraints:
     part=r"[0-9]+",
     candidate=r"[a-z_]+@[A-Za-z0-9_.-]+",

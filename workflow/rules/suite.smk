@@ -50,7 +50,7 @@ rule suite_campaign:
         mem_mb=3000,
         runtime=60,
     message:
-        "Suite: campaign {wildcards.number} of seed " + str(SUITE_SEED)
+        "Suite: campaign {wildcards.number}"
     script:
         "../scripts/suite_campaign.py"
 
@@ -64,7 +64,7 @@ rule suite:
         campaigns=f"{SUITE}/campaigns.csv",
         confusion=f"{SUITE}/confusion.csv",
     params:
-        folder=SUITE,
+        campaigns=len(SUITE_CAMPAIGNS),
     log:
         f"{SUITE}/logs/suite.log",
     benchmark:

@@ -10,4 +10,4 @@ from vibroimpact.completion.study import STUDIES
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 campaign, study = read_campaign(snakemake.input.campaign), STUDIES[snakemake.wildcards.structure]
 linear, singles = read_values(snakemake.input.linear), [read_values(path) for path in snakemake.input.singles]
-write_values(run_addition(campaign, study, linear, snakemake.wildcards.candidate, singles), snakemake.output.candidate)
+write_values(run_addition(campaign, study, linear, snakemake.wildcards.law, singles), snakemake.output.candidate)

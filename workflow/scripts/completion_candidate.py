@@ -10,4 +10,4 @@ from vibroimpact.completion.study import STUDIES
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 campaign, study = read_campaign(snakemake.input.campaign), STUDIES[snakemake.wildcards.structure]
 linear = read_values(snakemake.input.linear)
-write_values(run_candidate(campaign, study, linear, snakemake.wildcards.candidate), snakemake.output.candidate)
+write_values(run_candidate(campaign, study, linear, snakemake.wildcards.law), snakemake.output.candidate)

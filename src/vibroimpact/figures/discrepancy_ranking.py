@@ -45,8 +45,8 @@ def ranking_figure(ranking, named=()):
                      threshold=_value(row.get("threshold")))
     _thresholds(axes, rows, places)
     closed = [_value(row.get("closed_fraction")) for row in rows]
-    right = max(np.max(held), np.max(fit), *(_value(row.get("threshold")) for row in rows if np.isfinite(_value(row.get("threshold")))), 0.0)
-    left = min(np.min(held), 0.0)
+    right = max(np.nanmax([*held, *fit, 0.0]), *(_value(row.get("threshold")) for row in rows if np.isfinite(_value(row.get("threshold")))), 0.0)
+    left = np.nanmin([*held, 0.0])
     for place, fraction in enumerate(closed):
         if np.isfinite(fraction):
             axes.text(right + 0.02 * (right - left), place, f"closes {100 * fraction:.0f} %", va="center", fontsize=8,
