@@ -114,8 +114,8 @@ def test_modal_damping_is_that_of_the_first_modes_of_the_whole_tube(model):
 
 def test_damping_of_rigid_modes_and_rayleigh_damping():
     omega = np.array([0.0, 0.0, 10.0, 20.0, 30.0])
-    modal = SimpleNamespace(kind="modal", first_ratios=[0.1, 0.2], other_ratio=0.01)
-    assert modal_damping(omega, modal).tolist() == pytest.approx([0.0, 0.0, 2.0, 8.0, 0.6])
+    modal = SimpleNamespace(kind="modal", first_ratios=[0.1, 0.2], other_ratio=0.01, mass_coefficient_per_s=0.5)
+    assert modal_damping(omega, modal).tolist() == pytest.approx([0.5, 0.5, 2.5, 8.5, 1.1])
     rayleigh = SimpleNamespace(kind="rayleigh", mass_coefficient_per_s=3.0, stiffness_coefficient_s=1e-2)
     assert modal_damping(omega, rayleigh).tolist() == pytest.approx([3.0, 3.0, 4.0, 7.0, 12.0])
 
