@@ -27,7 +27,7 @@ FIGURES = {
 
 
 # What a run is asked to look at; no key of the study.
-REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "seed", "count", "shard", "seconds") if name in config}
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds") if name in config}
 
 
 def requested(name, example):

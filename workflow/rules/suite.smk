@@ -1,7 +1,7 @@
-# The hidden-effect suite: `snakemake -j2 suite --config seed=1 count=90 shard=0/1`. Shards add up; what is done is kept. Without a seed it is that of
+# The hidden-effect suite: `snakemake -j2 suite --config suite_seed=1 count=90 shard=0/1`. Shards add up; what is done is kept. Without a seed it is that of
 # the frozen thresholds.
 
-SUITE_SEED = int(REQUEST.get("seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")))
+SUITE_SEED = int(REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")))
 SUITE = f"results/suite_{SUITE_SEED}"
 SUITE_S = int(REQUEST.get("seconds", 20))
 SUITE_CAMPAIGNS = shard_of(int(REQUEST.get("count", 12)), REQUEST.get("shard", "0/1"))
