@@ -247,8 +247,14 @@ def _factor(place, units, kind):
         raise CampaignError(f"{place} {error}") from error
 
 
-def gaps_of_record(campaign, record):
-    """Return (support,) the radial clearances of a record in m: support_gap where it is given, else the one nominal gap (NaN: none)."""
-    if "support_gap" in campaign:
-        return campaign["support_gap"].values[record].astype(float)
-    return np.array([float(campaign["gap"].values[record])])
+def support_ratios(campaign):
+    """Return (support,) the clearance of each support over the record's nominal one, None where support_gap is not given.
+
+    Raises CampaignError when the ratio is not the same in all records.
+    """
+    if "support_gap" not in campaign:
+        return None
+    ratio = campaign["support_gap"].values.astype(float) / campaign["gap"].values.astype(float)[:, None]
+    if not np.isfinite(ratio).all() or np.ptp(ratio, axis=0).max(initial=0.0) > 0.01 * ratio.mean():
+        raise CampaignError("support_gap: its ratio to gap differs from record to record, or has no value in some: give one campaign for each setting of the plates")
+    return ratio.mean(axis=0)

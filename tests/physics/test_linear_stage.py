@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vibroimpact.campaign import Channel, Level, campaign_dataset
+from vibroimpact.campaign import CampaignError, Channel, Level, campaign_dataset
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
@@ -84,3 +84,14 @@ def test_linear_responses_are_those_of_the_integration(rig, study_config):
     fit = fit_modes(lines, marched, bench.bare, bench.signals.kinds, np.full(len(PLACES), 1e-6))
     assert np.abs(fit.log_frequency).max() < 5e-5 and np.abs(fit.log_damping).max() < 1e-2
     assert fit.share[[0, 1, 2]].max() < 4e-3
+
+
+def test_plates_of_different_clearance_are_put_into_the_model(study_config):
+    force = np.ones((2, 1, 64))
+    campaign = campaign_of(np.zeros((2, len(PLACES), 64)), force)
+    model = attach(study_config, campaign.assign(support_gap=(("record", "support"), GAP * np.array([[1.0, 1.5], [1.0, 1.5]]))))
+    np.testing.assert_allclose(model.gap_factor, np.where(model.support_of_point == 0, 1.0, 1.5))
+    with pytest.raises(CampaignError, match="differs from record to record"):
+        attach(study_config, campaign.assign(support_gap=(("record", "support"), GAP * np.array([[1.0, 1.5], [1.0, 1.2]]))))
+    with pytest.raises(CampaignError, match="3 supports, the model 2"):
+        attach(study_config, campaign.assign(support_gap=(("record", "support"), np.full((2, 3), GAP))))

@@ -11,7 +11,7 @@ from vibroimpact.discrepancy.features import COARSE, FeatureLayout, compressed, 
 from vibroimpact.discrepancy.likelihood import log_likelihood, scatter_of
 from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
 from vibroimpact.discrepancy.next_measurement import next_measurement
-from vibroimpact.discrepancy.screening import _above
+from vibroimpact.discrepancy.screening import NINETY, _above, _best, _profile
 from vibroimpact.discrepancy.suite import judged, rates
 
 RATE = 2048.0
@@ -92,9 +92,53 @@ def test_emulated_angles_wrap_round():
     np.testing.assert_allclose(emulator(np.array([0.999]))[0], 1.0, atol=0.02)
 
 
+def test_an_emulator_takes_a_length_of_its_own_for_each_parameter():
+    points = np.stack(np.meshgrid(np.linspace(0.0, 1.0, 9), np.linspace(0.0, 1.0, 3)), axis=-1).reshape(-1, 2)
+    emulator = Emulator(points, np.sin(9.0 * points[:, :1]) + 0.3 * points[:, 1:], np.full(27, 1e-6))
+    assert emulator.lengths[0] < emulator.lengths[1]
+    np.testing.assert_allclose(emulator(np.array([0.43, 0.31]))[0], np.sin(9.0 * 0.43) + 0.093, atol=0.05)
+
+
+@pytest.mark.parametrize("best", [(0.731,), (0.123, 0.618), (0.31, 0.77, 0.52, 0.9)])
+def test_the_search_finds_the_top_of_a_tilted_hill(best):
+    tilt = np.eye(len(best)) + 0.4
+
+    def score(point):
+        away = (np.asarray(point) - best) / 0.08
+        return -0.5 * away @ tilt @ away
+
+    unit = _best(score, np.full(len(best), 0.5))
+    np.testing.assert_allclose(unit, best, atol=0.02 if len(best) > 2 else 0.004)
+    for number, (values, scores) in enumerate(_profile(score, unit)):
+        low, high = _above(values, scores, NINETY)
+        assert high - low == pytest.approx(2 * 1.645 * 0.08 * np.sqrt(np.linalg.inv(tilt)[number, number]), rel=0.1)
+
+
+def test_a_likelihood_that_knows_nothing_gives_the_whole_range():
+    (values, scores), = _profile(lambda point: 0.0, np.array([0.4]))
+    assert _above(values, scores).tolist() == [0.0, 1.0]
+
+
+def test_components_of_a_vector_are_also_tried_alone():
+    design = Candidate("support_offset", "all").design()
+    assert {(0.5, 0.3), (0.5, 0.7), (0.3, 0.5), (0.7, 0.5)} <= {tuple(np.round(point, 6)) for point in design}
+    assert len(Candidate("plate_flexibility", "all").design()) == 9
+
+
+def test_an_effect_that_may_be_nothing_is_seen():
+    scales = {"gap": 2.0e-4, "one": 1.0}
+    offset, friction = Candidate("support_offset", "all"), Candidate("dry_friction", "all")
+    assert offset.may_be_neutral(np.array([[0.45, 0.55], [0.4, 0.52]]), scales)
+    assert not offset.may_be_neutral(np.array([[0.45, 0.55], [0.3, 0.4]]), scales)
+    assert friction.may_be_neutral(np.array([[0.0, 0.3]]), scales) and not friction.may_be_neutral(np.array([[0.3, 0.5]]), scales)
+    assert Candidate("gap", "all").may_be_neutral(np.array([[0.4, 0.6]]), scales)
+    np.testing.assert_allclose(offset.physical(offset.neutral_unit(scales), scales)["offset_x"], 0.0, atol=1e-12)
+    assert np.isnan(friction.neutral_unit(scales)).all()
+
+
 def test_interval_of_a_parabola():
     values = np.linspace(0.0, 1.0, 61)
-    low, high = _above(values, -0.5 * ((values - 0.4) / 0.1) ** 2)
+    low, high = _above(values, -0.5 * ((values - 0.4) / 0.1) ** 2, NINETY)
     np.testing.assert_allclose([low, high], [0.4 - 0.1645, 0.4 + 0.1645], atol=0.006)
 
 

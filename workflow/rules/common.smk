@@ -28,6 +28,9 @@ FIGURES = {
 
 # What a run is asked to look at; no key of the study.
 REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds") if name in config}
+LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
+DISCREPANCY = f"results/{LOOKED_AT}"
+QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
 
 
 def requested(name, example):

@@ -1,8 +1,6 @@
-# A measured campaign against a model: `snakemake -j2 discrepancy --config campaign=FILE [model=config/x.yaml] [quick=yes]`.
+# A measured campaign against a model: `snakemake -j2 discrepancy --config campaign=FILE [model=config/x.yaml]`.
 # bank=FOLDER takes the candidates' simulations from another campaign of the same model, loads and gaps.
 
-DISCREPANCY = f"results/{LOOKED_AT}"
-QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
 BANK = REQUEST.get("bank", "")
 CANDIDATES = local_names(MODEL.model_dump(mode="json"))
 NULLS = [f"{DISCREPANCY}/null/{part}.npz" for part in range(NULL_PARTS)]
@@ -24,7 +22,6 @@ rule discrepancy_prepare:
         prepared=f"{DISCREPANCY}/prepared.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
     log:
         f"{DISCREPANCY}/logs/prepare.log",
     benchmark:
@@ -48,7 +45,6 @@ rule discrepancy_null:
         null=f"{DISCREPANCY}/null/{{part}}.npz",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
     log:
         f"{DISCREPANCY}/logs/null_{{part}}.log",
     benchmark:
@@ -72,7 +68,6 @@ rule discrepancy_candidate:
         path=f"{DISCREPANCY}/paths/{{candidate}}.npz",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
     log:
         f"{DISCREPANCY}/logs/candidate_{{candidate}}.log",
     benchmark:
@@ -99,7 +94,6 @@ checkpoint discrepancy_screening:
         screening=f"{DISCREPANCY}/screening.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
         candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/screening.log",
@@ -128,7 +122,6 @@ rule discrepancy_finalist:
         finalist=f"{DISCREPANCY}/finalists/{{candidate}}.npz",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
         candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/finalist_{{candidate}}.log",
@@ -158,7 +151,6 @@ checkpoint discrepancy_pairs:
         pairs=f"{DISCREPANCY}/pairs.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
         candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/pairs.log",
@@ -187,7 +179,6 @@ rule discrepancy_pair:
         pair=f"{DISCREPANCY}/pairs/{{pair}}.npz",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
         candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/pair_{{pair}}.log",
@@ -222,7 +213,6 @@ rule discrepancy_verdict:
         model=f"{DISCREPANCY}/model_updated.yaml",
     params:
         config=MODEL.model_dump(mode="json"),
-        quick=QUICK,
         candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/verdict.log",

@@ -1,7 +1,6 @@
 # Measurements in. `snakemake -j2 import_campaign --config import=FOLDER`, `snakemake -j1 quicklook --config campaign=FILE`
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
-LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 
 
 rule import_campaign:

@@ -3,11 +3,10 @@
 import sys
 
 from vibroimpact.config import check_config
-from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.prepared import prepare
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 config = check_config(snakemake.params.config, "model")
-prepared = prepare(config, snakemake.input.campaign, QUICK_S if snakemake.params.quick else None)
+prepared = prepare(config, snakemake.input.campaign)
 prepared.write(snakemake.output.prepared)
 print(prepared.refusal or f"adopted: {prepared.adopted}")

@@ -7,4 +7,4 @@ from vibroimpact.discrepancy.run import Run
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 run = Run.opened(snakemake)
-screening(run, snakemake.output.screening, snakemake.params.quick)
+screening(run, snakemake.output.screening)

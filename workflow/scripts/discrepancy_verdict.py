@@ -11,4 +11,4 @@ sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf
 run = Run.opened(snakemake)
 source = origin(snakemake.params.config, snakemake.input.library)
 files = [*snakemake.input.finalists, *snakemake.input.pairs]
-conclude(run, read_json(snakemake.input.screening), files, source, snakemake.params.quick)
+conclude(run, read_json(snakemake.input.screening), files, source)

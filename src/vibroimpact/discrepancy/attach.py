@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.campaign import CampaignError
+from vibroimpact.campaign import CampaignError, support_ratios
+from vibroimpact.config_schema import Sensors
 from vibroimpact.reduction import build_model
 
 NEAR_M = 5.0e-3  # farther from the structure is no place on it
@@ -30,7 +31,7 @@ def attach(config, campaign):
     shapes = np.einsum("mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), along)
     channels = campaign.sizes["channel"]
     return replace(
-        model,
+        model, gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
         sensor_shapes=shapes[:, :channels], sensor_names=tuple(names[:channels]), sensor_positions=places[:channels], sensor_directions=along[:channels],
         drive_shapes=shapes[:, channels:],
         line_shapes=np.zeros((model.modes, 0)), line_positions=np.zeros((0, 3)), line_arc_length=np.zeros(0),
@@ -38,10 +39,18 @@ def attach(config, campaign):
     )  # fmt: skip
 
 
+def _ratio_of_points(campaign, model):
+    """Return (contact point,) the clearance there over the record's nominal one. Raises CampaignError when the campaign counts other supports."""
+    ratios = support_ratios(campaign)
+    if ratios is None:
+        return np.ones(len(model.support_of_point))
+    if len(ratios) != len(model.support_names):
+        raise CampaignError(f"support_gap has {len(ratios)} supports, the model {len(model.support_names)} ({', '.join(model.support_names)}): give one clearance for each, in that order")
+    return ratios[model.support_of_point]
+
+
 def config_sensors(config, points):
     """Return the section record.sensors with all three directions of some points."""
-    from vibroimpact.config_schema import Sensors
-
     return Sensors(points=points, directions=("x", "y", "z"))
 
 

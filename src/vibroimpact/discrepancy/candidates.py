@@ -8,7 +8,8 @@ from vibroimpact.discrepancy.measuring import measuring_of, places
 from vibroimpact.effects.registry import EFFECTS
 
 SCREENED = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
-
+ALONG = 0.2  # of a searched range
+LOWEST = 0.05  # of a range searched in its logarithm: as good as nothing
 
 QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number of parameters
 
@@ -47,11 +48,32 @@ class Candidate:
             out.append(np.log(value / low) / np.log(high / low) if parameter.log else (value - low) / (high - low))
         return np.array(out)
 
+    def neutral_unit(self, scales):
+        """Return (parameter,) normalised where the effect is not there, NaN in parameters whose range does not hold such a value."""
+        out = []
+        for parameter in self.effect.parameters:
+            low, high, neutral = parameter.low, parameter.high, parameter.neutral
+            scaled = np.nan if neutral is None else neutral / scales[parameter.per]
+            inside = low <= scaled <= high
+            out.append((np.log(scaled / low) / np.log(high / low) if parameter.log else (scaled - low) / (high - low)) if inside else np.nan)
+        return np.array(out)
+
+    def may_be_neutral(self, interval, scales):
+        """Return whether an interval (parameter, 2), normalised, leaves room for the effect not to be there: neutral in all its parameters."""
+        ends = [self.physical(interval[:, side], scales) for side in (0, 1)]
+        return all(parameter.neutral is not None and (ends[0][parameter.name] <= parameter.neutral <= ends[1][parameter.name] or low < LOWEST and parameter.log)
+                   for parameter, (low, _) in zip(self.effect.parameters, interval, strict=True))  # fmt: skip
+
     def design(self, quick=False):
         """Return (point, parameter): the parameters to try first, all combinations of the effect's own design; fewer where it must be quick."""
         chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
         axes = np.meshgrid(*[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij")
-        return np.stack([axis.ravel() for axis in axes], axis=-1)
+        points = np.stack([axis.ravel() for axis in axes], axis=-1)
+        if chosen is None and len(axes) > 1 and all(parameter.neutral == 0.0 and parameter.low == -parameter.high for parameter in self.effect.parameters):
+            # components of a vector: along one axis alone the structure may keep its symmetry, which no point beside it tells of
+            along = np.vstack([0.5 + side * np.eye(len(axes)) for side in (-ALONG, ALONG)])
+            points = np.vstack([points, along])
+        return points
 
     @property
     def periodic(self):
@@ -109,6 +131,10 @@ class Pair:
         """Return the numbers of the parameters that are angles."""
         return self.first.periodic + tuple(number + self.split for number in self.second.periodic)
 
+    def neutral_unit(self, scales):
+        """Return (parameter,) normalised where the effects are not there."""
+        return np.concatenate([self.first.neutral_unit(scales), self.second.neutral_unit(scales)])
+
     def parts(self, unit):
         """Return [(candidate, its parameters)] of unit (parameter,)."""
         return [(self.first, unit[: self.split]), (self.second, unit[self.split :])]
@@ -135,6 +161,12 @@ def candidate_named(name):
 def elsewhere(candidate, values):
     """Return the candidate at each single support, where it was at all of them."""
     return [Candidate(candidate.effect_id, place) for place in candidate.effect.locations(values) if place != candidate.location] if candidate.location == "all" else []
+
+
+def other_places(candidate, values):
+    """Return the candidate at every other place of its kind, where it was at one of several."""
+    locations = candidate.effect.locations(values)
+    return [] if "all" in locations else [Candidate(candidate.effect_id, place) for place in locations if place != candidate.location]
 
 
 def linear_candidates(values, names, held, modes):

@@ -10,6 +10,8 @@ import yaml
 
 from vibroimpact.discrepancy import jobs, mapping, misfit, priors, verdict
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
+from vibroimpact.discrepancy.invariances import broken_invariances
+from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.discrepancy.prepared import workbench
 from vibroimpact.records import read_text, write_record, write_table, write_text
@@ -77,8 +79,8 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "ambiguity_set": decision.ambiguity if decision.verdict in ("named", "ambiguous", "partly_explained") else [],
         "ranking": [{"ids": row["ids"].split("+"), "heldout_score": row["heldout_score"], "closed_fraction": row["closed_fraction"], "location": row["location"]}
                     for row in ranking],
-        "next_measurement": verdict.next_measurement(decision.ambiguity),
-        "broken_invariances": verdict.broken_invariances(bench, null, prepared),
+        "next_measurement": next_measurement(decision.ambiguity),
+        "broken_invariances": broken_invariances(bench, null, prepared),
         "regions": mapping.regions(before_bench, difference, z, chosen_cells),
         "misfit": gaps, "p_global_before": p_before, "p_global_after": p_after,
         "checks": contract_checks(prepared.checks) + bounds(decision, prepared),

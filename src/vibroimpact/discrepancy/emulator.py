@@ -3,7 +3,8 @@
 import numpy as np
 from scipy import linalg
 
-LENGTHS = (0.12, 0.2, 0.3, 0.45, 0.7)  # of the searched range; the one that predicts left-out points best is taken
+LENGTHS = (0.05, 0.1, 0.2, 0.35, 0.7, 1.4)  # of the searched range; for each parameter the one that predicts left-out points best is taken
+SWEEPS = 2  # over the parameters, one length after the other
 
 
 class Emulator:
@@ -12,24 +13,31 @@ class Emulator:
 
     def __init__(self, parameters, deviations, noise, periodic=()):
         self.parameters, self.periodic = np.atleast_2d(parameters), periodic
-        self.deviations, self.mean = deviations, deviations.mean(axis=0)
-        centred = deviations - self.mean
+        self.deviations, self.mean, self.noise = deviations, deviations.mean(axis=0), noise
         best = np.inf
-        for length in LENGTHS:
-            kernel = self._kernel(self.parameters, self.parameters, length) + np.diag(noise + 1.0e-4)
-            inverse = linalg.inv(kernel)
-            left_out = inverse @ centred / np.diag(inverse)[:, None]
-            error = float(np.sum(left_out**2))
-            if error < best:
-                best, self.length, self.weights, self.inverse = error, length, inverse @ centred, inverse
+        lengths = np.full(self.parameters.shape[1], 0.35)
+        for number in list(range(len(lengths))) * (SWEEPS if len(lengths) > 1 else 1):
+            for length in LENGTHS:
+                tried = lengths.copy()
+                tried[number] = length
+                error, weights, inverse = self._fit(tried)
+                if error < best:
+                    best, lengths, self.weights, self.inverse = error, tried, weights, inverse
+        self.lengths = lengths
+
+    def _fit(self, lengths):
+        """Return (sum of squares of the errors at left-out points, weights, inverse of the kernel) with lengths (parameter,)."""
+        inverse = linalg.inv(self._kernel(self.parameters, self.parameters, lengths) + np.diag(self.noise + 1.0e-4))
+        weights = inverse @ (self.deviations - self.mean)
+        return float(np.sum((weights / np.diag(inverse)[:, None]) ** 2)), weights, inverse
 
     def __call__(self, parameters):
         """Return (deviation (feature,), share of the variance that is not known) at normalised parameters (parameter,)."""
-        against = self._kernel(np.atleast_2d(parameters), self.parameters, self.length)[0]
+        against = self._kernel(np.atleast_2d(parameters), self.parameters, self.lengths)[0]
         return self.mean + against @ self.weights, max(0.0, 1.0 - against @ self.inverse @ against)
 
-    def _kernel(self, a, b, length):
+    def _kernel(self, a, b, lengths):
         distance = a[:, None, :] - b[None, :, :]
         for number in self.periodic:
             distance[..., number] = np.sin(np.pi * distance[..., number]) / np.pi  # the chord of a circle that is 1 round
-        return np.exp(-0.5 * np.sum((distance / length) ** 2, axis=-1))
+        return np.exp(-0.5 * np.sum((distance / lengths) ** 2, axis=-1))

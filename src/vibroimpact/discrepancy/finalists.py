@@ -1,16 +1,22 @@
 """Finalists: candidates refined where emulation puts them, each round with more seeds, and judged by what is simulated there and nothing else."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, linear_score, simulate_path
+from vibroimpact.discrepancy.candidates import other_places
+from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, linear_score, null_scores, simulate_path
 
-STEPS = (0.08, 0.03)  # of the searched range: how far to either side a round looks
-ROUND_SEEDS = 2
-START_STEP = 0.12
+STEPS = (0.12, 0.05, 0.015)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
+ENOUGH = 2  # this close is close enough where no parameter is known better
+ROUNDS = 6  # at most
+START_STEP, STARTS = 0.12, 4
+TRIED = 2  # points that are tried at other places
+LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
+CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
+NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
 
 
 @dataclass(frozen=True)
@@ -35,23 +41,98 @@ class Finalist:
 
 def started(bench, null, candidate, unit, scales, first_seed=2000):
     """Return the Path round normalised parameters of a candidate that was not screened: a pair, or an effect at another place."""
-    return simulate_path(bench, candidate, _around(unit, START_STEP, candidate.periodic), scales, null.records, ROUND_SEEDS, first_seed)
+    return simulate_path(bench, candidate, _around(unit, START_STEP, candidate.periodic), scales, null.records, first_seed=first_seed)
 
 
-def refine(bench, null, measured, candidate, path, scales, fit, rounds=len(STEPS), seeds=priors.FINAL_SEEDS, first_seed=3000):
-    """Return the Finalist of a candidate whose Path has been screened, None where it can not be simulated; fit (record,) bool: the records its parameters are fitted to."""
-    for number, step in enumerate(STEPS[:rounds]):
-        unit = calibrate(bench, null, measured, candidate, path, fit).unit
-        fresh = simulate_path(bench, candidate, _around(unit, step, candidate.periodic), scales, null.records, ROUND_SEEDS, first_seed + 500 * number)
+def own(bench, null, measured, candidate, path, scales, fit, first_seed=2000):
+    """Return the Path of a candidate on this campaign at the points of another's Path that look best: what the bank knows is moved here, not simulated."""
+    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:STARTS]
+    return simulate_path(bench, candidate, path.parameters[order], scales, null.records, first_seed=first_seed)
+
+
+def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):
+    """Return (candidate, its Path) at the place where the best points of its Path come nearest to what was measured."""
+    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:TRIED]
+    best, kept = _scores(bench, null, measured, path, fit).max(), (candidate, path)
+    for other in other_places(candidate, bench.values):
+        there = simulate_path(bench, other, path.parameters[order], scales, null.records, first_seed=first_seed)
+        if there is not None and _scores(bench, null, measured, there, fit).max() > best:
+            best, kept = _scores(bench, null, measured, there, fit).max(), (other, there)
+    return kept
+
+
+def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, rival=-np.inf, seeds=priors.FINAL_SEEDS, first_seed=3000):
+    """Return the Finalist of a candidate whose Path has been screened, None where it can not be simulated.
+
+    fit (record,) bool: the records its parameters are fitted to; rival: gain of log likelihood of the best other candidate in the screening.
+    """
+    start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
+    level, centre = 0, _best_simulated(bench, null, measured, path, fit)
+    for number in range(rounds):
+        fresh = simulate_path(bench, candidate, _around(centre, STEPS[level], candidate.periodic), scales, null.records, first_seed=first_seed + 500 * number)
         path = path if fresh is None else path.joined(fresh)
-    found = calibrate(bench, null, measured, candidate, path, fit)
-    simulated = path.parameters[np.argmin(np.sum((path.parameters - found.unit) ** 2, axis=1))]
-    for unit in (found.unit, simulated):
+        found = _calibrated_near(bench, null, measured, candidate, path, fit)
+        if np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level]):
+            level += 1  # it stayed within what was looked at: look closer
+        centre = found.unit
+        losing = _scores(bench, null, measured, path, np.ones(len(measured), bool)).max() - start < LOSING * rival
+        if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
+            break
+    found = _with_whole_interval(bench, null, measured, candidate, path, fit, found)
+    judgements = []
+    simulated = _best_simulated(bench, null, measured, path, fit)
+    for unit in [simulated] if losing else _to_judge(candidate, found.unit, simulated, scales):
         try:
-            return judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed + 5000)
+            judgements.append(judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed + 5000))
         except IntegrationError:
             continue  # between points that can be simulated lies one that can not
-    return None
+    if not judgements:
+        return None
+    best = max(judgements, key=lambda row: row.scores[fit].sum() + row.low)
+    clearly = best.scores[fit].sum() + best.low > judgements[0].scores[fit].sum() + judgements[0].low + CLEARLY
+    return best if clearly else judgements[0]
+
+
+def _scores(bench, null, measured, path, fit):
+    """Return (point,) the log likelihood of what was measured at the points of a path."""
+    return np.array([direct_scores(bench, null, measured, mean)[fit].sum() + linear_score(bench, reading)
+                     for mean, reading in zip(path.features, path.readings, strict=True)])  # fmt: skip
+
+
+def _best_simulated(bench, null, measured, path, fit):
+    """Return (parameter,) the point of a path that comes nearest to what was measured."""
+    return path.parameters[np.argmax(_scores(bench, null, measured, path, fit))]
+
+
+def _calibrated_near(bench, null, measured, candidate, path, fit):
+    """Return the Calibrated of the points near the best simulated one, and not far beyond them: what an effect changes elsewhere tells little."""
+    best = _best_simulated(bench, null, measured, path, fit)
+    near = np.array([_apart(unit, best, candidate.periodic).max() for unit in path.parameters]) <= NEAR
+    found = calibrate(bench, null, measured, candidate, path.of(near), fit)
+    inside = np.clip(found.unit, best - NEAR, best + NEAR)
+    return found if candidate.periodic or np.allclose(found.unit, inside) else replace(found, unit=inside)
+
+
+def _with_whole_interval(bench, null, measured, candidate, path, fit, found):
+    """Return the Calibrated with the intervals of the whole path where those of the near points reach as far as the points."""
+    best = _best_simulated(bench, null, measured, path, fit)
+    wide = np.abs(found.interval - best[:, None]).max(axis=1) > NEAR - STEPS[-1]
+    if not wide.any():
+        return found
+    whole = calibrate(bench, null, measured, candidate, path, fit).interval
+    lower, upper = np.minimum(found.interval[:, 0], whole[:, 0]), np.maximum(found.interval[:, 1], whole[:, 1])
+    return replace(found, interval=np.where(wide[:, None], np.stack([lower, upper], axis=1), found.interval))
+
+
+def _to_judge(candidate, unit, simulated, scales):
+    """Return the points to judge: the most probable one, the best simulated one, and the first with what is nearly neutral made so."""
+    neutral = candidate.neutral_unit(scales)
+    snapped = np.where(np.abs(unit - neutral) < STEPS[-1], neutral, unit)  # NaN, no such value, is near nothing
+    points = []
+    for point in (unit, simulated, snapped):
+        if not any(np.allclose(point, other, atol=1.0e-3) for other in points):
+            points.append(point)
+    return points
 
 
 def judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed):
@@ -62,7 +143,15 @@ def judged(bench, null, measured, candidate, unit, path, found, scales, seeds, f
     features = bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1)
     scores = direct_scores(bench, null, measured, features.mean(axis=1))
     nearest = int(np.argmin(np.sum((path.parameters - unit) ** 2, axis=1)))
-    return Finalist(candidate, unit, found.interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile)
+    interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)
+    return Finalist(candidate, unit, interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile)
+
+
+def _apart(one, other, periodic):
+    """Return (parameter,) the distances of two points (an angle wraps round)."""
+    distance = np.abs(one - other)
+    wrapped = np.minimum(distance, 1.0 - distance)
+    return np.where(np.isin(np.arange(len(one)), periodic), wrapped, distance)
 
 
 def _around(unit, step, periodic):

@@ -4,7 +4,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import priors
 
-PARITY_Z, MIRROR_Z, SCALING_DB = 5.0, 5.0, 1.0
+PARITY_Z, MIRROR_Z, SCALING_DB = 3.5, 4.0, 1.0
 
 
 def broken_invariances(bench, null, prepared):

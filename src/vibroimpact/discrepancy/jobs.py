@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import refine, started
+from vibroimpact.discrepancy.finalists import ROUNDS, own, placed, refine, started
 from vibroimpact.discrepancy.null import null_runs, unseen_damping_runs
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.records import read_text, write_text
@@ -62,27 +62,39 @@ def screening(run, path, quick=False):
                            "ranked": [{"name": row.candidate.name, "score": row.score, "unit": row.unit.tolist()} for row in ranked]}, indent=1), path)  # fmt: skip
 
 
-QUICK_FINALISTS = 3
+QUICK_FINALISTS, QUICK_ROUNDS, PAIR_ROUNDS = 3, 1, 3
 
 
-def finalist(run, name, unit, path, quick=False):
-    """Refine one finalist by direct simulation, or a pair from its start."""
+def rival_of(name, screened):
+    """Return the best screening score of the candidates that are not of the name's effects; screened: content of the screening's file."""
+    effects = {part.split("@")[0] for part in name.split("+")}
+    return max((row["score"] for row in screened["ranked"] if row["name"].split("@")[0] not in effects), default=-np.inf)
+
+
+def finalist(run, name, unit, path, quick=False, rival=-np.inf):
+    """Refine one finalist by direct simulation, or a pair from its start; rival: see finalists.refine."""
     bench, null, paths, sizes = run.bench, run.null, run.paths, run.prepared.scales
     candidate, measured = candidate_named(name), bench.measured_features[null.records]
-    known = paths.get(candidate) if isinstance(candidate, Candidate) else None
+    fit, known = naming.fit_mask(bench, null), paths.get(candidate) if isinstance(candidate, Candidate) else None
+    if known is not None and run.bank_nulls:
+        known = own(bench, null, measured, candidate, known, sizes, fit)
+    if known is not None and not quick:
+        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit)
     if known is None:
         known = started(bench, null, candidate, np.array(unit), sizes)
     if known is None:
         store.save_empty(path)
         return
-    found = refine(bench, null, measured, candidate, known, sizes, naming.fit_mask(bench, null), rounds=1 if quick else 2)
+    rounds = QUICK_ROUNDS if quick else ROUNDS if isinstance(candidate, Candidate) else PAIR_ROUNDS
+    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, rival=rival)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
 def known_finalists(files):
-    """Return [Finalist] of files."""
+    """Return [Finalist] of files, one of each name: an effect that was screened at two places may have ended at one."""
     arrays = [store.load(file) for file in files]
-    return [store.finalist_of(row) for row in arrays if row is not None]
+    found = [store.finalist_of(row) for row in arrays if row is not None]
+    return list({row.candidate.name: row for row in sorted(found, key=lambda row: row.scores.sum() + row.low)}.values())
 
 
 def ordered(bench, null, found):

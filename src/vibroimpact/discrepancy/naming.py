@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.features import compressed
 from vibroimpact.discrepancy.likelihood import log_likelihood
 from vibroimpact.discrepancy.screening import calibrate, direct_scores, linear_score, null_scores
@@ -62,12 +63,16 @@ def null_gains(bench, null, paths):
 def threshold(gains):
     """Return the gain that a name must have: the quantile of null gains by a normal law, never less than priors.GAIN."""
     spread = gains.std(ddof=1) if len(gains) > 1 else 0.0
-    return float(max(priors.GAIN, gains.mean() + 2.054 * spread)) if len(gains) else priors.GAIN
+    return float(max(priors.GAIN, gains.mean() + priors.NULL_SIGMA * spread)) if len(gains) else priors.GAIN
 
 
 def finalists(screened, count=priors.FINALISTS):
     """Return the candidates to simulate directly: the best of each effect, and the aliases of the first that came near."""
-    chosen = [row for row in screened if row.score > 0.0]
+    best = {}
+    for row in screened:
+        if row.score > 0.0:
+            best.setdefault(row.candidate.effect_id, row)
+    chosen = list(best.values())
     chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
     if chosen:
         first = chosen[0].candidate.effect
@@ -104,15 +109,14 @@ def explained(bench, null, mean, measured, changed=True):
 SPREAD = 1.25  # right models of the development campaigns: 205 to 300 for 270 features
 
 
-def not_told_apart(total, best):
-    """Return the names whose total gain is too near the best's: within AMBIGUOUS, or ALIAS_AMBIGUOUS for an alias of the catalogue."""
-    from vibroimpact.discrepancy.candidates import candidate_named
-
+def not_told_apart(total, best, sufficient=frozenset()):
+    """Return the names whose total gain is too near the best's: within AMBIGUOUS. An alias of the catalogue also within ALIAS_AMBIGUOUS, and wherever it
+    leaves nothing to be explained (sufficient: names of those that do not): two laws of one kind differ by less than two codes of one law."""
     first, out = candidate_named(best), []
     for name, (gain, _, _) in total.items():
         other = candidate_named(name)
         alias = other.effect_id in first.effect.aliases or first.effect_id in other.effect.aliases
-        near = priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS
-        if other.effect_id != first.effect_id and gain > total[best][0] - near:
+        near = gain > total[best][0] - (priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS) or alias and name in sufficient
+        if other.effect_id != first.effect_id and near:
             out.append(name)
     return out

@@ -50,14 +50,25 @@ def null_of(bench, records, features, unseen):
     """Return the Null of (record, seed, feature) of the bare model and of `unseen`, the same with other damping of unseen modes."""
     driven = driven_channels(bench)
     common, own = free_directions(bench.layout, driven), np.diag(feature_sd(bench.layout) ** 2)
-    means, covariances = [], []
-    for nominal, other in zip(features, unseen, strict=True):
+    means, covariances, bursts = [], [], bursting(bench, records, driven)
+    for nominal, other, burst in zip(features, unseen, bursts, strict=True):
         scatter = scatter_of(nominal, bench.layout)
         direction = compressed(other.mean(axis=0) - scatter.mean, bench.layout)
         free = np.vstack([common, direction])
         means.append(scatter.mean)
-        covariances.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + free.T @ free)
+        covariances.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + np.diag((burst * bench.layout.blend) ** 2) + free.T @ free)
     return Null(np.asarray(records), features, np.array(means), np.array(covariances), driven[bench.layout.channel].astype(int))
+
+
+def bursting(bench, records, driven):
+    """Return (record, feature) bool: features of channels that the force does not drive and whose measured record is a few bursts over noise.
+
+    Motion across the force is an instability: whether and when it breaks out for a moment is no property that two codes of one tube share, and the
+    power of the record is that of the moment. Such features tell no more than to within features.BLEND.
+    """
+    layout, measured = bench.layout, bench.measured_features[records]
+    peaked = measured[:, layout.kind == "kurtosis"] > priors.BURST
+    return (peaked & ~driven)[:, layout.channel]
 
 
 def driven_channels(bench):

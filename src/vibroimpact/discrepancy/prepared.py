@@ -26,8 +26,7 @@ class Prepared:
 
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
     {name, unit, gain, interval} of the linear effect that belongs to the model from here on; linear: the same of every linear candidate, best
-    first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record, and its
-    number; residual (channel,) over noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; fit: the ModalFit of the lowest record on
+    first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; fit: the ModalFit of the lowest record on
     the model with what was adopted.
     """
 
@@ -83,6 +82,9 @@ def workbench(config, campaign_path, prepared):
     if refusal:
         raise CampaignError(refusal)
     bench = Workbench(config, campaign, prepared.longest_s)
+    if prepared.delays:
+        delay = np.array([prepared.delays.get(name, 0.0) for name in bench.signals.names])
+        bench.late = Measuring(np.ones(len(delay)), delay, 1.0)
     if prepared.adopted is not None:
         adopt(bench, prepared)
     elif prepared.linear_stage:
@@ -110,7 +112,11 @@ def adopt(bench, prepared):
 
 
 def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset()):
-    """Return the Prepared of a campaign file and a checked Config; tables {candidate name: LinearTable} known from another campaign, extended; without: ids of effects that are not in the catalogue this time."""
+    """Return the Prepared of a campaign file and a checked Config.
+
+    tables {candidate name: LinearTable}: known from another campaign of the same model, extended; without: ids of effects that are not in the
+    catalogue this time.
+    """
     _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
     if refusal is None:
@@ -152,7 +158,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     out.linear = sorted(found, key=lambda row: -row["gain"])
     for name, lag in out.delays.items():
         out.checks.append({"check": "delay", "level": "warn", "record": None, "channel": name,
-                           "message": f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the force; it is taken out."})  # fmt: skip
+                           "message": f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the force; what is simulated is made as late."})  # fmt: skip
     best = out.linear[0]
     if best["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(best["unit"]) - 1) and not out.nonlinear_low and beyond_prior(best, out.scales):
         out.adopted = best
@@ -193,8 +199,3 @@ def beyond_prior(row, sizes):
 def held(campaign):
     """Return what a campaign holds beyond force and response."""
     return [name for name in ("voltage",) if name in campaign]
-
-
-def neutral_measuring(names):
-    """Return the Measuring without a fault."""
-    return Measuring(np.ones(len(names)), np.zeros(len(names)))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import optimize
 from scipy.interpolate import RBFInterpolator
 
 from vibroimpact.contraction import IntegrationError
@@ -13,8 +14,13 @@ from vibroimpact.discrepancy.likelihood import log_likelihood
 
 LEAST_LOW = 300.0  # log likelihood of the lowest record below the best: farther off tells nothing more
 SMOOTHING = 1.0e-3  # points that were simulated twice differ by the seeds
-SWEEPS, SCAN = 3, 21  # of a coordinate search, where a grid over all parameters would be too large
-GRID = {1: 61, 2: 21}  # points per parameter on which the emulator is searched, by the number of parameters
+GRID = {1: 41, 2: 13}  # points per parameter on which the emulator is searched first, by the number of parameters
+SCAN = 21  # points along one parameter, where a grid over all would be too large
+FINEST = 0.004  # of the searched range
+NINETY = 1.353  # of log likelihood below the best: the interval of 90 % of a normal law
+SCATTER = 2.0  # of an emulated log likelihood, since its means are of few seeds
+CURVED = 0.02  # of the searched range: the step of the curvature at the best
+WIDEST = 0.5  # of the searched range: no parameter is known worse
 
 
 @dataclass
@@ -26,6 +32,10 @@ class Path:
     features: np.ndarray
     seeds: np.ndarray
     readings: list
+
+    def of(self, chosen):
+        """Return the path of the points chosen (point,) bool."""
+        return Path(self.parameters[chosen], self.features[chosen], self.seeds[chosen], [row for row, kept in zip(self.readings, chosen, strict=True) if kept])
 
     def joined(self, other):
         """Return both paths as one."""
@@ -114,38 +124,54 @@ def calibrate(bench, null, measured, candidate, path, fit):
         return at(unit, np.flatnonzero(fit), law)[0].sum() + low_at(unit)
 
     start = path.parameters[np.argmax([fit_score(unit) for unit in path.parameters])]
-    search = _grid if path.parameters.shape[1] in GRID else _scan
-    unit, _ = search(fit_score, start)
+    unit = _best(fit_score, start)
     # what two laws may differ by grows with the effect: held at its best while the parameters are estimated, or more would always be forgiven
     law = at(unit, [])[1]
-    unit, profile = search(lambda point: fit_score(point, law), unit)
+    unit = _best(lambda point: fit_score(point, law), unit)
+    profile = _profile(lambda point: fit_score(point, law), unit)
     records, deviation = at(unit, np.arange(len(measured)))
     interval = np.array([_above(values, score) for values, score in profile])
     return Calibrated(unit, records, low_at(unit), null.mean + uncompressed(deviation, bench.layout), interval, profile)
 
 
-def _grid(score, start):
-    """Return (unit, profile) of the best of a grid over all parameters."""
-    count = len(start)
-    axis = np.linspace(0.0, 1.0, GRID[count])
-    grid = np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * count, indexing="ij")], axis=-1)
-    scores = np.array([score(unit) for unit in grid])
-    unit, scores = grid[np.argmax(scores)], scores.reshape([len(axis)] * count)
-    return unit, [(axis, np.moveaxis(scores, number, 0).reshape(len(axis), -1).max(axis=1)) for number in range(count)]
+def _best(score, start):
+    """Return unit (parameter,) of the best: the top of a grid over all parameters, or of lines through `start` where a grid would be too large, then uphill."""
+    count, best = len(start), np.array(start, float)
+    if count in GRID:
+        axis = np.linspace(0.0, 1.0, GRID[count])
+        best = _top(score, np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * count, indexing="ij")], axis=-1))
+    else:
+        for number in range(count):
+            lines = np.repeat(best[None], SCAN, axis=0)
+            lines[:, number] = np.linspace(0.0, 1.0, SCAN)
+            best = _top(score, lines)
+    reach = 1.0 / (GRID.get(count, SCAN) - 1)
+    simplex = best + reach * np.vstack([np.zeros(count), np.where(best > 0.5, -1.0, 1.0) * np.eye(count)])
+    found = optimize.minimize(lambda unit: -score(unit), best, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count,
+                              options={"xatol": FINEST, "fatol": 0.05, "maxfev": 60 * count, "initial_simplex": simplex})  # fmt: skip
+    return found.x
 
 
-def _scan(score, start):
-    """Return (unit, profile) of a search along one parameter after the other."""
-    unit, axis = np.array(start), np.linspace(0.0, 1.0, SCAN)
-    for _ in range(SWEEPS):
-        profile = []
-        for number in range(len(unit)):
-            along = np.repeat(unit[None], SCAN, axis=0)
-            along[:, number] = axis
-            scores = np.array([score(point) for point in along])
-            unit = along[np.argmax(scores)]
-            profile.append((axis, scores))
-    return unit, profile
+def _top(score, points):
+    """Return the best of points (point, parameter)."""
+    return points[np.argmax([score(point) for point in points])]
+
+
+def _profile(score, unit):
+    """Return [(values (n,), score (n,))] along each parameter through the best, the others following the ridge that the curvature there tells."""
+    count = len(unit)
+    at, step = np.clip(unit, CURVED, 1.0 - CURVED), CURVED * np.eye(count)
+    bent = np.array([[score(at + a + b) - score(at + a - b) - score(at - a + b) + score(at - a - b) for b in step] for a in step]) / (4.0 * CURVED**2)
+    values, turn = np.linalg.eigh(-0.5 * (bent + bent.T))
+    covariance = (turn / np.maximum(values, 1.0 / WIDEST**2)) @ turn.T
+    out = []
+    for number in range(count):
+        sd, ridge = np.sqrt(covariance[number, number]), covariance[:, number] / covariance[number, number]
+        near = unit[number] + sd * np.linspace(-4.0, 4.0, 33)
+        axis = np.unique(np.clip(np.concatenate([near, np.linspace(0.0, 1.0, 21)]), 0.0, 1.0))
+        points = np.clip(unit + (axis - unit[number])[:, None] * ridge, 0.0, 1.0)
+        out.append((axis, np.array([score(point) for point in points])))
+    return out
 
 
 def _lows(parameters, scores):
@@ -156,8 +182,8 @@ def _lows(parameters, scores):
     return lambda unit: float(interpolator(np.atleast_2d(unit))[0])
 
 
-def _above(values, score, drop=1.353):
-    """Return (low, high) of the values whose score is within `drop` of the best (90 % of a normal law), between grid points by parabola and line."""
+def _above(values, score, drop=NINETY + SCATTER):
+    """Return (low, high) of the values whose score is within `drop` of the best, between grid points by parabola and line."""
     best = int(np.argmax(score))
     ends = []
     for step in (-1, 1):
@@ -170,5 +196,5 @@ def _above(values, score, drop=1.353):
         fall = score[place] - score[place + step]
         share = (score[place] - (score[best] - drop)) / fall if fall > 0.0 else 1.0
         share = np.sqrt(share) if place == best else share  # beside a peak the score falls with the square
-        ends.append(values[place] + step * share * (values[1] - values[0]))
+        ends.append(values[place] + share * (values[place + step] - values[place]))
     return np.clip(ends, 0.0, 1.0)

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 from scipy import stats
 
-STRONG = 3.0  # floors of excess on the hold-out records
 EQUIVALENT = {"fluid": "fluid_added_mass_damping"}
 FAULT_CHECKS = {"clipping", "drop-outs", "delay", "swapped channels", "units", "gaps in time", "directions"}
 SENSOR = {"sensor_gain", "sensor_delay"}

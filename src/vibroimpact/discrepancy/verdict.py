@@ -6,11 +6,6 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
-from vibroimpact.discrepancy.invariances import broken_invariances
-from vibroimpact.discrepancy.next_measurement import next_measurement
-
-FIT_TO_HOLDOUT = 0.1  # a gain on held-out records below this share of what the fit records promise is a veto
-
 
 @dataclass
 class Decision:
@@ -30,7 +25,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     totals = naming.totals(bench, null, measured, found)
     linear = linear_sets(prepared)
     singles = [row for row in found if isinstance(row.candidate, Candidate)]
-    doubles = [row for row in found if isinstance(row.candidate, Pair)]
+    doubles = [row for row in found if isinstance(row.candidate, Pair) and not idle(row, prepared.scales)]
     best = singles[0] if singles else None
     if best is None or totals[best.candidate.name][0] < threshold:
         rest = naming.explained(bench, null, null.mean, measured, False)
@@ -41,13 +36,21 @@ def decide(bench, null, prepared, found, threshold, p_before):
     if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, null, best.mean, measured).min() < priors.EXPLAINED_Z:
         best = doubles[0]
     left = naming.explained(bench, null, best.mean, measured)
-    sets = local_sets(best.candidate, totals, {row.candidate.name for row in (doubles if isinstance(best.candidate, Pair) else singles)})
+    alike = doubles if isinstance(best.candidate, Pair) else singles
+    sufficient = {row.candidate.name for row in alike if naming.explained(bench, null, row.mean, measured).min() > priors.EXPLAINED_Z}
+    sets = local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient)
     together = [sorted({*one, *other}) for one in (linear or [[]]) for other in sets]
     share = closure(bench, null, best, measured)
     if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
         verdict = "partly_explained" if share > priors.PARTLY else "unknown"
         return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
+
+
+def idle(found, sizes):
+    """Return whether one of the two effects of a Finalist of a Pair may as well be none."""
+    cut = found.candidate.split
+    return found.candidate.first.may_be_neutral(found.interval[:cut], sizes) or found.candidate.second.may_be_neutral(found.interval[cut:], sizes)
 
 
 def linear_sets(prepared):
@@ -64,11 +67,11 @@ def linear_sets(prepared):
     return out
 
 
-def local_sets(best, totals, names):
-    """Return [[ids]] of what the contact levels can not tell apart, the best first."""
+def local_sets(best, totals, names, sufficient=frozenset()):
+    """Return [[ids]] of what the contact levels can not tell apart, the best first; sufficient: names of those that leave nothing to be explained."""
     out = [sorted(best.effect_id.split("+"))]
     if isinstance(best, Candidate):
-        out += [[candidate_named(name).effect_id] for name in naming.not_told_apart({name: totals[name] for name in names}, best.name)]
+        out += [[candidate_named(name).effect_id] for name in naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)]
         if best.effect_id == "gap" and best.location == "all":
             out.append(["sensor_gain"])  # force and all responses scaled alike are a gap scaled: an exact alias
     else:
@@ -78,19 +81,17 @@ def local_sets(best, totals, names):
 
 
 def closure(bench, null, found, measured):
-    """Return the share of the squared distance beyond the seeds' own that a Finalist closes, on all records."""
-    layout = bench.layout
-    power = layout.power(measured)
-    own = np.mean(layout.power(null.features).var(axis=1))
-    before = max(np.mean((power - layout.power(null.mean)) ** 2) - own, 1.0e-6)
-    after = max(np.mean((power - layout.power(found.mean)) ** 2) - own, 0.0)
-    return 1.0 - np.sqrt(after / before)
+    """Return the share of the distance beyond chance that a Finalist closes, on all records, in units of what seeds and two codes scatter by."""
+    size = measured.shape[1]
+    spread = naming.SPREAD * np.sqrt(2.0 * size)
+    before = np.sum(-naming.explained(bench, null, null.mean, measured, False) * spread)
+    after = np.sum(-naming.explained(bench, null, found.mean, measured) * spread)
+    return 1.0 - np.sqrt(max(after, 0.0) / before) if before > 0.0 else 0.0
 
 
 def vetoed(total, share):
     """Return whether what was held out contradicts what was fitted: a loss there, or next to nothing closed."""
-    _, on_fit, held_out = total
-    return held_out < FIT_TO_HOLDOUT * min(on_fit, 0.0) - priors.GAIN or share < priors.LEAST_CLOSED
+    return total[2] < -priors.GAIN or share < priors.LEAST_CLOSED
 
 
 def effects_of(prepared, decision, sizes):
@@ -118,6 +119,3 @@ def _effect(candidate, unit, interval, sizes):
         nominal = sizes["gap"]
         parameters["gap"] = {"unit": "m", **{key: nominal * parameters["gap_factor"][key] for key in ("value", "low", "high")}}
     return {"id": candidate.effect_id, "location": candidate.location, "parameters": parameters}
-
-
-__all__ = ["Decision", "broken_invariances", "decide", "effects_of", "next_measurement"]

@@ -1,5 +1,7 @@
-"""A whole discrepancy run in one process, job after job, for campaigns by the dozen: the files are those of the workflow, and what exists is kept."""
+"""A whole discrepancy run without the workflow, for campaigns by the dozen or in a hurry: the files are those of the workflow, and what exists is kept."""
 
+import multiprocessing
+from functools import partial
 from pathlib import Path
 
 from vibroimpact.config import check_config
@@ -11,11 +13,11 @@ from vibroimpact.discrepancy.prepared import Prepared, prepare
 from vibroimpact.discrepancy.run import Run
 
 
-def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, say=print, without=frozenset()):
+def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, workers=1, without=frozenset()):
     """Run a campaign file against a configuration in plain values; results as the workflow's in the folder.
 
     bank: folder of another campaign of the same model, loads and gaps, whose candidates' simulations serve this one; tables {name: LinearTable}, likewise
-    of its linear candidates, extended here; without: ids of effects that are not in the catalogue this time.
+    of its linear candidates, extended here; workers: processes; without: ids of effects that are not in the catalogue this time.
     """
     folder, config = Path(folder), check_config(values, "model")
     prepared_file = folder / "prepared.json"
@@ -29,25 +31,44 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     if run.refused:
         conclude(run, None, [], provenance)
         return
-    for part, file in enumerate(nulls):
-        if not file.is_file():
-            jobs.null_part(run.bench, part, file)
-    for name, file in zip(names, paths, strict=True):
-        if not file.is_file():
-            jobs.candidate_path(run.bench, candidate_named(name), prepared.scales, file, quick)
-            say(f"{folder.name}: {name}")
+    _make(workers, {file: partial(jobs.null_part, run.bench, part) for part, file in enumerate(nulls)})
+    _make(workers, {file: partial(_path, run.bench, name, prepared.scales, quick) for name, file in zip(names, paths, strict=True)})
     screened = _kept(folder / "screening.json", lambda file: jobs.screening(run, file, quick))
     files = []
-    for kind, chosen in (("finalists", screened["finalists"]), ("pairs", None)):
-        if chosen is None:
-            chosen = _kept(folder / "pairs.json", lambda file: jobs.pairs(run, list(files), screened, file, quick))["pairs"]
-        for name, unit in chosen.items():
-            file = folder / kind / f"{name}.npz"
-            if not file.is_file():
-                jobs.finalist(run, name, unit, file, quick)
-                say(f"{folder.name}: {kind} {name}")
-            files.append(file)
+    for kind in ("finalists", "pairs"):
+        chosen = screened if kind == "finalists" else _kept(folder / "pairs.json", lambda file: jobs.pairs(run, list(files), screened, file, quick))
+        made = {folder / kind / f"{name}.npz": partial(_finalist, run, name, unit, quick, jobs.rival_of(name, screened)) for name, unit in chosen[kind].items()}
+        _make(workers, made)
+        files += made
     conclude(run, screened, files, provenance, quick)
+
+
+def _path(bench, name, sizes, quick, file):
+    jobs.candidate_path(bench, candidate_named(name), sizes, file, quick)
+
+
+def _finalist(run, name, unit, quick, rival, file):
+    jobs.finalist(run, name, unit, file, quick, rival)
+
+
+SHARED = {}  # {file: function}: inherited by forked processes, since what the functions hold is too large to be sent
+
+
+def _make(workers, makers):
+    """Call every function of {file: function} whose file is not there yet with it, `workers` at a time."""
+    SHARED.clear()
+    SHARED.update({file: make for file, make in makers.items() if not file.is_file()})
+    if workers == 1 or len(SHARED) < 2:
+        for file in SHARED:
+            _made(file)
+        return
+    with multiprocessing.get_context("fork").Pool(workers) as pool:
+        pool.map(_made, SHARED, chunksize=1)
+
+
+def _made(file):
+    SHARED[file](file)
+    print(file, flush=True)
 
 
 def _kept(file, make):
@@ -55,5 +76,3 @@ def _kept(file, make):
     if not file.is_file():
         make(file)
     return jobs.read_json(file)
-
-

@@ -32,7 +32,7 @@ class Workbench:
         self.schedule = schedule_of(campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate)
         self.forces = Forces(self.signals.force, self.schedule)
         self._finer = {1: (self.schedule, self.forces)}
-        self.nuisance, self.measuring = None, None
+        self.nuisance, self.measuring, self.late = None, None, None
         self.values = config.model_dump(mode="json")
 
     def rebase(self, values):
@@ -124,7 +124,7 @@ class Workbench:
     def respond(self, model, runs, measuring=None):
         """Return (run, channel, sample) responses with the gains of the nuisance and the faults of the measuring chain (Measuring)."""
         schedule, forces = self.stepped(model)
-        chain = [fault for fault in (self.measuring, measuring) if fault is not None]
+        chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
         factor = np.prod([fault.force_gain for fault in chain])
         forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
         responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)

@@ -16,7 +16,7 @@ EFFECT = Effect(
     explanation="the structure carries a mass that the model lacks",
     source="rigid point mass",
     parameters=(
-        Parameter("mass", "kg", 0.002, 0.5, 0.0, per="mass"),
+        Parameter("mass", "kg", 0.002, 2.0, 0.0, per="mass"),
     ),
     apply=apply,
     linear=True,

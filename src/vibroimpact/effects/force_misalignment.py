@@ -16,7 +16,7 @@ EFFECT = Effect(
     explanation="the force is not along its stated direction",
     source="geometry",
     parameters=(
-        Parameter("angle", "rad", -0.6, 0.6, 0.0, log=False),
+        Parameter("angle", "rad", -1.2, 1.2, 0.0, log=False),
     ),
     apply=apply,
     linear=True,

@@ -19,7 +19,7 @@ EFFECT = Effect(
     explanation="the modes are damped otherwise than assumed",
     source="viscous modal damping",
     parameters=(
-        Parameter("factor", "1", 0.2, 5.0, 1.0),
+        Parameter("factor", "1", 0.08, 12.0, 1.0),
     ),
     apply=apply,
     linear=True,

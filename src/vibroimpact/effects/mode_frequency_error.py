@@ -16,7 +16,7 @@ EFFECT = Effect(
     explanation="a mode has another frequency than computed",
     source="model error of the linear structure",
     parameters=(
-        Parameter("factor", "1", 0.85, 1.18, 1.0, log=True),
+        Parameter("factor", "1", 0.7, 1.4, 1.0, log=True),
     ),
     apply=apply,
     linear=True,

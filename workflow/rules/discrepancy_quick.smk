@@ -1,0 +1,27 @@
+# The same in a hurry: `snakemake -j2 discrepancy --config campaign=FILE quick=yes`. One job: starting one per candidate would take as long as the candidates.
+
+
+rule discrepancy_quick:
+    input:
+        library=library("discrepancy_quick"),
+        campaign=requested("campaign", "FILE"),
+    output:
+        verdict=f"{DISCREPANCY}/verdict.json",
+        map=f"{DISCREPANCY}/map.nc",
+        map_after=f"{DISCREPANCY}/map_after.nc",
+        ranking=f"{DISCREPANCY}/ranking.csv",
+        model=f"{DISCREPANCY}/model_updated.yaml",
+    params:
+        config=MODEL.model_dump(mode="json"),
+    log:
+        f"{DISCREPANCY}/logs/quick.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/quick.tsv"
+    threads: 2
+    resources:
+        mem_mb=6000,
+        runtime=20,
+    message:
+        "Quick look for what is missing: short records, fewer parameters, no second effect"
+    script:
+        "../scripts/discrepancy_quick.py"

@@ -1,0 +1,17 @@
+"""A whole discrepancy run in one job, with short records and fewer parameters."""
+
+import shutil
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from vibroimpact.discrepancy.dag import QUICK_S
+from vibroimpact.discrepancy.whole import run_campaign
+from vibroimpact.provenance import origin
+
+sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+source = origin(snakemake.params.config, snakemake.input.library)
+with TemporaryDirectory(dir=Path(snakemake.output.verdict).parent) as work:
+    run_campaign(snakemake.params.config, snakemake.input.campaign, work, source, longest_s=QUICK_S, quick=True, workers=snakemake.threads)
+    for made in snakemake.output:
+        shutil.move(Path(work, Path(made).name), made)
