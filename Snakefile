@@ -30,6 +30,7 @@ include: "workflow/rules/validation.smk"
 localrules:
     all,
     discrepancy,
+    discrepancy_mode,
 
 
 rule all:

@@ -205,6 +205,7 @@ rule discrepancy_verdict:
         screening=f"{DISCREPANCY}/screening.json",
         finalists=finalist_files,
         pairs=pair_files,
+        mode=f"{DISCREPANCY}/mode.txt",
     output:
         verdict=f"{DISCREPANCY}/verdict.json",
         map=f"{DISCREPANCY}/map.nc",

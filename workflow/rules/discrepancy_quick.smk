@@ -5,6 +5,7 @@ rule discrepancy_quick:
     input:
         library=library("discrepancy_quick"),
         campaign=requested("campaign", "FILE"),
+        mode=f"{DISCREPANCY}/mode.txt",
     output:
         verdict=f"{DISCREPANCY}/verdict.json",
         map=f"{DISCREPANCY}/map.nc",

@@ -3,28 +3,46 @@
 DISCREPANCY_FIGURES = ("discrepancy_map", "discrepancy_psd", "discrepancy_ranking", "discrepancy_profiles", "discrepancy_levels")
 
 
+rule discrepancy_mode:
+    # a full run after a quick one has the same products: it must not take those for its own
+    output:
+        mode=f"{DISCREPANCY}/mode.txt",
+    params:
+        mode="quick" if QUICK else "full",
+    log:
+        f"{DISCREPANCY}/logs/mode.log",
+    threads: 1
+    resources:
+        mem_mb=100,
+        runtime=1,
+    message:
+        "Mode of the discrepancy run: {params.mode}"
+    shell:
+        "echo {params.mode} > {output.mode} 2> {log}"
+
+
 rule discrepancy_report:
     input:
         library=library("discrepancy_report"),
         template=f"{SOURCE}/vibroimpact/discrepancy_page.html",
-        verdict=f"results/{LOOKED_AT}/verdict.json",
-        map=f"results/{LOOKED_AT}/map.nc",
-        map_after=f"results/{LOOKED_AT}/map_after.nc",
-        ranking=f"results/{LOOKED_AT}/ranking.csv",
+        verdict=f"{DISCREPANCY}/verdict.json",
+        map=f"{DISCREPANCY}/map.nc",
+        map_after=f"{DISCREPANCY}/map_after.nc",
+        ranking=f"{DISCREPANCY}/ranking.csv",
     output:
-        page=f"results/{LOOKED_AT}/report.html",
-        figures=[f"results/{LOOKED_AT}/figures/{name}.{suffix}" for name in DISCREPANCY_FIGURES for suffix in ("png", "pdf", "csv", "txt")],
+        page=f"{DISCREPANCY}/report.html",
+        figures=[f"{DISCREPANCY}/figures/{name}.{suffix}" for name in DISCREPANCY_FIGURES for suffix in ("png", "pdf", "csv", "txt")],
     params:
         name=LOOKED_AT,
     log:
-        f"results/{LOOKED_AT}/logs/discrepancy_report.log",
+        f"{DISCREPANCY}/logs/discrepancy_report.log",
     benchmark:
-        f"results/{LOOKED_AT}/benchmarks/discrepancy_report.tsv"
+        f"{DISCREPANCY}/benchmarks/discrepancy_report.tsv"
     threads: 1
     resources:
         mem_mb=2000,
         runtime=10,
     message:
-        f"Report of {LOOKED_AT}: results/{LOOKED_AT}/report.html"
+        f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"
     script:
         "../scripts/discrepancy_report.py"

@@ -9,9 +9,9 @@ from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import other_places
 from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, linear_score, null_scores, simulate_path
 
-STEPS = (0.12, 0.05, 0.015)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
+STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
 ENOUGH = 2  # this close is close enough where no parameter is known better
-ROUNDS = 6  # at most
+ROUNDS = 4  # at most
 START_STEP, STARTS = 0.12, 4
 TRIED = 2  # points that are tried at other places
 LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
@@ -69,7 +69,8 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, r
     start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
     level, centre = 0, _best_simulated(bench, null, measured, path, fit)
     for number in range(rounds):
-        fresh = simulate_path(bench, candidate, _around(centre, STEPS[level], candidate.periodic), scales, null.records, first_seed=first_seed + 500 * number)
+        points = _around(centre, STEPS[level], candidate.periodic)[0 if number else 1 :]  # the first centre is known
+        fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number)
         path = path if fresh is None else path.joined(fresh)
         found = _calibrated_near(bench, null, measured, candidate, path, fit)
         if np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level]):

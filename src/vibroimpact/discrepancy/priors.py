@@ -20,7 +20,7 @@ RESIDUAL_SD = 0.15  # of ln of the low-level residual over noise
 
 NULL_SEEDS = 16  # runs of every record without an effect
 FINAL_SEEDS = 8  # of the finalists and of the verification
-FINALISTS = 5
+FINALISTS = 4
 
 LINEAR_RESIDUAL = 2.0  # of the lowest record's residual over noise, in a driven channel: above it the structure is not linear there
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it

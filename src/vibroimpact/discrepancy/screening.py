@@ -8,6 +8,7 @@ from scipy.interpolate import RBFInterpolator
 
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import compressed, uncompressed
 from vibroimpact.discrepancy.likelihood import log_likelihood
@@ -64,12 +65,14 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
 
 
 def linear_score(bench, reading):
-    """Return the log likelihood of the lowest record's Reading under a variant's; of the bare model where it is None."""
+    """Return the log likelihood of the lowest record's Reading under a variant's, of the bare model where it is None: by a t law, as for other records."""
     if not bench.linear_stage:
         return 0.0
     fit = bench.measured_fit
     simulated = linear.reading_of_model(bench.bare, fit.modes) if reading is None else reading
-    return linear.likelihood(bench.measured_reading, simulated, fit.covariance)[0]
+    score, chi_square, _ = linear.likelihood(bench.measured_reading, simulated, fit.covariance)
+    size = 2 * len(fit.modes) + fit.participation.size
+    return score + 0.5 * chi_square - 0.5 * (priors.TAIL + size) * np.log1p(chi_square / priors.TAIL)
 
 
 def null_scores(bench, null, measured):
