@@ -78,8 +78,6 @@ def finalist(run, name, unit, path, quick=False, rival=-np.inf):
     fit, known = naming.fit_mask(bench, null), paths.get(candidate) if isinstance(candidate, Candidate) else None
     if known is not None and run.bank_nulls:
         known = own(bench, null, measured, candidate, known, sizes, fit)
-    if known is not None and not quick:
-        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit)
     if known is None:
         known = started(bench, null, candidate, np.array(unit), sizes)
     if known is None:
@@ -87,6 +85,10 @@ def finalist(run, name, unit, path, quick=False, rival=-np.inf):
         return
     rounds = QUICK_ROUNDS if quick else ROUNDS if isinstance(candidate, Candidate) else PAIR_ROUNDS
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, rival=rival)
+    if found is not None and isinstance(candidate, Candidate) and not quick:
+        other, there = placed(bench, null, measured, candidate, found.path, sizes, fit)
+        if other is not candidate:
+            found = refine(bench, null, measured, other, there, sizes, fit, rounds=rounds, rival=rival) or found
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
