@@ -1,0 +1,91 @@
+"""The verdict from scores: who is named, who is not told apart, when a pair is needed, and when nobody is named."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy import verdict
+from vibroimpact.discrepancy.candidates import candidate_named
+
+THRESHOLD, EXPLAINED, LEFT = 15.0, np.array([0.3, -1.0]), np.array([0.3, -9.0])
+SCALES = {"gap": 2.0e-4, "one": 1.0, "contact_stiffness": 4.0e6, "hertz": 2.0e8}
+
+
+def finalist(name, gain, explained=EXPLAINED, held_out=10.0, interval=None):
+    """A Finalist of a name as the verdict sees it; interval (parameter, 2) away from neutral where None."""
+    candidate = candidate_named(name)
+    count = len(candidate.effect.parameters)
+    interval = np.tile([0.75, 0.85], (count, 1)) if interval is None else np.array(interval)
+    return SimpleNamespace(candidate=candidate, mean=name, gain=gain, left=explained, held_out=held_out, interval=interval, unit=interval.mean(axis=1))
+
+
+@pytest.fixture
+def decided(monkeypatch):
+    """Return the function (finalists, adopted, rest, p, share) -> Decision."""
+
+    def run(found, adopted=None, rest=LEFT, p=1.0e-6, share=0.9, linear=()):
+        left = {row.mean: row.left for row in found} | {"null": rest}
+        monkeypatch.setattr(verdict.naming, "totals", lambda *_: {row.candidate.name: (row.gain, row.gain - row.held_out, row.held_out) for row in found})
+        monkeypatch.setattr(verdict.naming, "explained", lambda bench, null, mean, *_: left[mean])
+        monkeypatch.setattr(verdict, "closure", lambda *_: share)
+        bench = SimpleNamespace(measured_features={"records": None})
+        prepared = SimpleNamespace(adopted=adopted, linear=list(linear), scales=SCALES)
+        order = sorted(found, key=lambda row: -row.gain)
+        return verdict.decide(bench, SimpleNamespace(records="records", mean="null"), prepared, order, THRESHOLD, p)
+
+    return run
+
+
+def test_nothing_is_named_where_nothing_is_missing(decided):
+    assert decided([], rest=EXPLAINED, p=0.6).verdict == "none"
+    assert decided([finalist("hertz@all", 9.0)], rest=EXPLAINED, p=0.6).verdict == "none"
+
+
+def test_what_no_candidate_explains_is_unknown(decided):
+    assert decided([finalist("hertz@all", 9.0)]).verdict == "unknown"
+
+
+def test_the_best_is_named_alone(decided):
+    found = decided([finalist("plate_flexibility@all", 300.0), finalist("dry_friction@all", 200.0)])
+    assert (found.verdict, found.ambiguity) == ("named", [["plate_flexibility"]])
+
+
+def test_two_that_are_near_are_a_set_and_a_gap_is_never_alone(decided):
+    near = decided([finalist("dry_friction@all", 300.0), finalist("foliate_obstacle@all", 295.0)])
+    assert (near.verdict, near.ambiguity) == ("ambiguous", [["dry_friction"], ["foliate_obstacle"]])
+    assert decided([finalist("gap@all", 300.0)]).ambiguity == [["gap"], ["sensor_gain"]]
+
+
+def test_an_alias_that_suffices_is_not_ruled_out(decided):
+    both = decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 1000.0)])
+    assert both.ambiguity == [["contact_damping"], ["hunt_crossley"]]
+    assert decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 1000.0, LEFT)]).ambiguity == [["contact_damping"]]
+
+
+def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
+    single, pair = finalist("gap@left", 300.0, LEFT), finalist("gap@left+dry_friction@all", 400.0)
+    assert decided([single, pair]).ambiguity == [["dry_friction", "gap"]]
+    assert decided([finalist("gap@left", 300.0), pair]).ambiguity == [["gap"]]
+    idle = finalist("gap@left+dry_friction@all", 400.0, interval=[[0.75, 0.85], [0.0, 0.6]])
+    assert decided([single, idle]).chosen is single
+
+
+def test_what_leaves_much_is_partly_explained_or_unknown(decided):
+    single = [finalist("gap@all", 300.0, LEFT)]
+    assert decided(single, share=0.7).verdict == "partly_explained"
+    unknown = decided(single, share=0.3)
+    assert (unknown.verdict, unknown.chosen, unknown.ambiguity) == ("unknown", None, [])
+
+
+def test_a_loss_on_held_out_records_is_a_veto(decided):
+    assert decided([finalist("hertz@all", 300.0, held_out=-40.0)], share=0.3).verdict == "unknown"
+
+
+def test_a_linear_effect_stands_beside_what_contact_adds(decided):
+    adopted = {"name": "added_mass@apex", "gain": 90.0}
+    rows = [adopted, {"name": "mode_frequency_error@mode_1", "gain": 85.0}, {"name": "root_stiffness@roots", "gain": 40.0}]
+    alone = decided([], adopted=adopted, rest=EXPLAINED, linear=rows)
+    assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass"], ["mode_frequency_error"]])
+    both = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
+    assert both.ambiguity == [["added_mass", "dry_friction"]]
