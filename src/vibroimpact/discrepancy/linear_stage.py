@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft, linalg
 
+from vibroimpact.discrepancy.pursuit import assigned, pursued
+
 ITERATIONS = 12  # of Gauss-Newton at most
 MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
 LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far above the band leave in every line
@@ -20,6 +22,7 @@ UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must
 LEAST_LAG_S, LONGEST_LAG_S = 2.0e-5, 0.02
 DEAF = 0.7  # share of a channel that no mode explains: above it the channel has nothing to tell
 RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band's upper end
+LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
 SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
 
 
@@ -91,6 +94,14 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
     model: ModalModel attached to the campaign; kinds (channel,), all of one kind; noise_rms (channel,) in the band. visible: the modes to fit, as another fit had
     them; chosen by their predicted share where it is None. Returns None where no mode is visible.
     """
+    found = _fit(record, responses, model, kinds, noise_rms, visible)
+    if found is None or _left(found, model) < LOST:
+        return found
+    return min(found, _fit(record, responses, model, kinds, noise_rms, visible, True), key=lambda fit: _left(fit, model))
+
+
+def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
+    """Return the ModalFit from the model's frequencies, or from where the resonances are found without it."""
     kind = "acceleration" if kinds[0] == "acceleration" else "displacement"
     measured = record.spectra(np.asarray(responses, float))
     near = np.flatnonzero((model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1]))
@@ -113,10 +124,13 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
         turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         rest = _rest(record, model, visible, kind)
         if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
-            free = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, None, True)
-            lag, start = _lags(free, model), free.log_frequency
+            start = _elsewhere(record, turned - rest, weights, model, visible, kind) if elsewhere else None
+            free = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start, True)
+            lag, start = _lags(free, model) if _left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
             delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
             turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
+        elif fixed and elsewhere:
+            start = _elsewhere(record, turned - rest, weights, model, visible, kind)
         found = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
         if fixed:
             break
@@ -125,6 +139,18 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
             break
         lag, start, visible = None, None, np.sort(np.concatenate([visible, extra]))
     return found
+
+
+def _elsewhere(record, measured, weights, model, visible, kind):
+    """Return (visible,) ln of the frequencies at which the record has its strongest resonances over those of the model."""
+    zeta = np.median(model.damping[visible] / (2.0 * model.omega[visible]))
+    return assigned(*pursued(record, measured, weights, len(visible), zeta, kind), model, visible)
+
+
+def _left(found, model):
+    """Return the largest residual over noise of a ModalFit among the channels that the force drives in the model."""
+    driven = np.abs(model.sensor_shapes[found.modes].T) @ np.abs(model.drive_shapes[found.modes]).max(axis=1)
+    return found.residual[driven > 1.0e-3 * driven.max()].max()
 
 
 def _fitted(record, found, drive, model, kind):

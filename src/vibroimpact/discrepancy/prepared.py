@@ -151,8 +151,9 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     for candidate in linear_candidates(bench.values, bench.signals.names, held(campaign), fit.modes):
         if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
             continue
-        if not candidate.effect.measured and candidate.name not in tables:
-            tables[candidate.name] = table_of(bench, candidate, out.scales)
+        known = tables.get(candidate.name)
+        if not candidate.effect.measured and (known is None or not np.array_equal(known.modes, fit.modes)):
+            tables[candidate.name] = table_of(bench, candidate, out.scales)  # a table is of the modes that a record shows
         result = calibrate(bench, candidate, out.scales, tables.get(candidate.name))
         found.append({"name": candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()})
     out.linear = sorted(found, key=lambda row: -row["gain"])
@@ -160,9 +161,15 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
         out.checks.append({"check": "delay", "level": "warn", "record": None, "channel": name,
                            "message": f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the force; what is simulated is made as late."})  # fmt: skip
     best = out.linear[0]
-    if best["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(best["unit"]) - 1) and not out.nonlinear_low and beyond_prior(best, out.scales):
+    if best["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(best["unit"]) - 1) and beyond_prior(best, out.scales):
         out.adopted = best
         adopt(bench, out)
+        # modes that moved far are fitted well only from the model that moved them: what is left there tells whether the structure is linear
+        if out.nonlinear_low and bench.linear_stage and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL:
+            out.nonlinear_low = False
+        if out.nonlinear_low:
+            out.adopted = None
+            bench = Workbench(config, campaign, longest_s)
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
     return out
 
