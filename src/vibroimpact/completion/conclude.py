@@ -47,7 +47,9 @@ def conclude(campaign, study, linear, singles, additions, told=print):
             for place, level in enumerate(levels) for index, channel in enumerate(names)]  # fmt: skip
     alone = Records(tuple(levels), study.band_Hz)
     before = [modes_of(linear["base"]).frf(level.frequency[line]) * level.force[line] for line, level in zip(lines, levels, strict=True)]
-    kind = believed(choice.verdict, *(_rms([each[name] for name in choice.tried]) for each in (reference, again, chosen["errors"])), _floor(levels, reference, study.band_Hz))
+    left = [_rms([each[name] for name in choice.tried]) for each in (reference, again, chosen["errors"])]
+    tried = [level for level in levels if level.name in choice.tried]
+    kind = believed(choice.verdict, *left, np.hypot(_floor(levels, reference, study.band_Hz), left[0] * _unsettled(tried, modes_of(linear["base"]))))
     verdict = _verdict(study, choice, kind, alone, before, completed, told_parameters(fit, minimum, trial), trial)
     verdict["checks"] = check_periods(levels, names, study.band_Hz)
     simulations = sum(each["passes"] for each in (*singles, *additions)) + minimum.passes
@@ -80,6 +82,13 @@ def _floor(levels, reference, band_Hz):
     lines = lowest.excited(band_Hz)
     noise = np.sqrt(line_power(np.nan_to_num(lowest.noise), lowest.frequency, lines) / line_power(lowest.response, lowest.frequency, lines))
     return max(_rms(reference[lowest.name]), _rms(noise))
+
+
+def _unsettled(levels, modes):
+    """Share of a change by level that records without period show wrongly: their start is that of a force repeated for ever, until it is forgotten."""
+    own = ~modes.residual
+    memory = 1.0 / np.min(modes.damping[own])  # s, in which the energy of a mode falls by e
+    return max((float(np.sqrt(min(memory * level.frequency[1], 1.0))) for level in levels if level.periods == 0), default=0.0)
 
 
 def _verdict(study, choice, kind, records, before, after, parameters, trial):

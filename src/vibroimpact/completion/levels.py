@@ -4,6 +4,7 @@ from vibroimpact.campaign import channel_factor, force_signal, valid_count
 from vibroimpact.completion.long_records import long_record_lines
 from vibroimpact.multisine import level_lines
 
+SETTLED = 2  # the attribute whole_records of records whose transient was taken away
 SAME_LOAD = 1.05  # records within this factor repeat one level
 FEWEST_FITTED = 3  # fewer fitted levels than this leave none to try a name on
 
@@ -23,7 +24,7 @@ def levels_of(campaign):
         told = (str(campaign["record_name"].values[record]), str(campaign["split"].values[record]), force_signal(campaign, record)[:count], response,
                 campaign.attrs["sampling_frequency"])  # fmt: skip
         if campaign.attrs.get("whole_records", 0):
-            levels.append(long_record_lines(*told))
+            levels.append(long_record_lines(*told, settled=campaign.attrs["whole_records"] == SETTLED))
         else:
             levels.append(level_lines(*told, int(campaign.attrs["period_samples"]), int(campaign.attrs["transient_periods"])))
     return sorted(levels, key=lambda level: level.load_rms), names, kinds

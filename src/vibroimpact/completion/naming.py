@@ -8,7 +8,7 @@ MARGIN_DB = 1.0  # of the tried records' squared error: a candidate within it of
 FIT_MARGIN = 2.0  # times the cost of the chosen one on what it was fitted to: a candidate above it does not explain the records as well
 LEAST_GAIN_DB = 6.0  # over the linear model fitted to all levels: below it no local law explains what the levels change
 LINEAR_ENOUGH = 1.3  # times the error of the models identified again at every level: below it nothing is missing
-MUCH_LEFT, LITTLE_LEFT = 0.3, 0.1  # of the response of the tried records: more left than this is not explained
+MUCH_LEFT, LITTLE_LEFT = 0.3, 0.05  # of the response of the tried records: more left than this is not explained
 FLOOR_FACTOR = 2.0  # times what noise and the modes leave in any case
 PARTLY = 0.7  # of the error of the tried records: less than this closed is a part only
 
@@ -68,8 +68,9 @@ def choose(singles, additions, reference, joint, refitted):
     scores |= more
     ids = {each["name"]: each["ids"] for each in (*singles, *additions)}
     costs = {each["name"]: each["cost"] for each in (*singles, *additions) if each["cost"] is not None}
-    as_good = [name for name, value in scores.items()
-               if value >= scores[chosen["name"]] - MARGIN_DB and costs.get(name, np.inf) <= FIT_MARGIN * costs[chosen["name"]]]  # fmt: skip
+    alike = scores if chosen is not best else [each["name"] for each in singles]  # what a second effect does not improve does not need it
+    as_good = [name for name, value in scores.items() if name in alike
+               and value >= scores[chosen["name"]] - MARGIN_DB and costs.get(name, np.inf) <= FIT_MARGIN * costs[chosen["name"]]]  # fmt: skip
     ambiguity = [ids[chosen["name"]]]
     ambiguity += [ids[name] for name in sorted(as_good, key=lambda name: -scores[name]) if ids[name] not in ambiguity]
     ambiguity = [each for index, each in enumerate(ambiguity) if each not in ambiguity[:index]]

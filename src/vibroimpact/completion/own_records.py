@@ -5,9 +5,11 @@ import numpy as np
 from vibroimpact.campaign import ALONG, NEAR_M, valid_count
 from vibroimpact.campaign_checks import check_file, usable_signals
 from vibroimpact.campaign_signals import excited_band, measured_signals
+from vibroimpact.completion.long_records import mean_coherences, quick_length
 
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
 CYCLES = 1000  # of the end of the excited band that are kept of a record without period
+COHERENT = 0.7  # mean coherence below which a record without period earns a warning
 SETTLED = 2.0  # times the least difference between periods: a leading period with more holds the transient
 
 
@@ -44,6 +46,7 @@ def own_records(path):
     band = excited_band(measured)
     if band is None:
         raise Unusable("The records are too short to tell which lines the force excites.", rows)
+    _coherent(measured, band, rows)
     return _last_stretch(kept, int(CYCLES / band[1] * measured.rate)).assign_attrs(period_samples=0, transient_periods=0, whole_records=1), rows, measured
 
 
@@ -57,6 +60,14 @@ def _one_force(measured, rows):
         sizes = np.sqrt(np.mean(np.square(np.nan_to_num(signals)), axis=-1))
         if sizes.size > 1 and sizes[1:].max() > OTHER_FORCE * sizes[0]:
             raise Unusable(f"Several forces act at once ({', '.join(measured.forces)}): modes are identified under one; drive at one point.", rows)
+
+
+def _coherent(measured, band_Hz, rows):
+    """Add a row per record and channel: the mean coherence with the force, which noise and what is not linear lower."""
+    for name, force, response in zip(measured.records, measured.force, measured.response, strict=True):
+        for channel, value in zip(measured.channels, mean_coherences(force[0], response, measured.rate, band_Hz), strict=True):
+            row = _row("coherence", "warn" if value < COHERENT else "pass", f"The mean coherence of {channel} with the force is {value:.2f} in record {name}.", channel)
+            rows.append({**row, "record": name})
 
 
 def unsettled_periods(response, period):
@@ -74,7 +85,7 @@ def unsettled_periods(response, period):
 def _last_stretch(campaign, longest):
     """The campaign with the last samples of every record moved to the front, at most `longest` of each."""
     counts = np.array([valid_count(campaign, record) for record in range(campaign.sizes["record"])])
-    kept = np.minimum(counts, longest)
+    kept = np.array([quick_length(min(count, longest)) for count in counts])
     out = campaign.isel(time=slice(0, int(kept.max()))).copy(deep=True)
     for record, (count, size) in enumerate(zip(counts, kept, strict=True)):
         for name in ("force", "response"):

@@ -4,9 +4,11 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
+from vibroimpact.campaign import valid_count
 from vibroimpact.campaign_signals import excited_band
-from vibroimpact.completion.levels import levels_of, naming_split
+from vibroimpact.completion.levels import SETTLED, levels_of, naming_split
 from vibroimpact.completion.linear_models import linear_errors, linear_models
+from vibroimpact.completion.long_records import settled_response
 from vibroimpact.completion.mounting import mounting_table
 from vibroimpact.completion.own_records import Unusable, drive_channel, own_records
 from vibroimpact.completion.own_study import LAWS_TRIED, SECOND_LAWS, check_names, default_band, own_study
@@ -55,6 +57,9 @@ def prepared(name, path, asked, told=print):
         levels = [level for level in levels_of(usable)[0] if level.split == "fit"]
         fitted = naming_split(levels_of(usable)[0])[0]
         linear = linear_models(usable, study)
+        if usable.attrs.get("whole_records", 0):
+            usable = _settled(usable, study, linear)
+            linear = linear_models(usable, study)
         base = modes_of(linear["base"])
         ranking = ranked_places(base, study, fitted)
     except ValueError as error:
@@ -87,6 +92,17 @@ def _repeating(campaign, study, rows):
             rows.append({"check": "periods", "level": "warn", "record": level.name, "channel": None, "message": "The response does not repeat with the force: its mean over "
                          f"periods is uncertain by {np.median(share):.0%}. The record is left out: no waveform can be fitted to it."})  # fmt: skip
     return campaign.isel(record=[index for index, name in enumerate(campaign["record_name"].values) if str(name) not in lost])
+
+
+def _settled(campaign, study, linear):
+    """The records without period with the free decay of every level's own modes taken away."""
+    out = campaign.copy(deep=True).assign_attrs(whole_records=SETTLED)
+    for record, name in enumerate(campaign["record_name"].values):
+        count = valid_count(campaign, record)
+        force, response = (campaign[key].values[record, :, :count].astype(float) for key in ("force", "response"))
+        out["response"].values[record, :, :count] = settled_response(force[0], response, campaign.attrs["sampling_frequency"], modes_of(plain(linear["refitted"][str(name)])),
+                                                                     study.band_Hz)  # fmt: skip
+    return out
 
 
 def _sentence(error):
