@@ -165,6 +165,8 @@ def study_of_structure(structure):
 
 # What is completed: the structures that are built in, and the campaign that is looked at where its own modes are asked for.
 STRUCTURES = [*STUDIES, *([re.escape(Path(REQUEST.get("campaign", "campaign")).stem)] if OWN is not None else [])]
+if len(set(STRUCTURES)) < len(STRUCTURES):
+    sys.exit(f"campaign = '{REQUEST['campaign']}': results/{STRUCTURES[-1]} belongs to the built-in structure of that name: rename the file")
 
 
 def law_files(structure, kind):

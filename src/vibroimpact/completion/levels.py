@@ -38,11 +38,11 @@ def naming_split(levels):
     """
     fitted = [level for level in levels if level.split == "fit"]
     held = [level for level in levels if level.split != "fit"]
-    loads = _distinct([level.load_rms for level in fitted])
-    if len(loads) < 2:
-        raise ValueError(f"{len(loads)} levels are to be fitted: two are the least, of different load")
+    if len(fitted) < 2:
+        raise ValueError(f"{len(fitted)} levels are to be fitted: two are the least, of different load")
     if held:
         return fitted, held
+    loads = _distinct([level.load_rms for level in fitted])
     if len(loads) < FEWEST_FITTED:
         raise ValueError("two levels to fit and none held out: a name could only be tried on what it was fitted to; record a third level")
     tried = [level for level in fitted if loads[-2] <= level.load_rms < loads[-1]]
