@@ -81,7 +81,8 @@ def campaign(law, periodic=True, periods=4, levels=LEVELS, splits=SPLITS, turned
     if turned:
         response[:, 0] *= -1.0
     up = (0.0, 0.0, 1.0)
-    channels = [Channel("upper", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0) if turned else up, "m s-2", "acceleration"), Channel("lower", (0.0, 0.0, -0.5), up, "m s-2", "acceleration")]
+    places = (("upper", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0) if turned else up), ("lower", (0.0, 0.0, -0.5), up))
+    channels = [Channel(*place, "m s-2", "acceleration") for place in places]
     drive = Channel("shaker", (0.0, 0.0, 0.0), up, "N", "force")
     records = [Level(f"{level:g} N", np.nan, 0, split) for level, split in zip(levels, splits, strict=True)]
     return campaign_dataset(force[:, None], response, channels, [drive], records, RATE, antialias="none", start_up="rest", source="two masses, simulated")

@@ -101,14 +101,15 @@ def test_round_tops_are_not_clipping():
 
 
 def periodic(stated, clip=None):
-    """made_up's beam under a multisine of 3000 samples with twelve like peaks each, nine periods and a part; stated: whether the file says so."""
+    """made_up's beam under a multisine of 3000 samples, eight periods and a part, waves in place of its motion; stated: whether the file says so."""
     campaign = made_up()
     count, period = campaign.sizes["time"], 3000
     lines = np.zeros(period // 2 + 1, complex)
     lines[15:500] = np.exp(2j * np.pi * np.random.default_rng(5).uniform(size=485))
     for record, load in enumerate((0.5, 2.0, 8.0)):
-        for values, spectrum in zip((campaign["force"].values[record, 0], *campaign["response"].values[record, :5]), (lines, *(lines * k for k in (1, 2j, -1, 1j, 3))), strict=True):
-            wave = np.fft.irfft(spectrum, period)
+        signals = (campaign["force"].values[record, 0], *campaign["response"].values[record, :5])
+        for values, turn in zip(signals, (1, 1, 2j, -1, 1j, 3), strict=True):
+            wave = np.fft.irfft(turn * lines, period)
             values[:] = np.resize(load * wave / wave.std(), count)
     if clip is not None:
         values = campaign["response"].values[clip]

@@ -10,7 +10,7 @@ from vibroimpact.completion.long_records import mean_coherences, quick_length
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
 CYCLES = 1000  # of the end of the excited band that are kept of a record without period
 COHERENT = 0.7  # mean coherence below which a record without period earns a warning
-SETTLED = 2.0  # times the least difference between periods: a leading period with more holds the transient
+SETTLED, UNSEEN = 2.0, 0.005  # times the usual difference to the last period, and of the response: a leading period with more holds the transient
 
 
 class Unusable(ValueError):
@@ -34,10 +34,12 @@ def own_records(path):
     shown = response[force].all(axis=0) & (np.array(kinds) != "contact_force")
     for channel in np.flatnonzero(~shown):
         why = "a contact force is no motion" if kinds[channel] == "contact_force" else "it can not be used in every record"
-        rows.append(_row("channels", "warn", f"{campaign['channel_name'].values[channel]} is left out of the completion: {why}.", str(campaign["channel_name"].values[channel])))
+        name = str(campaign["channel_name"].values[channel])
+        rows.append(_row("channels", "warn", f"{name} is left out of the completion: {why}.", name))
     if not shown.any():
         raise Unusable("No channel is usable in every record: repair or leave out the records that the checks name.", rows)
-    kept = campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown))
+    force &= _one_gap(campaign, force, rows)
+    kept = _named_apart(campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown)))
     measured = measured_signals(kept)
     _one_force(measured, rows)
     if measured.period_samples:
@@ -62,6 +64,24 @@ def _one_force(measured, rows):
             raise Unusable(f"Several forces act at once ({', '.join(measured.forces)}): modes are identified under one; drive at one point.", rows)
 
 
+def _one_gap(campaign, usable, rows):
+    """Return (record,) whether a record has the gap that most usable ones have: another gap is another structure."""
+    gap = np.nan_to_num(campaign["gap"].values.astype(float), nan=-1.0)
+    values, counts = np.unique(gap[usable], return_counts=True)
+    chosen = values[int(np.argmax(counts))]
+    if values.size > 1:
+        told = "without gap" if chosen < 0.0 else f"with the gap {chosen:.4g} m"
+        rows.append(_row("gaps", "warn", f"The records have {values.size} gaps, each another structure: only those {told} are used."))
+    return gap == chosen
+
+
+def _named_apart(campaign):
+    """The campaign with a number behind the names of records that share one."""
+    names = [str(name) for name in campaign["record_name"].values]
+    apart = [name if names.count(name) == 1 else f"{name} ({names[:index].count(name) + 1})" for index, name in enumerate(names)]
+    return campaign.assign(record_name=("record", np.array(apart, dtype=object)))
+
+
 def _coherent(measured, band_Hz, rows):
     """Add a row per record and channel: the mean coherence with the force, which noise and what is not linear lower."""
     for name, force, response in zip(measured.records, measured.force, measured.response, strict=True):
@@ -78,7 +98,8 @@ def unsettled_periods(response, period):
     parts = response[:, response.shape[-1] - count * period :].reshape(len(response), count, period)
     size = np.maximum(parts[:, -1].std(axis=-1), np.finfo(float).tiny)
     apart = np.sqrt(np.mean(((parts[:, :-1] - parts[:, -1:]).std(axis=-1) / size[:, None]) ** 2, axis=0))
-    settled = apart <= SETTLED * apart.min()
+    usual = np.sort(apart)[(apart.size - 1) // 2]  # drift makes near periods more alike than far ones: not the least
+    settled = apart <= max(SETTLED * usual, UNSEEN)
     return int(np.argmax(settled))
 
 

@@ -132,7 +132,8 @@ def _peak(base, linear, levels, place, study):
     level = levels[-1]
     lines = np.flatnonzero(level.excited(study.band_Hz))
     frequency = level.frequency[lines]
-    missed = np.sum(np.abs((base.frf(frequency) * level.force[lines] - level.response[:, lines]) / np.linalg.norm(level.response[:, lines], axis=1, keepdims=True)) ** 2, axis=0)
+    size = np.linalg.norm(level.response[:, lines], axis=1, keepdims=True)
+    missed = np.sum(np.abs((base.frf(frequency) * level.force[lines] - level.response[:, lines]) / size) ** 2, axis=0)
     moving = np.flatnonzero(~base.residual & (np.abs(base.shapes @ row) > 0.0))
     shares = [missed[np.abs(frequency - base.frequency[mode]) < 0.5 * AROUND * base.frequency[mode]].sum() for mode in moving]
     centre = base.frequency[moving[int(np.argmax(shares))]]
