@@ -8,7 +8,7 @@ from vibroimpact.campaign_signals import excited_band, measured_signals
 from vibroimpact.completion.long_records import mean_coherences, quick_length
 
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
-CYCLES = 1000  # of the end of the excited band that are kept of a record without period
+CYCLES, LOW_CYCLES = 1000, 60  # of the end and of the beginning of the excited band that are kept of a record without period, the longer of them
 COHERENT = 0.7  # mean coherence below which a record without period earns a warning
 SETTLED, UNSEEN = 2.0, 0.005  # times the usual difference to the last period, and of the response: a leading period with more holds the transient
 
@@ -49,7 +49,7 @@ def own_records(path):
     if band is None:
         raise Unusable("The records are too short to tell which lines the force excites.", rows)
     _coherent(measured, band, rows)
-    return _last_stretch(kept, int(CYCLES / band[1] * measured.rate)).assign_attrs(period_samples=0, transient_periods=0, whole_records=1), rows, measured
+    return _last_stretch(kept, int(max(CYCLES / band[1], LOW_CYCLES / band[0]) * measured.rate)).assign_attrs(period_samples=0, transient_periods=0, whole_records=1), rows, measured
 
 
 def _row(check, level, message, channel=None):
