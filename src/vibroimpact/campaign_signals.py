@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.campaign import CampaignError, channel_factor, force_factor, valid_count
+from vibroimpact.multisine import PeriodError, find_period
 from vibroimpact.spectra import segment_spectra
 
 SEGMENT_S = 8.0
@@ -26,7 +27,7 @@ class Averaging:
 @dataclass(frozen=True)
 class Measured:
     """A campaign in SI. rate Hz; force, response: per record (force_channel, time) and (channel, time), valid samples alone;
-    unit_faults, force_unit_faults {channel: sentence}: these signals stay in their stored unit."""
+    unit_faults, force_unit_faults {channel: sentence}: these signals stay in their stored unit; period_samples: stated, or found, 0 for none."""
 
     rate: float
     records: list
@@ -70,9 +71,25 @@ def measured_signals(campaign):
         rate=float(campaign.attrs["sampling_frequency"]), records=texts["record_name"], channels=texts["channel_name"],
         forces=texts["force_channel_name"], kinds=texts["channel_kind"], load_rms=campaign["load_rms"].values.astype(float),
         splits=texts["split"], points=campaign["channel_point"].values.astype(float), directions=campaign["channel_direction"].values.astype(float),
-        force_directions=campaign["force_channel_direction"].values.astype(float), period_samples=int(campaign.attrs.get("period_samples", 0)),
+        force_directions=campaign["force_channel_direction"].values.astype(float),
+        period_samples=int(campaign.attrs.get("period_samples", 0)) or common_period([signals[0] for signals in force]),
         transient_periods=int(campaign.attrs.get("transient_periods", 0)), starts_at_rest=campaign.attrs.get("start_up") == "rest",
         force=force, response=response, unit_faults=faults, force_unit_faults=force_faults)
+
+
+def common_period(forces):
+    """Return the samples of the period that all forces (time,) have, at least twice each; 0 where they have none in common.
+
+    Also of a file that does not say so: the peaks of a periodic record come back in every period, and would be taken for flat tops.
+    """
+    periods = set()
+    for force in forces:
+        try:
+            period = find_period(force) if np.isfinite(force).all() else 0
+        except PeriodError:
+            period = 0
+        periods.add(period if 2 * period <= force.size else 0)
+    return periods.pop() if len(periods) == 1 else 0
 
 
 def _factors(campaign, count, factor_of):

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 USUAL_PERIODS = (8192, 16384, 4096, 32768, 2048, 65536, 1024)  # samples, tried first
+SHORTEST_PERIOD, MOST_PERIODS = 64, 200  # samples; in one record
+FRACTIONS = (2, 3, 5, 7)  # of a period that are tried for a shorter one
 REPEATS = 0.05  # relative difference of the force between periods, at most, for the record to be called periodic
 EXCITED = 0.05  # of the largest line in the band: a line below it is not excited
 
@@ -77,18 +79,40 @@ def level_lines(name, split, force, response, sampling_frequency, period_samples
 
 
 def find_period(force, name="record"):
-    """Return the number of samples after which the force (time,) repeats: of the usual ones and the whole fractions of its length.
+    """Return the number of samples after which the force (time,) repeats: of the usual ones, the whole fractions of its length, then any.
 
     A record shorter than two periods of a usual length that is exactly that long counts as one period. Raises PeriodError.
     """
     fractions = [force.size // count for count in range(20, 1, -1) if force.size % count == 0]
     for period in (*USUAL_PERIODS, *fractions):
         if 2 * period <= force.size and _repeats(force, period):
-            return period
+            return _shortest(force, period)
+    likely = _likeliest_lag(force)
+    if likely and _repeats(force, likely):
+        return _shortest(force, likely)
     if force.size in USUAL_PERIODS:
         return force.size
     raise PeriodError(f"{name}: the force does not repeat within {force.size} samples: give the number of samples of a period, or use the "
                       "methods for records without period")  # fmt: skip
+
+
+def _likeliest_lag(force):
+    """The lag in samples at which the force agrees best with itself, up to half its length; 0 for a force too short or constant."""
+    shortest = max(SHORTEST_PERIOD, force.size // MOST_PERIODS)
+    if force.size < 2 * shortest + 2 or np.ptp(force) == 0.0:
+        return 0
+    centred = force - force.mean()
+    likeness = np.fft.irfft(np.abs(np.fft.rfft(centred, 2 * force.size)) ** 2)[: force.size // 2 + 1]
+    likeness /= np.arange(force.size, force.size - likeness.size, -1)  # by the number of samples that overlap
+    return shortest + int(np.argmax(likeness[shortest:]))
+
+
+def _shortest(force, period):
+    """The shortest whole fraction of a period after which the force repeats as well."""
+    for count in FRACTIONS:
+        while period % count == 0 and period // count >= SHORTEST_PERIOD and _repeats(force, period // count):
+            period //= count
+    return period
 
 
 def _repeats(force, period):

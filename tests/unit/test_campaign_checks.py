@@ -8,6 +8,7 @@ import pytest
 from vibroimpact.campaign import Channel, Level, campaign_dataset, read_campaign
 from vibroimpact.campaign_checks import CHECKS, COLUMNS, check_campaign, check_file, refused, usable_signals
 from vibroimpact.campaign_faults import clipped
+from vibroimpact.completion.benchmark_records import silverbox_campaign
 from vibroimpact.records import write_record
 
 DEVELOPMENT = Path(__file__).parents[2].parent / "shared" / "data" / "campaigns"
@@ -97,6 +98,47 @@ def test_round_tops_are_not_clipping():
         assert clipped(signal) is None
         limit = 0.7 * np.abs(signal).max()
         assert clipped(np.clip(signal, -limit, limit)) is not None
+
+
+def periodic(stated, clip=None):
+    """made_up's beam under a multisine of 3000 samples, eight periods and a part, waves in place of its motion; stated: whether the file says so."""
+    campaign = made_up()
+    count, period = campaign.sizes["time"], 3000
+    lines = np.zeros(period // 2 + 1, complex)
+    lines[15:500] = np.exp(2j * np.pi * np.random.default_rng(5).uniform(size=485))
+    for record, load in enumerate((0.5, 2.0, 8.0)):
+        signals = (campaign["force"].values[record, 0], *campaign["response"].values[record, :5])
+        for values, turn in zip(signals, (1, 1, 2j, -1, 1j, 3), strict=True):
+            wave = np.fft.irfft(turn * lines, period)
+            values[:] = np.resize(load * wave / wave.std(), count)
+    if clip is not None:
+        values = campaign["response"].values[clip]
+        campaign["response"].values[clip] = np.clip(values, -0.7 * values.max(), 0.7 * values.max())
+    campaign["load_rms"].values[:] = np.sqrt(np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1))
+    return campaign.assign_attrs(period_samples=period if stated else 0)
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_the_peak_of_a_periodic_record_is_not_clipping(stated):
+    assert [row for row in complaints(periodic(stated)) if row["check"] == "clipping"] == []
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_clipped_periodic_record_is_told(stated):
+    campaign = periodic(stated, clip=(1, 2))
+    assert [(row["record"], row["channel"]) for row in complaints(campaign) if row["check"] == "clipping"] == [names(campaign, 1, 2)]
+
+
+SILVERBOX = DEVELOPMENT.parent / "silverbox"
+
+
+@pytest.mark.skipif(not SILVERBOX.is_dir(), reason="the Silverbox records are not beside the project")
+def test_the_silverbox_is_sound_until_it_is_clipped():
+    campaign = silverbox_campaign(SILVERBOX.glob("*um_full*.mat")).assign_attrs(period_samples=0)
+    assert [row["level"] for row in check_campaign(campaign) if row["check"] == "clipping"] == ["pass"]
+    values = campaign["response"].values[2, 0]
+    campaign["response"].values[2, 0] = np.clip(values, -0.6 * np.nanmax(values), None)
+    assert [row["channel"] for row in check_campaign(campaign) if row["check"] == "clipping"] == ["output"]
 
 
 @pytest.mark.parametrize("fill", ["zero", "held", "noise"])

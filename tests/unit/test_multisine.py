@@ -43,6 +43,11 @@ def test_the_period_is_found(period, count):
     assert np.array_equal(force[:found], force[found : 2 * found])
 
 
+def test_a_period_is_found_in_a_record_of_no_whole_number_of_them():
+    force = np.resize(np.random.default_rng(7).standard_normal(1234), 6543)
+    assert find_period(force) % 1234 == 0
+
+
 def test_a_record_without_period_is_refused_with_what_to_do():
     with pytest.raises(PeriodError, match="does not repeat within 5000 samples"):
         find_period(np.random.default_rng(1).standard_normal(5000))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from vibroimpact.completion.naming import choose, score
+from vibroimpact.completion.naming import believed, choose, score
 
 LINEAR, JOINT, AGAIN = {"one": [1.0, 1.2]}, {"one": [0.8, 0.9]}, {"one": [0.1, 0.1]}
 
@@ -38,6 +38,18 @@ def test_a_second_effect_must_earn_its_place():
     assert choose([first], [little], LINEAR, JOINT, AGAIN).chosen == "a"
     choice = choose([first], [much], LINEAR, JOINT, AGAIN)
     assert choice.chosen == "a+b" and choice.ambiguity == [["cubic_stiffness", "quadratic_stiffness"]]
+
+
+def test_a_second_effect_that_gains_nothing_does_not_join_the_set():
+    choice = choose([candidate("a", ["cubic_stiffness"], 0.05)], [candidate("a+b", ["cubic_stiffness", "quadratic_drag"], 0.0499)], LINEAR, JOINT, AGAIN)
+    assert (choice.verdict, choice.ambiguity) == ("named", [["cubic_stiffness"]])
+
+
+@pytest.mark.parametrize(("kind", "left", "floor", "wanted"), [
+    ("none", 0.1, 0.01, "none"), ("none", 0.6, 0.01, "unknown"), ("none", 0.6, 0.5, "none"), ("named", 0.04, 0.01, "named"), ("named", 0.08, 0.01, "partly_explained"),
+    ("named", 0.15, 0.1, "named"), ("named", 0.7, 0.5, "partly_explained"), ("ambiguous", 0.9, 0.01, "ambiguous"), ("unknown", 0.01, 0.01, "unknown")])  # fmt: skip
+def test_what_is_left_of_the_tried_records_bounds_the_verdict(kind, left, floor, wanted):
+    assert believed(kind, 1.5, left, left, floor) == wanted
 
 
 def test_a_linear_structure_lacks_nothing():

@@ -188,6 +188,23 @@ def test_a_measured_structure_is_planned_candidate_by_candidate(study, tmp_path,
     assert re.search(rf"^total +{jobs}$", run.stdout + run.stderr, flags=re.M)
 
 
+def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
+    (tmp_path / "bench.nc").touch()
+    (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [5, 60]}")
+    for model in ("identified", tmp_path / "own.yaml"):
+        run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", f"model={model}")
+        told = run.stdout + run.stderr
+        assert run.returncode == 0, told
+        assert {"completion_prepare", "completion_outcome", "completion_report"} <= set(re.findall(r"^(\w+) +1$", told, flags=re.M)) and "discrepancy_prepare" not in told
+
+
+def test_a_wrong_structure_file_is_told_before_any_plan(study, tmp_path):
+    (tmp_path / "bench.nc").touch()
+    (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [60, 5]}")
+    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", f"model={tmp_path}/own.yaml")
+    assert run.returncode == 1 and "structure.band_Hz = [60, 5] must be two frequencies" in run.stdout + run.stderr
+
+
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
 def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, structure):
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")

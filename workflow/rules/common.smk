@@ -1,5 +1,6 @@
 # The checked configuration, the names of all files, and the inputs and params that rules declare with functions.
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -10,7 +11,9 @@ sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
 from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
-from vibroimpact.completion.study import STUDIES
+from vibroimpact.completion.store import read_values
+from vibroimpact.completion.structure_file import read_structure
+from vibroimpact.completion.study import STUDIES, study_of
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, local_names, pair_names, shard_of
 from vibroimpact.provenance import imported_files
@@ -57,12 +60,21 @@ def checked_config():
 def checked_model():
     """The Config of the model that a campaign is compared with: that of --config model=FILE, the study's where none is given."""
     try:
-        return load_config(REQUEST["model"]) if "model" in REQUEST else STUDY
+        return load_config(REQUEST["model"]) if "model" in REQUEST and OWN is None else STUDY
+    except ConfigError as error:
+        sys.exit(str(error))
+
+
+def own_structure():
+    """The StructureFile of --config model=FILE where its modes are still to be identified from the campaign, else None."""
+    try:
+        return read_structure(REQUEST["model"]) if "model" in REQUEST else None
     except ConfigError as error:
         sys.exit(str(error))
 
 
 STUDY = checked_config()
+OWN = own_structure()
 MODEL = checked_model()
 RESULTS = f"results/{STUDY.study}"
 CASES = [case.id for case in all_cases(STUDY.grid)]
@@ -141,14 +153,39 @@ def files_of_structure(structure):
     return [str(file) for file in found]
 
 
+def own_study_file(wildcards):
+    """What was prepared of a user's campaign; nothing for the structures that are built in."""
+    return [] if wildcards.structure in STUDIES else f"results/{wildcards.structure}/study.json"
+
+
+def study_of_structure(structure):
+    """The Study of a structure; that of a user's campaign once it is prepared, None where it is refused."""
+    if structure in STUDIES:
+        return study_of(structure)
+    prepared = read_values(checkpoints.completion_prepare.get().output.study)
+    return None if prepared["refused"] else study_of(structure, prepared)
+
+
+# What is completed: the structures that are built in, and the campaign that is looked at where its own modes are asked for.
+STRUCTURES = [*STUDIES, *([re.escape(Path(REQUEST.get("campaign", "campaign")).stem)] if OWN is not None else [])]
+if len(set(STRUCTURES)) < len(STRUCTURES):
+    sys.exit(f"campaign = '{REQUEST['campaign']}': results/{STRUCTURES[-1]} belongs to the built-in structure of that name: rename the file")
+
+
+def law_files(structure, kind):
+    """The files of a structure's "candidates", or of its "additions" beside the best of them."""
+    study = study_of_structure(structure)
+    return [f"results/{structure}/{kind}/{name}.json" for name in (getattr(study, kind) if study else ())]
+
+
 def candidate_files(wildcards):
     """The files of all single candidates of wildcard {structure}."""
-    return [f"results/{wildcards.structure}/candidates/{name}.json" for name in STUDIES[wildcards.structure].candidates]
+    return law_files(wildcards.structure, "candidates")
 
 
 def addition_files(wildcards):
     """The files of all second effects tried with the best candidate of wildcard {structure}."""
-    return [f"results/{wildcards.structure}/additions/{name}.json" for name in STUDIES[wildcards.structure].additions]
+    return law_files(wildcards.structure, "additions")
 
 
 def completion_figure_files(structure):
@@ -187,6 +224,6 @@ def targets():
 
 
 wildcard_constraints:
-    structure="|".join(STUDIES),
-    law=r"[a-z_]+\.[a-z_]+",
+    structure="|".join(STRUCTURES),
+    law=r"[a-z_]+\.[A-Za-z0-9_-]+",
     load=r"[0-9.e+-]+",

@@ -51,6 +51,7 @@ rule completion_candidate:
         library=library("completion_candidate"),
         campaign="results/{structure}/campaign.nc",
         linear="results/{structure}/linear.json",
+        study=own_study_file,
     output:
         candidate="results/{structure}/candidates/{law}.json",
     params:
@@ -75,6 +76,7 @@ rule completion_addition:
         campaign="results/{structure}/campaign.nc",
         linear="results/{structure}/linear.json",
         singles=candidate_files,
+        study=own_study_file,
     output:
         candidate="results/{structure}/additions/{law}.json",
     params:

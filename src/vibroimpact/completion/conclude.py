@@ -10,11 +10,13 @@ from vibroimpact.completion.levels import levels_of
 from vibroimpact.completion.linear_models import linear_errors
 from vibroimpact.completion.local_laws import LAWS
 from vibroimpact.completion.misfit import CALIBRATION_DB, disagreement, misfit_summary, regions
-from vibroimpact.completion.naming import PARTLY, choose
+from vibroimpact.completion.naming import believed, choose
 from vibroimpact.completion.record_checks import check_periods
 from vibroimpact.completion.store import modes_of, trial_of, trial_values
 from vibroimpact.completion.study import ELSEWHERE
+from vibroimpact.completion.updated_model import is_relative
 from vibroimpact.completion.trial import Fit, Records, with_offsets
+from vibroimpact.multisine import line_power
 
 PASSES = 15
 PERIODS_BEFORE = 4  # before the period that is compared: the transient is gone
@@ -45,7 +47,10 @@ def conclude(campaign, study, linear, singles, additions, told=print):
             for place, level in enumerate(levels) for index, channel in enumerate(names)]  # fmt: skip
     alone = Records(tuple(levels), study.band_Hz)
     before = [modes_of(linear["base"]).frf(level.frequency[line]) * level.force[line] for line, level in zip(lines, levels, strict=True)]
-    verdict = _verdict(study, choice, alone, before, completed, told_parameters(fit, minimum, trial), trial, names)
+    left = [_rms([each[name] for name in choice.tried]) for each in (reference, again, chosen["errors"])]
+    tried = [level for level in levels if level.name in choice.tried]
+    kind = believed(choice.verdict, *left, np.hypot(_floor(levels, reference, study.band_Hz), left[0] * _unsettled(tried, modes_of(linear["base"]))))
+    verdict = _verdict(study, choice, kind, alone, before, completed, told_parameters(fit, minimum, trial), trial)
     verdict["checks"] = check_periods(levels, names, study.band_Hz)
     simulations = sum(each["passes"] for each in (*singles, *additions)) + minimum.passes
     verdict |= {"seconds": time.monotonic() - began, "simulations": simulations * fit.values(fit.start).size * len(fitted.levels)}
@@ -67,21 +72,39 @@ def _number(name):
     return int(numbers[0]) if numbers and numbers[0].isdigit() else (float(numbers[0]) if numbers else name)
 
 
-def _verdict(study, choice, records, before, after, parameters, trial, names):
+def _rms(errors):
+    return float(np.sqrt(np.mean(np.square(np.array(errors, float)))))
+
+
+def _floor(levels, reference, band_Hz):
+    """Relative error that is left in any case: what the linear model misses of the lowest fitted level, its noise among it."""
+    lowest = next(level for level in levels if level.split == "fit")
+    lines = lowest.excited(band_Hz)
+    noise = np.sqrt(line_power(np.nan_to_num(lowest.noise), lowest.frequency, lines) / line_power(lowest.response, lowest.frequency, lines))
+    return max(_rms(reference[lowest.name]), _rms(noise))
+
+
+def _unsettled(levels, modes):
+    """Share of a change by level that records without period show wrongly: their start is that of a force repeated for ever, until it is forgotten."""
+    own = ~modes.residual
+    memory = 1.0 / np.min(modes.damping[own])  # s, in which the energy of a mode falls by e
+    return max((float(np.sqrt(min(memory * level.frequency[1], 1.0))) for level in levels if level.periods == 0), default=0.0)
+
+
+def _verdict(study, choice, kind, records, before, after, parameters, trial):
     """The verdict but for checks and times."""
+    names = trial.modes.names
     first, floor = disagreement(records, before)
     last, _ = disagreement(records, after)
     held = [level.split == "holdout" for level in records.levels]
     parts = {"fit": [not each for each in held], "holdout": held}
     misfit = {split: misfit_summary(first[part], last[part], floor[part]) if any(part) else None for split, part in parts.items()}
-    kind = choice.verdict
-    if kind == "named" and _closed(choice.scores[choice.chosen]) < PARTLY:
-        kind = "partly_explained"
-    effects = [{"id": LAWS[term.law].id, "location": _location(study, term),
+    elsewhere = _places_as_good(choice)
+    effects = [{"id": LAWS[term.law].id, "location": _location(study, term) + elsewhere,
                 "parameters": {name: each | {"unit": study.unit(each["unit"])} for name, each in told.items()}} for term, told in zip(trial.terms, parameters, strict=True)]
     ranking = [{"ids": choice.ids[name], "candidate": name, "heldout_score": value if np.isfinite(value) else None, "closed_fraction": _closed(value)}
                for name, value in sorted(choice.scores.items(), key=lambda item: -item[1])]  # fmt: skip
-    return {"verdict": kind, "effects": effects if kind in ("named", "partly_explained") else [], "ambiguity_set": choice.ambiguity,
+    return {"verdict": kind, "effects": effects if kind in ("named", "partly_explained") else [], "ambiguity_set": choice.ambiguity if kind not in ("none", "unknown") else [],
             "ranking": ranking, "next_measurement": _next(kind, choice), "broken_invariances": _broken(records, before, trial),
             "regions": regions(records, before, names), "misfit": misfit,
             "p_global_before": _p_value(first, floor), "p_global_after": _p_value(last, floor)}  # fmt: skip
@@ -98,12 +121,21 @@ def _location(study, term):
         return "elsewhere: no channel shows the place; its share in every mode was fitted"
     weights = study.places[term.place]
     ends = [name for name, _ in sorted(weights.items(), key=lambda item: item[1])]
+    if not is_relative(weights):
+        return f"{term.place}: along " + " ".join(f"{weight:+g} {name}" for name, weight in weights.items())
     return f"{term.place}: between {ends[0]} and {ends[1]}" if len(ends) == 2 else f"{term.place}: at {ends[0]}, to the ground"
+
+
+def _places_as_good(choice):
+    """What is said where the same law at another place explains the records as well."""
+    place, ids = choice.chosen.partition(".")[2], choice.ids[choice.chosen]
+    others = sorted({name.partition(".")[2] for name in choice.as_good if "+" not in name and choice.ids[name] == ids} - {place})
+    return f" (as well explained at {', '.join(others)})" if others and "+" not in choice.chosen else ""
 
 
 def _next(kind, choice):
     """The measurement that would tell the members of an ambiguity set apart."""
-    if kind == "none" or len(choice.ambiguity) == 1:
+    if kind == "none" or kind != "unknown" and len(choice.ambiguity) == 1:
         return None
     if kind == "unknown":
         return "A sensor at more points: no law between the measured points explains the levels."

@@ -8,18 +8,36 @@ MARGIN_DB = 1.0  # of the tried records' squared error: a candidate within it of
 FIT_MARGIN = 2.0  # times the cost of the chosen one on what it was fitted to: a candidate above it does not explain the records as well
 LEAST_GAIN_DB = 6.0  # over the linear model fitted to all levels: below it no local law explains what the levels change
 LINEAR_ENOUGH = 1.3  # times the error of the models identified again at every level: below it nothing is missing
+MUCH_LEFT, LITTLE_LEFT = 0.3, 0.05  # of the response of the tried records: more left than this is not explained
+FLOOR_FACTOR = 2.0  # times what noise and the modes leave in any case
 PARTLY = 0.7  # of the error of the tried records: less than this closed is a part only
 
 
 @dataclass(frozen=True)
 class Choice:
-    """chosen: name of the candidate; verdict; ambiguity: list of lists of ids; scores {name: dB}; ids {name: list}."""
+    """chosen: name of the candidate; verdict; ambiguity: list of lists of ids; scores {name: dB}; ids {name: list}; as_good: names of the
+    candidates that explain the tried records as well, the chosen one among them; tried: names of those records."""
 
     chosen: str
     verdict: str
     ambiguity: list
     scores: dict
     ids: dict
+    as_good: tuple = ()
+    tried: tuple = ()
+
+
+def believed(kind, linear, again, completed, floor):
+    """Return the verdict after what is left of the tried records: `none` or `named` only where little is left.
+
+    linear, again, completed: RMS relative errors there of the linear model of the lowest level, of those identified again and of the completed
+    one; floor: noise, or what the linear model misses at the lowest level already.
+    """
+    if kind == "none" and again > max(MUCH_LEFT, FLOOR_FACTOR * floor):
+        return "unknown"
+    if kind == "named" and (completed > max(LITTLE_LEFT, FLOOR_FACTOR * floor) or completed > (1.0 - PARTLY) * linear):
+        return "partly_explained"
+    return kind
 
 
 def score(errors, reference):
@@ -50,16 +68,17 @@ def choose(singles, additions, reference, joint, refitted):
     scores |= more
     ids = {each["name"]: each["ids"] for each in (*singles, *additions)}
     costs = {each["name"]: each["cost"] for each in (*singles, *additions) if each["cost"] is not None}
-    as_good = [name for name, value in scores.items()
-               if value >= scores[chosen["name"]] - MARGIN_DB and costs.get(name, np.inf) <= FIT_MARGIN * costs[chosen["name"]]]  # fmt: skip
+    alike = scores if chosen is not best else [each["name"] for each in singles]  # what a second effect does not improve does not need it
+    as_good = [name for name, value in scores.items() if name in alike
+               and value >= scores[chosen["name"]] - MARGIN_DB and costs.get(name, np.inf) <= FIT_MARGIN * costs[chosen["name"]]]  # fmt: skip
     ambiguity = [ids[chosen["name"]]]
     ambiguity += [ids[name] for name in sorted(as_good, key=lambda name: -scores[name]) if ids[name] not in ambiguity]
     ambiguity = [each for index, each in enumerate(ambiguity) if each not in ambiguity[:index]]
     linear, again = (np.mean([np.square(errors[name]) for name in tried]) for errors in (reference, refitted))
     if linear < LINEAR_ENOUGH**2 * again:
-        return Choice(chosen["name"], "none", [], scores, ids)
+        return Choice(chosen["name"], "none", [], scores, ids, tuple(as_good), tuple(tried))
     gain = scores[chosen["name"]] - score([joint[name] for name in tried], [reference[name] for name in tried])
     if gain < LEAST_GAIN_DB:
-        return Choice(chosen["name"], "unknown", [], scores, ids)
+        return Choice(chosen["name"], "unknown", [], scores, ids, tuple(as_good), tuple(tried))
     common = set(best["ids"]).issubset(set.intersection(*map(set, ambiguity)))
-    return Choice(chosen["name"], "named" if common else "ambiguous", ambiguity, scores, ids)
+    return Choice(chosen["name"], "named" if common else "ambiguous", ambiguity, scores, ids, tuple(as_good), tuple(tried))

@@ -1,4 +1,4 @@
-"""What is checked of periodic records before a completion is believed: rows as the verdict holds them."""
+"""What is checked of records by their lines before a completion is believed: rows as the verdict holds them."""
 
 import numpy as np
 
@@ -6,6 +6,7 @@ from vibroimpact.multisine import line_power
 
 NOISY = 0.05  # of the response: noise above it is worth a warning
 FORCE_NOISE = 0.01
+LOUD = 0.5  # of the response of a record without period, where a law that is no line adds to the noise
 
 
 def check_periods(levels, names, band_Hz):
@@ -13,6 +14,11 @@ def check_periods(levels, names, band_Hz):
     rows = []
     for level in levels:
         lines = level.excited(band_Hz)
+        if level.periods == 0:
+            share = np.sqrt(line_power(level.noise, level.frequency, lines) / line_power(level.response, level.frequency, lines))
+            rows += [_row("noise", "warn" if value > LOUD else "pass", level.name, channel, "The record has no period: it is taken whole, without the transient at "
+                          f"its ends; noise and distortion are {value:.1%} of the response in the band.") for channel, value in zip(names, share, strict=True)]  # fmt: skip
+            continue
         if level.periods < 2:
             rows.append(_row("periods", "warn", level.name, None, "There is one period only: noise and transient can not be told from the response."))
             continue

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.campaign import read_campaign, write_campaign
 from vibroimpact.completion.trial import Term, Trial
 from vibroimpact.identified import IdentifiedModes
 
@@ -42,6 +43,17 @@ def write_values(values, path):
 def read_values(path):
     """Return the values of a JSON file."""
     return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def write_kept(campaign, path):
+    """Write the usable records of a campaign; an empty file where there are none (None)."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).touch() if campaign is None else write_campaign(campaign, path)
+
+
+def read_kept(path):
+    """Return the usable records of a campaign, None where there are none."""
+    return read_campaign(path) if Path(path).stat().st_size else None
 
 
 def plain(value):

@@ -54,6 +54,17 @@ SILVERBOX = Study(
 STUDIES = {study.name: study for study in (F16, SILVERBOX)}
 
 
+def study_of(name, prepared=None):
+    """Return the Study of a name: that of `prepared` (values with the key study) where it is given, else the one of STUDIES; None where refused."""
+    if prepared is None:
+        return STUDIES[name]
+    values = prepared["study"]
+    if values is None:
+        return None
+    tuples = ("band_Hz", "residual_modes", "candidates", "additions", "peak_Hz")
+    return Study(**{key: tuple(value) if key in tuples else value for key, value in values.items()})
+
+
 def row_of(study, place, names):
     """Return (channel,) the coefficients of a place over the channels `names`, None for a place that no channel shows. Raises ValueError."""
     if place not in study.places:

@@ -1,5 +1,6 @@
 """A completed model as a configuration of the ordinary study: measured modes with their elements, under a random force in the band."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ def configuration(completed, campaign, study):
     """
     trial = trial_of(completed["trial"])
     modes, names = trial.modes, [_point(name) for name in trial.modes.names]
-    hidden = {term.place: term.participation for term in trial.terms if term.row is None}
+    hidden = {term.place: term.along(modes) for term in trial.terms if not _between_points(study, term)}
     shapes = [{**{name: {AXIS: value} for name, value in zip(names, row, strict=True)}, **{_point(place): {AXIS: share[mode]} for place, share in hidden.items()}}
               for mode, row in enumerate(modes.shapes)]  # fmt: skip
     described = [{"frequency_Hz": place, "damping_ratio": ratio, "residual": residual, "shape": shape} for place, ratio, residual, shape
@@ -52,7 +53,19 @@ def write_configuration(completed, campaign, study, path):
 
 
 def _point(name):
-    return name.replace(" ", "_")
+    """A channel's or place's name as the name of a point."""
+    plain_name = re.sub(r"[^A-Za-z0-9_]", "_", name)
+    return plain_name if plain_name[0].isalpha() else f"p{plain_name}"
+
+
+def is_relative(weights):
+    """Whether a place {channel: coefficient} is the displacement of a point or of one against another, which an element can join."""
+    return sorted(weights.values()) in ([1.0], [-1.0, 1.0])
+
+
+def _between_points(study, term):
+    """Whether a term joins points that channels show; any other place becomes a point of its own with its share in every mode."""
+    return term.place != ELSEWHERE and is_relative(study.places[term.place])
 
 
 def _rate(highest):
@@ -62,7 +75,7 @@ def _rate(highest):
 
 def _elements(term, number, study, points, channels):
     """The entries of a term's elements: between two points, or a point and the ground."""
-    ends = {"point": _point(term.place)} if term.place == ELSEWHERE else _ends(study.places[term.place], points, channels)
+    ends = _ends(study.places[term.place], points, channels) if _between_points(study, term) else {"point": _point(term.place)}
     table = LAWS[term.law].columns(term.values)
     for index in range(LAWS[term.law].elements):
         laws = {COLUMNS[column]: float(values[index]) for column, values in table.items()}
@@ -70,10 +83,8 @@ def _elements(term, number, study, points, channels):
 
 
 def _ends(weights, points, channels):
-    """{point, other_point} of a place: the relative displacement counts from the channel with -1 to the one with +1."""
+    """{point, other_point} of a place that is_relative: the displacement counts from the channel with -1 to the one with +1."""
     place = dict(zip(channels, points, strict=True))
     plus = [place[name] for name, weight in weights.items() if weight == 1.0]
     minus = [place[name] for name, weight in weights.items() if weight == -1.0]
-    if len(plus) != 1 or len(minus) > 1 or len(plus) + len(minus) != len(weights):
-        raise ValueError(f"the place {weights} is no relative displacement of one or two points: it can not be written as an element")
     return {"point": plus[0], **({"other_point": minus[0]} if minus else {})}

@@ -1,5 +1,7 @@
 """The figures of a completed measured structure: responses per force, prediction errors, equivalent support, where, restoring force."""
 
+from pathlib import Path
+
 import numpy as np
 
 from vibroimpact.completion.levels import levels_of
@@ -18,17 +20,27 @@ COLUMNS = {"stiffness": "support_stiffness_change_N_per_m", "damping": "support_
 
 
 def sheets(campaign, study, linear, completed, verdict, mounting, prediction):
-    """Return the sheets of a completion; arguments as the workflow's files hold them."""
+    """Return the sheets of a completion; arguments as the workflow's files hold them. Sheets that would be empty are left out."""
     levels, names, _ = levels_of(campaign)
     trial = trial_of(completed["trial"])
     records = Records(tuple(levels), study.band_Hz, study.mean)
     predicted = records.predict(trial, LOOP_PERIODS)
-    return [frf_overlay(study, levels, names, linear, records, predicted), prediction_errors(study, prediction), equivalent_support(study, mounting),
-            where(study, levels, names, linear, verdict), restoring_force(study, trial, records)]  # fmt: skip
+    return [frf_overlay(study, levels, names, linear, records, predicted if trial.terms else None), prediction_errors(study, prediction),
+            *([equivalent_support(study, mounting)] if mounting else []), where(study, levels, names, linear, verdict),
+            *([restoring_force(study, trial, records)] if trial.terms else [])]  # fmt: skip
+
+
+def saved_sheets(folder, campaign, study, linear, completed, verdict, mounting, prediction):
+    """Return the PNG files of the sheets of a user's completion, saved in a folder that is made; none where no linear model stands."""
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    drawn = sheets(campaign, study, linear, completed, verdict, mounting, prediction) if linear else []
+    for sheet in drawn:
+        sheet.save(folder)
+    return [Path(folder) / f"{sheet.name}.png" for sheet in drawn]
 
 
 def frf_overlay(study, levels, names, linear, records, predicted):
-    """Responses per force of every level: measured, linear and completed."""
+    """Responses per force of every level: measured, linear and, where predicted is no None, completed."""
     columns = min(2, len(levels))
     shown = sorted({0, len(levels) - 1, *np.linspace(0, len(levels) - 1, 4).round().astype(int)})
     panels = [(channel, index) for channel in _shown_channels(names) for index in shown]
@@ -45,13 +57,14 @@ def frf_overlay(study, levels, names, linear, records, predicted):
         lines = np.flatnonzero(kept & (level.frequency > 0.0))
         frequency, force = level.frequency[lines], level.force[lines]
         curves = (("measured", level.response[channel, lines] / force, BLACK, {"linewidth": 0, "marker": ".", "markersize": 2.2}),
-                  ("linear, lowest level", base.frf(frequency)[channel], ORANGE, {"linewidth": 1.0, "linestyle": "--"}),
-                  ("completed", predicted[index][channel, (level.frequency[kept] > 0.0)] / force, GREEN, {"linewidth": 0.9}))  # fmt: skip
+                  ("linear, lowest level", base.frf(frequency)[channel], ORANGE, {"linewidth": 1.0, "linestyle": "--"}))  # fmt: skip
+        if predicted is not None:
+            curves += (("completed", predicted[index][channel, (level.frequency[kept] > 0.0)] / force, GREEN, {"linewidth": 0.9}),)
         for name, values, colour, style in curves:
             sheet.line(axes, ("frequency_Hz", frequency), ("response_per_force", np.abs(values)), name, tags={"level": level.name, "channel": names[channel]},
                        color=colour, label=name, **style)  # fmt: skip
         axes.set_yscale("log")
-        axes.set_ylabel("V/V" if study.units else "(m/s²)/N")
+        axes.set_ylabel("V/V" if study.units.get("N") == "V" else "response / force (SI)")
         axes.set_title(f"{names[channel]}, {level.name} ({level.split})", fontsize=8)
     sheet.legend(sheet.axes[grid[0][0]], fontsize=7)
     return sheet
