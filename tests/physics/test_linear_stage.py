@@ -95,3 +95,22 @@ def test_plates_of_different_clearance_are_put_into_the_model(study_config):
         attach(study_config, campaign.assign(support_gap=(("record", "support"), GAP * np.array([[1.0, 1.5], [1.0, 1.2]]))))
     with pytest.raises(CampaignError, match="3 supports, the model 2"):
         attach(study_config, campaign.assign(support_gap=(("record", "support"), np.full((2, 3), GAP))))
+
+
+def test_modes_far_from_the_model_s_are_found(study_config):
+    samples = int(RATE * SECONDS)
+    force = 0.2 * band_limited_noise(np.random.default_rng(5), samples, RATE, (5.0, 200.0))[None, None].repeat(2, axis=0)
+    blank = campaign_of(np.zeros((2, len(PLACES), samples)), force)
+    model = attach(study_config, blank)
+    factors = {0: 1.17, 2: 0.88}
+    modes = np.array(sorted(factors))
+    true = linear.corrected(model, linear.Nuisance(modes, np.array(list(factors.values())), np.ones(2), np.ones(len(PLACES))))
+    schedule = schedule_of(blank, study_config.integration, SECONDS)
+    response = simulate_records(true, schedule, Forces(force, schedule), [(0, GAP, 0)], ["acceleration"] * len(PLACES))[0]
+    noise = 0.01 * response.std(axis=-1).max()
+    response = response + noise * np.random.default_rng(6).standard_normal(response.shape)
+    record = LinearRecord(force[0], RATE, (5.0, 200.0))
+    fit = fit_modes(record, response, model, np.array(["acceleration"] * len(PLACES)), np.full(len(PLACES), noise * np.sqrt(195.0 / 1024.0)))
+    for mode, factor in factors.items():
+        assert np.exp(fit.log_frequency[list(fit.modes).index(mode)]) == pytest.approx(factor, rel=1e-3)
+    assert fit.residual[:3].max() < 1.5 and not fit.delay.any()
