@@ -67,6 +67,8 @@ def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
     single, pair = finalist("gap@left", 300.0, LEFT), finalist("gap@left+dry_friction@all", 400.0)
     assert decided([single, pair]).ambiguity == [["dry_friction", "gap"]]
     assert decided([finalist("gap@left", 300.0), pair]).ambiguity == [["gap"]]
+    insufficient = decided([single, finalist("gap@left+dry_friction@all", 400.0, LEFT)])
+    assert (insufficient.verdict, insufficient.ambiguity) == ("partly_explained", [["dry_friction", "gap"], ["gap"]])
     idle = finalist("gap@left+dry_friction@all", 400.0, interval=[[0.75, 0.85], [0.0, 0.6]])
     assert decided([single, idle]).chosen is single
 

@@ -43,6 +43,8 @@ def decide(bench, null, prepared, found, threshold, p_before):
     share = closure(bench, null, best, measured)
     if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
         verdict = "partly_explained" if share > priors.PARTLY else "unknown"
+        if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
+            together += [sorted({*one, singles[0].candidate.effect_id}) for one in (linear or [[]])]
         return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
 
