@@ -31,7 +31,6 @@ include: "workflow/rules/validation.smk"
 localrules:
     all,
     discrepancy,
-    discrepancy_mode,
 
 
 rule all:

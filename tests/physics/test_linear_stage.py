@@ -7,7 +7,8 @@ from vibroimpact.campaign import CampaignError, Channel, Level, campaign_dataset
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.linear_stage import LinearRecord, fit_modes
+from vibroimpact.discrepancy.linear_record import LinearRecord
+from vibroimpact.discrepancy.linear_stage import fit_modes
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.excitation import band_limited_noise
 

@@ -3,22 +3,26 @@
 DISCREPANCY_FIGURES = ("discrepancy_map", "discrepancy_psd", "discrepancy_ranking", "discrepancy_profiles", "discrepancy_levels")
 
 
+# A full run after a quick one has the same products: by its mode it does not take those for its own.
 rule discrepancy_mode:
-    # a full run after a quick one has the same products: it must not take those for its own
+    input:
+        library=library("discrepancy_mode"),
     output:
         mode=f"{DISCREPANCY}/mode.txt",
     params:
         mode="quick" if QUICK else "full",
     log:
         f"{DISCREPANCY}/logs/mode.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/mode.tsv"
     threads: 1
     resources:
-        mem_mb=100,
+        mem_mb=500,
         runtime=1,
     message:
         "Mode of the discrepancy run: {params.mode}"
-    shell:
-        "echo {params.mode} > {output.mode} 2> {log}"
+    script:
+        "../scripts/discrepancy_mode.py"
 
 
 rule discrepancy_report:

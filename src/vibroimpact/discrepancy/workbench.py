@@ -11,7 +11,8 @@ from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.features import feature_layout, record_features
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.linear_stage import LinearRecord, fit_modes
+from vibroimpact.discrepancy.linear_record import LinearRecord
+from vibroimpact.discrepancy.linear_stage import fit_modes
 from vibroimpact.discrepancy.linearised import linearised
 from vibroimpact.discrepancy.signals import signals_of
 from vibroimpact.kernels import LANES

@@ -1,0 +1,48 @@
+"""A force record and the responses of single modes to it, as Fourier lines of what was recorded."""
+
+import numpy as np
+from scipy import fft
+
+DISCARDED = 0.2  # of a record that did not start from rest
+RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band's upper end
+
+
+class LinearRecord:
+    """A force record, ready for linear responses to it.
+
+    force (force_channel, sample) N at rate Hz; band_Hz: lines that are compared; from_rest: False for a record that was under way.
+    """
+
+    def __init__(self, force, rate, band_Hz, from_rest=True):
+        # responses are needed at a fraction of the rate only: the force holds nothing above the band
+        self.every = max(1, int(rate / (RATE_PER_BAND * band_Hz[1])))
+        samples = force.shape[-1] // self.every * self.every
+        self.rate, self.samples = rate, samples
+        self.first = 0 if from_rest else int(DISCARDED * samples) // self.every * self.every
+        self.length = self.every * fft.next_fast_len(2 * samples // self.every, real=True)
+        kept = self.length // self.every // 2 + 1
+        self.omega = 2.0 * np.pi * fft.rfftfreq(self.length, 1.0 / rate)[:kept]
+        self.spectrum = fft.rfft(force[..., :samples], self.length)[..., :kept]
+        frequency = fft.rfftfreq(samples - self.first, 1.0 / rate)
+        self.lines = np.flatnonzero((frequency >= band_Hz[0]) & (frequency <= band_Hz[1]))
+        self.frequency = frequency[self.lines]
+
+    def spectra(self, responses):
+        """Return (..., line) complex: the Fourier lines in the band of series (..., sample)."""
+        return fft.rfft(responses[..., self.first : self.samples], axis=-1)[..., self.lines] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
+
+    def responses(self, omega, damping, drive_shapes, kinds):
+        """Return (mode, line) complex for modes of omega rad/s, damping = 2 zeta omega 1/s and drive_shapes (mode, force_channel).
+
+        kinds: acceleration or displacement, of all of them.
+        """
+        force = drive_shapes @ self.spectrum
+        transfer = 1.0 / (omega[:, None] ** 2 - self.omega**2 + 1j * damping[:, None] * self.omega)
+        if kinds == "acceleration":
+            transfer = -(self.omega**2) * transfer
+        return self.short_spectra(force * transfer)
+
+    def short_spectra(self, lines):
+        """Return (..., line): the lines in the band of responses given by their spectra over the whole length, cut to the record."""
+        series = fft.irfft(lines, self.length // self.every, axis=-1)[..., self.first // self.every : self.samples // self.every]
+        return fft.rfft(series, axis=-1)[..., self.lines] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
