@@ -4,18 +4,18 @@ from vibroimpact.effects.effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with a constant force along x and y at the middle of a support."""
-    (support,) = [support for support in values["supports"] if support["name"] == location]
-    point = f"at_{location}"
-    loads = [{"point": point, "direction": direction, "force_N": parameters[name]}
+    """Return the configuration with a constant force along x and y at the middle of a support, or of each of them."""
+    chosen = [support for support in values["supports"] if support["at_m"] is not None and location in ("all", support["name"])]
+    loads = [{"point": f"at_{support['name']}", "direction": direction, "force_N": parameters[name]} for support in chosen
              for name, direction in (("force_x", [1.0, 0.0, 0.0]), ("force_y", [0.0, 1.0, 0.0]))]  # fmt: skip
     excitation = values["excitation"] | {"constant": [*values["excitation"]["constant"], *loads]}
-    return values | {"excitation": excitation, "points": values["points"] | {point: support["at_m"]}}
+    return values | {"excitation": excitation, "points": values["points"] | {f"at_{support['name']}": support["at_m"] for support in chosen}}
 
 
 def locations(values):
-    """Return the supports one by one."""
-    return [support["name"] for support in values["supports"] if support["at_m"] is not None]
+    """Return all supports together, then one by one."""
+    names = [support["name"] for support in values["supports"] if support["at_m"] is not None]
+    return ["all", *names] if len(names) > 1 else names
 
 
 EFFECT = Effect(
