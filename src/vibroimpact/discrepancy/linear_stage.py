@@ -52,7 +52,7 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
     them; chosen by their predicted share where it is None. Returns None where no mode is visible.
     """
     found = _fit(record, responses, model, kinds, noise_rms, visible)
-    if found is None or _left(found, model) < LOST:
+    if found is None or visible is not None or _left(found, model) < LOST:
         return found
     return min(found, _fit(record, responses, model, kinds, noise_rms, visible, True), key=lambda fit: _left(fit, model))
 
@@ -86,8 +86,6 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
             lag, start = _lags(free, model) if _left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
             delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
             turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
-        elif fixed and elsewhere:
-            start = _elsewhere(record, turned - rest, weights, model, visible, kind)
         found = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
         if fixed:
             break

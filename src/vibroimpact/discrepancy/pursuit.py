@@ -21,7 +21,7 @@ def pursued(record, measured, weights, count, zeta, kind):
     omega = np.exp(logs)
     drive = np.zeros((len(omega), record.spectrum.shape[0]))
     drive[:, 0] = 1.0
-    basis = record.responses(omega, 2.0 * zeta * omega, drive, kind)
+    basis = record.responses(omega, 2.0 * zeta * omega, drive, kind).astype(np.complex64)  # the largest array of the linear stage
     power = np.stack([np.sum(np.abs(row * basis) ** 2, axis=-1) for row in weights])
     open_, chosen, rest = np.ones(len(omega), bool), [], measured
     shapes = np.zeros((len(measured), 0))
