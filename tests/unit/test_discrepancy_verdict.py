@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from vibroimpact.discrepancy import by_level as levels
 from vibroimpact.discrepancy import verdict
 from vibroimpact.discrepancy.candidates import candidate_named
 
@@ -91,3 +92,15 @@ def test_a_linear_effect_stands_beside_what_contact_adds(decided):
     assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass"], ["mode_frequency_error"]])
     both = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
     assert both.ambiguity == [["added_mass", "dry_friction"]]
+
+
+def test_a_parameter_is_told_level_by_level(monkeypatch):
+    fitted = iter([0.5, 0.25])
+    monkeypatch.setattr(levels, "calibrate", lambda *_: SimpleNamespace(unit=np.array([next(fitted)]), interval=np.array([[0.2, 0.7]])))
+    signals = SimpleNamespace(load=np.array([0.5, 3.0, 10.0]), gap=np.full(3, 2.0e-4))
+    (row,) = levels.by_level(SimpleNamespace(signals=signals), SimpleNamespace(records=np.array([1, 2])), np.zeros((2, 4)),
+                             SimpleNamespace(candidate=candidate_named("dry_friction@all"), path=None), SCALES)  # fmt: skip
+    assert (row["parameter"], row["load_rms_N"]) == ("mu", [3.0, 10.0])
+    np.testing.assert_allclose([row["value"], row["low"], row["high"]], [[0.1, 100**0.25 / 100], [100**0.2 / 100] * 2, [100**0.7 / 100] * 2])
+    pair = SimpleNamespace(candidate=candidate_named("dry_friction@all+gap@all"), path=None)
+    assert levels.by_level(None, None, np.zeros((2, 4)), pair, SCALES) == []

@@ -9,6 +9,7 @@ import xarray as xr
 import yaml
 
 from vibroimpact.discrepancy import jobs, mapping, misfit, priors, verdict
+from vibroimpact.discrepancy.by_level import by_level
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.invariances import broken_invariances
 from vibroimpact.discrepancy.next_measurement import next_measurement
@@ -92,7 +93,8 @@ def conclude(run, screening, final_files, provenance, quick=False):
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
     write_record(mapping.map_dataset(before_bench, before, shown_before), folder / "map.nc")
     write_record(mapping.map_dataset(bench, after, shown_after), folder / "map_after.nc")
-    write_candidates(found, prepared, totals, folder / "candidates")
+    levels = {} if decision.chosen is None else {decision.chosen.candidate.name: by_level(bench, null, measured, decision.chosen, prepared.scales)}
+    write_candidates(found, prepared, totals, folder / "candidates", levels)
     write_text(updated_model(bench, decision, prepared), folder / "model_updated.yaml")
 
 
@@ -158,8 +160,8 @@ def bounds(decision, prepared):
             for value, parameter in zip(decision.chosen.unit, parameters, strict=True) if min(value, 1.0 - value) < BOUND and parameter.name != "angle"]  # fmt: skip
 
 
-def write_candidates(found, prepared, totals, folder):
-    """Write candidates/<name>.json: parameters with their intervals, and the score along each of them."""
+def write_candidates(found, prepared, totals, folder, levels):
+    """Write candidates/<name>.json: parameters with their intervals, the score along each of them, and levels {name: see by_level}."""
     for row in found:
         parts = [(row.candidate.first, 0), (row.candidate.second, row.candidate.split)] if isinstance(row.candidate, Pair) else [(row.candidate, 0)]
         profile, parameters = [], {}
@@ -176,7 +178,7 @@ def write_candidates(found, prepared, totals, folder):
                 profile.append({"parameter": name, "unit": parameter.unit, "values": sizes[:-3], "score": score.tolist()})
                 parameters[name] = {"value": sizes[-3], "unit": parameter.unit, "low": min(sizes[-2:]), "high": max(sizes[-2:])}
         content = {"ids": row.candidate.effect_id.split("+"), "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
-                   "parameters": parameters}  # fmt: skip
+                   "parameters": parameters, "by_level": levels.get(row.candidate.name, [])}  # fmt: skip
         write_text(json.dumps(plain(content), indent=1), folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json")
 
 
