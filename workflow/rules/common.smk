@@ -75,6 +75,8 @@ def own_structure():
 
 STUDY = checked_config()
 OWN = own_structure()
+if OWN is not None and QUICK:
+    sys.exit(f"quick = '{REQUEST['quick']}': a structure that is identified from its campaign has no quick mode: leave it out, or narrow band_Hz and candidates")
 MODEL = checked_model()
 RESULTS = f"results/{STUDY.study}"
 CASES = [case.id for case in all_cases(STUDY.grid)]
@@ -167,7 +169,7 @@ def study_of_structure(structure):
 
 
 # What is completed: the structures that are built in, and the campaign that is looked at where its own modes are asked for.
-STRUCTURES = [*STUDIES, *([re.escape(Path(REQUEST.get("campaign", "campaign")).stem)] if OWN is not None else [])]
+STRUCTURES = [*STUDIES, *([re.escape(LOOKED_AT)] if OWN is not None else [])]
 if len(set(STRUCTURES)) < len(STRUCTURES):
     sys.exit(f"campaign = '{REQUEST['campaign']}': results/{STRUCTURES[-1]} belongs to the built-in structure of that name: rename the file")
 
@@ -202,12 +204,12 @@ def completion_files(structure):
 def finalist_files(wildcards):
     """The finalists that the screening named."""
     names = finalist_names(checkpoints.discrepancy_screening.get().output.screening)
-    return [f"results/{LOOKED_AT}/finalists/{name}.npz" for name in names]
+    return [f"{DISCREPANCY}/finalists/{name}.npz" for name in names]
 
 
 def pair_files(wildcards):
     """The pairs that the finalists left to be tried."""
-    return [f"results/{LOOKED_AT}/pairs/{name}.npz" for name in pair_names(checkpoints.discrepancy_pairs.get().output.pairs)]
+    return [f"{DISCREPANCY}/pairs/{name}.npz" for name in pair_names(checkpoints.discrepancy_pairs.get().output.pairs)]
 
 
 def targets():

@@ -50,13 +50,9 @@ class Candidate:
 
     def neutral_unit(self, scales):
         """Return (parameter,) normalised where the effect is not there, NaN in parameters whose range does not hold such a value."""
-        out = []
-        for parameter in self.effect.parameters:
-            low, high, neutral = parameter.low, parameter.high, parameter.neutral
-            scaled = np.nan if neutral is None else neutral / scales[parameter.per]
-            inside = low <= scaled <= high
-            out.append((np.log(scaled / low) / np.log(high / low) if parameter.log else (scaled - low) / (high - low)) if inside else np.nan)
-        return np.array(out)
+        with np.errstate(divide="ignore", invalid="ignore"):  # nothing is no value of a range that is searched in its logarithm
+            unit = self.normalised({parameter.name: np.nan if parameter.neutral is None else parameter.neutral for parameter in self.effect.parameters}, scales)
+            return np.where((unit >= 0.0) & (unit <= 1.0), unit, np.nan)
 
     def may_be_neutral(self, interval, scales):
         """Return whether an interval (parameter, 2), normalised, leaves room for the effect not to be there: neutral in all its parameters."""

@@ -1,4 +1,4 @@
-"""Finalists: candidates refined where emulation puts them, each round with more seeds, and judged by what is simulated there and nothing else."""
+"""Finalists: candidates refined by stars of runs round the best that was simulated, and judged by what is simulated there and nothing else."""
 
 from dataclasses import dataclass, replace
 
@@ -52,12 +52,13 @@ def own(bench, null, measured, candidate, path, scales, fit, first_seed=2000):
 
 def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):
     """Return (candidate, its Path) at the place where the best points of its Path come nearest to what was measured."""
-    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:TRIED]
-    best, kept = _scores(bench, null, measured, path, fit).max(), (candidate, path)
+    scores = _scores(bench, null, measured, path, fit)
+    order, best, kept = np.argsort(scores)[::-1][:TRIED], scores.max(), (candidate, path)
     for other in other_places(candidate, bench.values):
         there = simulate_path(bench, other, path.parameters[order], scales, null.records, first_seed=first_seed)
-        if there is not None and _scores(bench, null, measured, there, fit).max() > best:
-            best, kept = _scores(bench, null, measured, there, fit).max(), (other, there)
+        found = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
+        if found > best:
+            best, kept = found, (other, there)
     return kept
 
 

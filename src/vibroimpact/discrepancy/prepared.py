@@ -26,7 +26,8 @@ class Prepared:
 
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
     {name, unit, gain, interval} of the linear effect that belongs to the model from here on; linear: the same of every linear candidate, best
-    first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; fit: the ModalFit of the lowest record on
+    first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
+    noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; fit: the ModalFit of the lowest record on
     the model with what was adopted.
     """
 
