@@ -205,6 +205,18 @@ def test_a_wrong_structure_file_is_told_before_any_plan(study, tmp_path):
     assert run.returncode == 1 and "structure.band_Hz = [60, 5] must be two frequencies" in run.stdout + run.stderr
 
 
+def test_a_quick_run_is_one_job_and_a_full_one_a_job_per_candidate(study, tmp_path):
+    (tmp_path / "bench.nc").touch()
+    told = {}
+    for quick in ("yes", "no"):
+        run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", f"quick={quick}")
+        told[quick] = dict(re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M))
+    assert told["yes"]["discrepancy_quick"] == "1" and "discrepancy_candidate" not in told["yes"]
+    assert int(told["no"]["discrepancy_candidate"]) > 15 and "discrepancy_quick" not in told["no"]
+    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", "model=identified", "quick=yes")
+    assert run.returncode == 1 and "quick = 'yes'" in run.stdout + run.stderr and "leave it out" in run.stdout + run.stderr
+
+
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
 def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, structure):
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")
