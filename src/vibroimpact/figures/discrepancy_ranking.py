@@ -24,8 +24,8 @@ def ranking_figure(ranking, named=()):
     rows = sorted(ranking, key=lambda row: -_value(row["heldout_score"]))[:MOST_BARS]
     caption = ("Candidates by how much better they explain the records that they were not fitted on (bars) and those that they were (rings), against "
                "the model as given. "
-               "Red line: the best that chance does on campaigns with nothing hidden (98 % of them lie below). Text: share of the excess misfit that "
-               "the candidate closes on held-out records. Pale bars were judged by the emulator alone, dark ones by direct simulation; the named "
+               "Red line: the best that chance does on campaigns with nothing hidden (98 % of them lie below). Text: share of the distance beyond "
+               "chance that the candidate closes, on all records. Pale bars were judged by the emulator alone, dark ones by direct simulation; the named "
                "effect is orange.")
     sheet = Sheet("discrepancy_ranking", "Which effect explains it", caption, size=(9.0, 1.5 + 0.3 * max(len(rows), 4)))
     axes = sheet.axes["main"]
@@ -52,13 +52,20 @@ def ranking_figure(ranking, named=()):
             axes.text(right + 0.02 * (right - left), place, f"closes {100 * fraction:.0f} %", va="center", fontsize=8,
                       color=GREY if fraction <= 0 else BLACK)
     axes.set_xlim(left - 0.02 * (right - left), right + 0.2 * (right - left))
-    axes.set_yticks(places, [str(row["ids"]).replace("_", " ").replace("+", " + ") for row in rows])
+    axes.set_yticks(places, [_label(row, names) for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlabel(label_of("heldout_score"))
     axes.grid(False, axis="y")
     axes.axvline(0.0, color=BLACK, linewidth=0.8)
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return [sheet]
+
+
+def _label(row, names):
+    """Return the effects of a row in words, with their place where the same effects stand at several."""
+    name = "+".join(sorted(str(row["ids"]).split("+")))
+    place = f" ({row['location']})" if names.count(name) > 1 and row.get("location") else ""
+    return f"{row['ids']}{place}".replace("_", " ").replace("+", " + ")
 
 
 def _thresholds(axes, rows, places):
