@@ -1,9 +1,10 @@
 """The reduced model of a configuration: structure -> Ritz basis -> ModalModel."""
 
 import numpy as np
-from scipy import linalg
+from scipy import linalg, sparse
 
 from vibroimpact.centreline import SAME_PLACE_M
+from vibroimpact.kept import Kept, content_key
 from vibroimpact.loads import dead_load, force_row, with_base_mode
 from vibroimpact.local_elements import element_laws, element_rows, split_damping
 from vibroimpact.model import ModalModel
@@ -13,6 +14,7 @@ from vibroimpact.ritz import FAMILIES, basis_vectors, eigenmodes, orthonormal_ba
 from vibroimpact.structure import build_structure
 from vibroimpact.supports import contact_laws
 
+BASES = Kept()
 AXES = dict(zip("xyz", np.eye(3), strict=True))
 TUBES = ("u_tube", "path")
 SMALL = 400  # degrees of freedom up to which a structure that is no tube keeps all its modes
@@ -30,9 +32,10 @@ REPORT_BASES = {
 }
 
 
-def build_model(config):
+def build_model(config, motion_only=False):
     """Return the ModalModel of a configuration (parts structure, supports, elements, initial, damping, points, excitation, basis, record).
 
+    motion_only: without the shape line and the stresses.
     Raises ValueError when a support or a named point is off the tube (farther than 5 mm), or a name is unknown.
     """
     tube = config.structure.kind in TUBES
@@ -61,7 +64,8 @@ def build_model(config):
         "constant_force": dead_load(structure, place, config.excitation) @ shapes,
         "initial_displacement": _initial(structure, shapes, config.initial, "displacement_m"),
         "initial_velocity": _initial(structure, shapes, config.initial, "velocity_m_per_s"),
-        **_sensor_fields(structure, shapes, config, place), **_line_fields(structure, shapes, config, tube), **_stress_fields(structure, shapes, config, tube),
+        **_sensor_fields(structure, shapes, config, place),
+        **_line_fields(structure, shapes, config, tube and not motion_only), **_stress_fields(structure, shapes, config, tube and not motion_only),
     }  # fmt: skip
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
@@ -78,6 +82,13 @@ def _places(structure, config):
 def _modes(structure, local_rows, basis):
     """Return (omega (mode,) rad/s, shapes (dof, mode), full_frequencies (mode,) Hz): all modes of a small point structure, or the Ritz basis."""
     rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
+    key = content_key(repr(basis), rows, *(array for matrix in map(sparse.csr_array, (structure.mass, structure.stiffness))
+                                                       for array in (matrix.data, matrix.indices, matrix.indptr)))  # fmt: skip
+    return BASES.get(key, lambda: _modes_on(structure, rows, basis))
+
+
+def _modes_on(structure, rows, basis):
+    """Return what _modes does, for rows (row, dof) of contacts and elements."""
     groups = uncoupled_groups(structure.mass, structure.stiffness, rows)
     if not isinstance(structure, PointStructure) or structure.dofs > SMALL:
         omega, shapes = modal_basis(structure, groups, basis)
@@ -210,9 +221,9 @@ def _sensor_fields(structure, shapes, config, place):
             "sensor_shapes": (np.array(rows).reshape(-1, structure.dofs) @ shapes).T}  # fmt: skip
 
 
-def _line_fields(structure, shapes, config, tube):
-    """Return the fields of the shape line: points evenly spaced in arc length from end to end, the ends left out."""
-    if not tube:
+def _line_fields(structure, shapes, config, wanted):
+    """Return the fields of the shape line: points evenly spaced in arc length from end to end, the ends left out; none where not wanted."""
+    if not wanted:
         return {"line_shapes": np.zeros((shapes.shape[1], 0)), "line_arc_length": np.zeros(0), "line_positions": np.zeros((0, 3))}
     line = config.record.shape_line
     places = structure.centreline.length * np.arange(1, line.points + 1) / (line.points + 1)
@@ -221,12 +232,12 @@ def _line_fields(structure, shapes, config, tube):
             "line_positions": np.array([structure.centreline.position(place) for place in places])}
 
 
-def _stress_fields(structure, shapes, config, tube):
-    """Return stress_shapes and section_names: both ends, edges and middle of each support, drive and sensor points.
+def _stress_fields(structure, shapes, config, wanted):
+    """Return stress_shapes and section_names: both ends, edges and middle of each support, drive and sensor points; none where not wanted.
 
     Sections at the same place appear once, under the first name.
     """
-    if not tube:
+    if not wanted:
         return {"section_names": (), "stress_shapes": np.zeros((shapes.shape[1], 0, 2))}
     places = {"root_start": 0.0, "root_end": structure.centreline.length}
     for number, support in enumerate(config.supports):

@@ -1,13 +1,16 @@
 """The finite-element model of a tube: matrices with its ends held, and rows that read displacement and stress at any arc length."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import sparse
 
 from vibroimpact.beam import DOF_PER_NODE, Beam, element_matrices, interpolation, tube_beam
 from vibroimpact.centreline import SAME_PLACE_M, Centreline, build_centreline, mesh_arc_lengths, transverse_directions, unit_vector
+from vibroimpact.kept import Kept
 from vibroimpact.supports import ContactPoints, place_contact_points
+
+BUILT = Kept()
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +31,7 @@ class Structure:
     stiffness: sparse.csr_array
     held: sparse.csr_array
     inertia: np.ndarray
+    rows: dict = field(default_factory=dict, repr=False)  # {arc length: displacement rows} known so far
 
     @property
     def dofs(self):
@@ -36,9 +40,11 @@ class Structure:
 
     def displacement_rows(self, arc_length):
         """Return (3, dof): global displacement in m at an arc length in m per unit dof; its transpose is a unit point force."""
-        element, xi = self._element_at(arc_length)
-        rows, _ = interpolation(self.beam, *self._element_geometry(element), xi)
-        return self._to_free_dofs(element, rows)
+        if arc_length not in self.rows:
+            element, xi = self._element_at(arc_length)
+            rows, _ = interpolation(self.beam, *self._element_geometry(element), xi)
+            self.rows[arc_length] = self._to_free_dofs(element, rows)
+        return self.rows[arc_length]
 
     def contact_rows(self):
         """Return (contact_point, 2, dof): displacement in m of each contact point along its two directions per unit dof."""
@@ -103,6 +109,12 @@ def build_structure(config):
     """
     line = build_centreline(config.structure)
     contact = place_contact_points(line, config.supports)
+    key = repr(config.structure), contact.arc_length.tobytes(), contact.support.tobytes()
+    return replace(BUILT.get(key, lambda: _built(config, line, contact)), contact=contact)
+
+
+def _built(config, line, contact):
+    """Return the Structure with a mesh that has nodes at the contact points."""
     groups = [contact.arc_length[contact.support == number] for number in range(len(config.supports))]
     node_arc_length = mesh_arc_lengths(line, config.structure.mesh, groups)
     nodes = np.array([line.position(place) for place in node_arc_length])

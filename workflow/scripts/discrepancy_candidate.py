@@ -12,4 +12,4 @@ run = Run.opened(snakemake)
 if run.refused:
     save_empty(snakemake.output.path)
 else:
-    candidate_path(run.bench, candidate_named(snakemake.wildcards.candidate), run.prepared.scales, snakemake.output.path)
+    candidate_path(run, candidate_named(snakemake.wildcards.candidate), snakemake.output.path)

@@ -11,4 +11,4 @@ run = Run.opened(snakemake)
 if run.refused:
     save_empty(snakemake.output.null)
 else:
-    null_part(run.bench, int(snakemake.wildcards.part), snakemake.output.null)
+    null_part(run, int(snakemake.wildcards.part), snakemake.output.null)

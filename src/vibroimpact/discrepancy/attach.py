@@ -24,7 +24,7 @@ def attach(config, campaign):
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
     sensors = config.record.model_copy(update={"sensors": config_sensors(config, tuple(points))})
     try:
-        model = build_model(config.model_copy(update={"points": {**config.points, **points}, "record": sensors}))
+        model = build_model(config.model_copy(update={"points": {**config.points, **points}, "record": sensors}), motion_only=True)
     except ValueError as error:
         raise CampaignError(_sentence(str(error), names)) from None
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
@@ -34,8 +34,6 @@ def attach(config, campaign):
         model, gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
         sensor_shapes=shapes[:, :channels], sensor_names=tuple(names[:channels]), sensor_positions=places[:channels], sensor_directions=along[:channels],
         drive_shapes=shapes[:, channels:],
-        line_shapes=np.zeros((model.modes, 0)), line_positions=np.zeros((0, 3)), line_arc_length=np.zeros(0),
-        stress_shapes=np.zeros((model.modes, 0, 2)), section_names=(),
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """The last job: fresh seeds of the bare and the completed model, the maps before and after, verdict.json, ranking.csv, and the model that runs."""
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from vibroimpact.discrepancy.prepared import workbench
 from vibroimpact.records import read_text, write_record, write_table, write_text
 
 FRESH = 20000  # first seed of the verification: none of the calibration's
+FRESH_RUNS, LEAST_FRESH = 32, 4  # runs of whole records in all, seeds of each at least
 BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
 
 
@@ -53,26 +54,25 @@ def conclude(run, screening, final_files, provenance, quick=False):
     measured = bench.measured_features[null.records]
     p_before = mapping.global_p(bench, null, measured)
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
-    seeds = 4 if quick else priors.FINAL_SEEDS
-    everything = np.arange(len(bench.signals.load))
-    before_bench = bench
+    whole = before_bench = run.whole_bench
+    seeds = LEAST_FRESH if quick else max(LEAST_FRESH, min(priors.FINAL_SEEDS, FRESH_RUNS // len(bench.signals.load)))
     if prepared.adopted is not None:
-        before_bench = workbench(run.config, run.campaign, replace(prepared, adopted=None, fit=None))
-    before, shown_before = runs_of(before_bench, before_bench.model(), everything, seeds)
+        before_bench = workbench(run.config, run.campaign, replace(prepared, adopted=None, fit=None), prepared.longest_s)
+    before = verified(before_bench, before_bench.model(), seeds, bench)
     if decision.chosen is None and prepared.adopted is None:
-        after, shown_after = before, shown_before
+        after, p_after = before, p_before
     else:
-        model = bench.model()
+        model = whole.model()
         if decision.chosen is not None:
             chosen = decision.chosen
-            model = bench.model(chosen.candidate.variant(bench.values, chosen.candidate.physical(chosen.unit, prepared.scales)))
-        after, shown_after = runs_of(bench, model, everything, seeds)
-    chosen_cells = misfit.counted(bench)
-    splits = {"fit": bench.signals.fit(), "holdout": bench.signals.holdout()}
-    gaps = {name: misfit.misfit_of(bench, records, chosen_cells, before.mean(axis=1), after.mean(axis=1), after) if len(records) else
+            model = whole.model(chosen.candidate.variant(whole.values, chosen.candidate.physical(chosen.unit, prepared.scales)))
+        after = verified(whole, model, seeds, bench)
+        p_after = mapping.global_p(bench, null, measured, after.compared[null.records])
+    chosen_cells = misfit.counted(whole)
+    splits = {"fit": whole.signals.fit(), "holdout": whole.signals.holdout()}
+    gaps = {name: misfit.misfit_of(whole, records, chosen_cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
             {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
-    difference, z, _ = mapping.z_of(before_bench, bench.measured_features, before)
-    p_after = p_before if after is before else mapping.global_p(bench, null, measured, after[null.records].mean(axis=1))
+    difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)
     ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured)
     content = {
         "verdict": decision.verdict,
@@ -85,14 +85,14 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "regions": mapping.regions(before_bench, difference, z, chosen_cells),
         "misfit": gaps, "p_global_before": p_before, "p_global_after": p_after,
         "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
-        "seconds": elapsed(folder), "simulations": simulations(null, paths, found, before, after),
+        "seconds": elapsed(folder), "simulations": simulations(null, paths, found, before.features, after.features),
         "not_testable": prepared.not_testable, "linear": prepared.linear[:SHOWN], "explained_z": decision.explained.tolist(),
         "most_probable": verdict.effects_of(prepared, decision, prepared.scales), "provenance": provenance,
     }  # fmt: skip
     write_text(json.dumps(plain(content), indent=1), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
-    write_record(mapping.map_dataset(before_bench, before, shown_before), folder / "map.nc")
-    write_record(mapping.map_dataset(bench, after, shown_after), folder / "map_after.nc")
+    write_record(mapping.map_dataset(before_bench, before.features, before.shown), folder / "map.nc")
+    write_record(mapping.map_dataset(whole, after.features, after.shown), folder / "map_after.nc")
     levels = {} if decision.chosen is None else {decision.chosen.candidate.name: by_level(bench, null, measured, decision.chosen, prepared.scales)}
     write_candidates(found, prepared, totals, folder / "candidates", levels)
     write_text(updated_model(bench, decision, prepared), folder / "model_updated.yaml")
@@ -111,17 +111,26 @@ def elapsed(folder):
     return total
 
 
-def runs_of(bench, model, records, seeds):
-    """Return (features (record, seed, feature), noisy responses (record, shown seed, channel, sample)) of fresh seeds."""
-    features, shown = [], []
-    for record in records:
-        runs = bench.runs([record], seeds, FRESH)
-        responses = bench.respond(model, runs)
-        features.append(bench.noisy_features(runs, responses))
-        noise = np.random.default_rng([11, record]).standard_normal(responses[: mapping.SHOWN_SEEDS].shape, dtype=np.float32)
-        noisy = responses[: mapping.SHOWN_SEEDS] + noise * bench.signals.noise[:, None].astype(np.float32)
-        shown.append(np.where(np.isfinite(bench.signals.force[record][0]), noisy, np.nan))
-    return np.array(features), np.array(shown)
+@dataclass(frozen=True)
+class Verified:
+    """Fresh seeds of a model on whole records: features (record, seed, feature); compared (record, feature): their mean over what candidates were
+    calibrated on; shown (record, shown seed, channel, sample): responses with noise."""
+
+    features: np.ndarray
+    compared: np.ndarray
+    shown: np.ndarray
+
+
+def verified(whole, model, seeds, bench):
+    """Return the Verified of a model on the Workbench of whole records; bench: that of what was compared."""
+    records = len(whole.signals.load)
+    runs = whole.runs(range(records), seeds, FRESH)
+    responses = whole.respond(model, runs)
+    features, compared = (window.noisy_features(runs, responses).reshape(records, seeds, -1) for window in (whole, bench))
+    responses = responses.reshape(records, seeds, *responses.shape[1:])[:, : mapping.SHOWN_SEEDS]
+    noise = np.random.default_rng(11).standard_normal(responses.shape, dtype=np.float32) * whole.signals.noise[:, None].astype(np.float32)
+    shown = np.where(np.isfinite(whole.signals.force[:, :1])[:, None], responses + noise, np.nan)
+    return Verified(features, compared.mean(axis=1), shown)
 
 
 def ranking_rows(bench, null, prepared, found, totals, screening, measured):

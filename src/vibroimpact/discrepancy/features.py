@@ -71,8 +71,8 @@ def record_features(layout, force, response):
     lines = frequency <= layout.edges[-1]
     spectra = fft.rfft(segments * window, axis=-1)[..., lines]
     scale = 2.0 / (layout.rate * np.sum(window.astype(float) ** 2)) * layout.rate / length
-    power = scale * np.mean(np.abs(spectra) ** 2, axis=1).astype(float)
-    cross = scale * np.mean(spectra[:-1] * spectra[-1:].conj(), axis=1)
+    power = scale * _mean_product(spectra, spectra).real.astype(float)
+    cross = scale * _mean_product(spectra[:-1], spectra[-1:])
     fine = _sums(frequency[lines], layout.edges)
     coarse = _sums(frequency[lines], layout.coarse)
     values = [10.0 * np.log10(np.maximum(power[:-1] @ fine, 1.0e-300)).ravel()]
@@ -80,16 +80,22 @@ def record_features(layout, force, response):
     coherent = np.abs(cross) ** 2 / np.maximum(power[-1], 1.0e-300)
     share = (coherent @ coarse) / np.maximum(power[:-1] @ coarse, 1.0e-300)
     values.append(np.arctanh(np.sqrt(np.clip(share, 0.0, 0.9999))).ravel())
-    both = [scale * np.mean(spectra[a] * spectra[b].conj(), axis=0) for a, b in layout.pairs]
+    both = [scale * _mean_product(spectra[[a]], spectra[[b]])[0] for a, b in layout.pairs]
     for part in (np.real, np.imag):
         for (a, b), product in zip(layout.pairs, both, strict=True):
             level = np.sqrt((power[a] @ coarse) * (power[b] @ coarse))
             values.append(np.arctanh(np.clip(part(product) @ coarse / np.maximum(level, 1.0e-300), -0.9999, 0.9999)))
-    centred = response - response.mean(axis=-1, keepdims=True)
-    sd = np.maximum(centred.std(axis=-1), 1.0e-300)
-    values.append(np.cbrt(np.mean((centred / sd[:, None]) ** 3, axis=-1)))
-    values.append(np.log(np.mean((centred / sd[:, None]) ** 4, axis=-1) / 3.0))
+    centred = np.asarray(response, np.float64) - response.mean(axis=-1, keepdims=True, dtype=np.float64)
+    square = centred * centred
+    variance = np.maximum(square.mean(axis=-1), 1.0e-300)
+    values.append(np.cbrt(np.mean(square * centred, axis=-1) / variance**1.5))
+    values.append(np.log(np.mean(square * square, axis=-1) / (3.0 * variance**2)))
     return np.concatenate(values)
+
+
+def _mean_product(one, other):
+    """Return (channel, line): the mean over segments of one times the conjugate of the other, (channel, segment, line) each."""
+    return np.einsum("csl,csl->cl", one, np.broadcast_to(other, one.shape).conj()) / one.shape[1]
 
 
 def compressed(difference, layout):

@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, li
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
 ENOUGH = 2  # this close is close enough where no parameter is known better
 ROUNDS = 4  # at most
-START_STEP, STARTS = 0.12, 4
+START_STEP, STARTS, NEW = 0.12, 3, 0.01
 TRIED = 2  # points that are tried at other places
 LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
@@ -44,10 +44,13 @@ def started(bench, null, candidate, unit, scales, first_seed=2000):
     return simulate_path(bench, candidate, _around(unit, START_STEP, candidate.periodic), scales, null.records, first_seed=first_seed)
 
 
-def own(bench, null, measured, candidate, path, scales, fit, first_seed=2000):
-    """Return the Path of a candidate on this campaign at the points of another's Path that look best: what the bank knows is moved here, not simulated."""
+def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=2000):
+    """Return the Path of a candidate at the points of a Path that was moved here, from another campaign or shorter records, that look best, and at unit."""
     order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:STARTS]
-    return simulate_path(bench, candidate, path.parameters[order], scales, null.records, first_seed=first_seed)
+    points = path.parameters[order]
+    if not any(np.allclose(unit, point, atol=NEW) for point in points):
+        points = np.vstack([unit, points[: STARTS - 1]])
+    return simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed)
 
 
 def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):

@@ -8,7 +8,7 @@ from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import ROUNDS, own, placed, refine, started
-from vibroimpact.discrepancy.null import null_runs, unseen_damping_runs
+from vibroimpact.discrepancy.null import unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.records import read_text, write_text
 
@@ -21,28 +21,34 @@ def contact_records(bench):
     return records[records != bench.signals.lowest] if bench.linear_stage else records
 
 
-def null_part(bench, part, path):
-    """Simulate a part of the null's seeds and of those with other damping of unseen modes."""
-    records, each, unseen = contact_records(bench), priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS // NULL_PARTS
-    store.save(path, records=records, features=null_runs(bench, records, each, each * part),
-               unseen=unseen_damping_runs(bench, records, unseen, 900 + unseen * part))  # fmt: skip
+def null_part(run, part, path):
+    """Simulate a part of the null's seeds and of those with other damping of unseen modes; the features of what is screened are of the same runs."""
+    bench, records = run.bench, contact_records(run.bench)
+    each, unseen = priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS // NULL_PARTS
+    arrays = {}
+    for name, model, seeds, first in (("features", bench.model(), each, each * part), ("unseen", unseen_damping(bench), unseen, 900 + unseen * part)):
+        runs = bench.runs(records, seeds, first)
+        responses = bench.respond(model, runs)
+        for prefix, window in (("", bench), ("screened_", run.screening_bench)):
+            arrays[prefix + name] = window.noisy_features(runs, responses).reshape(len(records), seeds, -1)
+    store.save(path, records=records, **arrays)
 
 
-def candidate_path(bench, candidate, sizes, path, quick=False):
+def candidate_path(run, candidate, path, quick=False):
     """Simulate a candidate at the points of its design."""
-    found = simulate_path(bench, candidate, candidate.design(quick), sizes, contact_records(bench))
+    bench = run.screening_bench
+    found = simulate_path(bench, candidate, candidate.design(quick), run.prepared.scales, contact_records(bench))
     store.save_empty(path) if found is None else store.save(path, **store.path_arrays(found))
 
 
-def known_paths(files, null, bank_null=None):
-    """Return {Candidate: Path} of {candidate name: file}; those of another campaign's bank are moved by the difference of the two nulls."""
+def known_paths(files, moved):
+    """Return {Candidate: Path} of {candidate name: file}, their features moved by (record, feature): from another campaign, or from shorter records."""
     out = {}
     for name, file in files.items():
         arrays = store.load(file)
         if arrays is not None:
             path = store.path_of(arrays)
-            if bank_null is not None:
-                path.features = path.features - bank_null.mean + null.mean
+            path.features = path.features + moved
             out[candidate_named(name)] = path
     return out
 
@@ -52,7 +58,7 @@ def screening(run, path, quick=False):
     if run.refused:
         write_text(json.dumps({"finalists": {}, "threshold": None, "null_gains": [], "ranked": []}), path)
         return
-    bench, null, paths = run.bench, run.null, run.paths
+    bench, null, paths = run.screening_bench, run.screening_null, run.screened_paths
     measured = bench.measured_features[null.records]
     ranked = naming.screen(bench, null, measured, paths)
     chosen = naming.finalists(ranked, QUICK_FINALISTS if quick else priors.FINALISTS)
@@ -76,10 +82,10 @@ def finalist(run, name, unit, path, quick=False, rival=-np.inf):
     bench, null, paths, sizes = run.bench, run.null, run.paths, run.prepared.scales
     candidate, measured = candidate_named(name), bench.measured_features[null.records]
     fit, known = naming.fit_mask(bench, null), paths.get(candidate) if isinstance(candidate, Candidate) else None
-    if known is not None and run.bank_nulls:
-        known = own(bench, null, measured, candidate, known, sizes, fit)
     if known is None:
         known = started(bench, null, candidate, np.array(unit), sizes)
+    elif not run.simulated_here:
+        known = own(bench, null, measured, candidate, known, np.array(unit), sizes, fit)
     if known is None:
         store.save_empty(path)
         return

@@ -31,19 +31,13 @@ class Null:
         return self.features.shape[1]
 
 
-def null_runs(bench, records, seeds, first_seed=0):
-    """Return (record, seed, feature) of the corrected bare model."""
-    return bench.features(bench.model(), bench.runs(records, seeds, first_seed)).reshape(len(records), seeds, -1)
-
-
-def unseen_damping_runs(bench, records, seeds, first_seed=0):
-    """Return (record, seed, feature) with other damping of the modes that the lowest record does not show."""
+def unseen_damping(bench):
+    """Return the corrected bare model with other damping of the modes that the lowest record does not show."""
     model = bench.model()
     unseen = np.ones(model.modes, bool)
     if bench.linear_stage:
         unseen[bench.measured_fit.modes] = False
-    model = replace(model, damping=np.where(unseen, priors.UNSEEN_DAMPING, 1.0) * model.damping)
-    return bench.features(model, bench.runs(records, seeds, first_seed)).reshape(len(records), seeds, -1)
+    return replace(model, damping=np.where(unseen, priors.UNSEEN_DAMPING, 1.0) * model.damping)
 
 
 def null_of(bench, records, features, unseen):

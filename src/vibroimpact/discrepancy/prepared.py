@@ -16,6 +16,7 @@ from vibroimpact.discrepancy.linear_naming import calibrate, reading_under, tabl
 from vibroimpact.discrepancy.measuring import Measuring
 from vibroimpact.discrepancy.null import driven_channels
 from vibroimpact.discrepancy.scales import scales
+from vibroimpact.discrepancy.windows import compared_s, screened_s
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.records import read_text, write_text
 
@@ -27,7 +28,7 @@ class Prepared:
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
     {name, unit, gain, interval} of the linear effect that belongs to the model from here on; linear: the same of every linear candidate, best
     first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
-    noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; fit: the ModalFit of the lowest record on
+    noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them, see windows; fit: the ModalFit of the lowest record on
     the model with what was adopted.
     """
 
@@ -43,6 +44,8 @@ class Prepared:
     delays: dict = field(default_factory=dict)
     not_testable: list = field(default_factory=list)
     longest_s: float | None = None
+    compared_s: float | None = None
+    screened_s: float | None = None
     fit: dict | None = None
 
     def write(self, path):
@@ -77,12 +80,12 @@ def usable_campaign(path, checks):
     return campaign.isel(record=records, channel=channels), None
 
 
-def workbench(config, campaign_path, prepared):
-    """Return the Workbench of a campaign as the first job left it: nuisances corrected, the linear effect adopted."""
+def workbench(config, campaign_path, prepared, seconds):
+    """Return the Workbench of a campaign, each record cut to so many seconds, as the first job left it: nuisances corrected, the linear effect adopted."""
     campaign, refusal = usable_campaign(campaign_path, prepared.checks)
     if refusal:
         raise CampaignError(refusal)
-    bench = Workbench(config, campaign, prepared.longest_s)
+    bench = Workbench(config, campaign, seconds)
     if prepared.delays:
         delay = np.array([prepared.delays.get(name, 0.0) for name in bench.signals.names])
         bench.late = Measuring(np.ones(len(delay)), delay, 1.0)
@@ -112,28 +115,30 @@ def adopt(bench, prepared):
         bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
-def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset()):
+def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None):
     """Return the Prepared of a campaign file and a checked Config.
 
     tables {candidate name: LinearTable}: known from another campaign of the same model, extended; without: ids of effects that are not in the
-    catalogue this time.
+    catalogue this time; asked_s: compare so many seconds of each record.
     """
     _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
     if refusal is None:
         try:
-            bench = Workbench(config, campaign, longest_s)
+            whole_s = campaign.sizes["time"] / float(campaign.attrs["sampling_frequency"])
+            seconds = compared_s(campaign.sizes["record"], min(whole_s, longest_s or whole_s), asked_s)
+            bench = Workbench(config, campaign, seconds)
             mixed = mixed_up(bench)
             if mixed:
                 checks = [*checks, *mixed]
                 campaign, refusal = usable_campaign(campaign_path, checks)
-                bench = bench if refusal else Workbench(config, campaign, longest_s)
+                bench = bench if refusal else Workbench(config, campaign, seconds)
         except CampaignError as error:
             checks = [*checks, {"check": "places", "level": "refuse", "record": None, "channel": None, "message": str(error)}]
             refusal = str(error)
     if refusal is not None:
         return Prepared(checks, refusal)
-    out = Prepared(checks, longest_s=longest_s, not_testable=not_testable(held(campaign)))
+    out = Prepared(checks, longest_s=longest_s, compared_s=seconds, screened_s=screened_s(seconds), not_testable=not_testable(held(campaign)))
     gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
     reach = float(gap.max()) if len(gap) else float(np.nanstd(bench.signals.response[bench.signals.load.argmax()]) / (2.0 * np.pi * bench.signals.band_Hz[0]) ** 2)
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
@@ -170,7 +175,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
             out.nonlinear_low = False
         if out.nonlinear_low:
             out.adopted = None
-            bench = Workbench(config, campaign, longest_s)
+            bench = Workbench(config, campaign, seconds)
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
     return out
 

@@ -18,6 +18,8 @@ LAW_COMMON_SD = 0.15  # the same, common to all features of the channels that th
 BURST = 2.0  # ln of kurtosis over that of a normal law: above it a channel that the force does not drive holds a few bursts
 RESIDUAL_SD = 0.15  # of ln of the low-level residual over noise
 
+COMPARED_S = 24.0  # of every record are compared while candidates are calibrated, less where the records fill more than one batch
+SCREENED_S = 12.0  # of every record are simulated while all candidates are screened
 NULL_SEEDS = 16  # runs of every record without an effect
 FINAL_SEEDS = 8  # of the finalists and of the verification
 FINALISTS = 4

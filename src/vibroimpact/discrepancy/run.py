@@ -37,7 +37,22 @@ class Run:
     @cached_property
     def bench(self):
         """Return the Workbench."""
-        return workbench(self.config, self.campaign, self.prepared)
+        return self._bench(self.prepared.compared_s)
+
+    @cached_property
+    def screening_bench(self):
+        """Return the Workbench of the seconds that are screened."""
+        return self.bench if self.screened_as_compared else self._bench(self.prepared.screened_s)
+
+    @cached_property
+    def whole_bench(self):
+        """Return the Workbench of whole records."""
+        return self._bench(self.prepared.longest_s)
+
+    @property
+    def screened_as_compared(self):
+        """Return whether screening looks at all that is compared."""
+        return self.prepared.screened_s == self.prepared.compared_s
 
     @cached_property
     def null(self):
@@ -45,7 +60,29 @@ class Run:
         return store.null_from(self.bench, self.nulls)
 
     @cached_property
-    def paths(self):
+    def screening_null(self):
+        """Return the Null of the seconds that are screened."""
+        return self.null if self.screened_as_compared else store.null_from(self.screening_bench, self.nulls, "screened_")
+
+    @property
+    def simulated_here(self):
+        """Return whether what was screened are runs of this campaign over all that is compared, not moved here from elsewhere."""
+        return self.screened_as_compared and not self.bank_nulls
+
+    @cached_property
+    def screened_paths(self):
         """Return {Candidate: Path} of what was screened."""
-        bank = store.null_from(self.bench, self.bank_nulls) if self.bank_nulls else None
-        return jobs.known_paths(dict(zip(self.candidates, self.path_files, strict=True)), self.null, bank)
+        return self._paths(self.screening_null)
+
+    @cached_property
+    def paths(self):
+        """Return {Candidate: Path} of what was screened, moved to all that is compared."""
+        return self._paths(self.null)
+
+    def _bench(self, seconds):
+        return workbench(self.config, self.campaign, self.prepared, seconds)
+
+    def _paths(self, target):
+        """Return {Candidate: Path}, moved by the difference of the null of what was simulated to the null `target`."""
+        source = store.null_from(self.screening_bench, self.bank_nulls, "screened_") if self.bank_nulls else self.screening_null
+        return jobs.known_paths(dict(zip(self.candidates, self.path_files, strict=True)), target.mean - source.mean)

@@ -61,18 +61,18 @@ class Signals:
 
 
 def signals_of(campaign, longest_s=None):
-    """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given."""
+    """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given; band, noise and loads are those of whole records."""
     rate = float(campaign.attrs["sampling_frequency"])
-    records, channels = campaign.sizes["record"], campaign.sizes["channel"]
-    samples = campaign.sizes["time"] if longest_s is None else min(campaign.sizes["time"], round(longest_s * rate))
+    records, channels, samples = campaign.sizes["record"], campaign.sizes["channel"], campaign.sizes["time"]
+    kept = samples if longest_s is None else min(samples, round(longest_s * rate))
     response = np.full((records, channels, samples), np.nan)
     for record in range(records):
         for channel in range(channels):
-            signal = channel_signal(campaign, record, channel)[:samples]
+            signal = channel_signal(campaign, record, channel)
             response[record, channel, : len(signal)] = signal
     force = np.full((records, campaign.sizes["force_channel"], samples), np.nan)
     for record, channel in np.ndindex(force.shape[:2]):
-        signal = force_signal(campaign, record, channel)[:samples]
+        signal = force_signal(campaign, record, channel)
         force[record, channel, : len(signal)] = signal
     valid = np.isfinite(response).all(axis=1)
     force = np.where(valid[:, None], force, np.nan)
@@ -82,7 +82,7 @@ def signals_of(campaign, longest_s=None):
     split = np.array([str(value) for value in campaign["split"].values]) if "split" in campaign else np.full(records, "fit")
     lowest = int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), load))[0])
     return Signals(
-        force=force, response=response, rate=rate, band_Hz=band, kinds=np.array([str(kind) for kind in campaign["channel_kind"].values]),
+        force=force[..., :kept], response=response[..., :kept], rate=rate, band_Hz=band, kinds=np.array([str(kind) for kind in campaign["channel_kind"].values]),
         names=tuple(map(str, campaign["channel_name"].values)), gap=gap, load=load, split=split,
         record_names=tuple(map(str, campaign["record_name"].values)), noise=noise_of(campaign, response[lowest], rate, band),
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",

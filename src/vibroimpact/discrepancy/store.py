@@ -63,9 +63,8 @@ def finalist_of(arrays):
     return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile)
 
 
-def null_from(bench, files):
-    """Return the Null of the files of its parts."""
+def null_from(bench, files, prefix=""):
+    """Return the Null of the files of its parts; prefix "screened_": of the seconds that are screened."""
     parts = [load(file) for file in files]
-    features = np.concatenate([part["features"] for part in parts if "features" in part], axis=1)
-    unseen = np.concatenate([part["unseen"] for part in parts if "unseen" in part], axis=1)
+    features, unseen = (np.concatenate([part[prefix + name] for part in parts], axis=1) for name in ("features", "unseen"))
     return null_of(bench, parts[0]["records"], features, unseen)

@@ -31,8 +31,8 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     if run.refused:
         conclude(run, None, [], provenance)
         return
-    _make(workers, {file: partial(jobs.null_part, run.bench, part) for part, file in enumerate(nulls)})
-    _make(workers, {file: partial(_path, run.bench, name, prepared.scales, quick) for name, file in zip(names, paths, strict=True)})
+    _make(workers, {file: partial(jobs.null_part, run, part) for part, file in enumerate(nulls)})
+    _make(workers, {file: partial(_path, run, name, quick) for name, file in zip(names, paths, strict=True)})
     screened = _kept(folder / "screening.json", lambda file: jobs.screening(run, file, quick))
     files = []
     for kind in ("finalists", "pairs"):
@@ -43,8 +43,8 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     conclude(run, screened, files, provenance, quick)
 
 
-def _path(bench, name, sizes, quick, file):
-    jobs.candidate_path(bench, candidate_named(name), sizes, file, quick)
+def _path(run, name, quick, file):
+    jobs.candidate_path(run, candidate_named(name), file, quick)
 
 
 def _finalist(run, name, unit, quick, rival, file):
