@@ -1,9 +1,12 @@
 """A whole discrepancy run in one job, with short records and fewer parameters."""
 
+import os
 import shutil
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}  # before numpy: the processes are forked here, one per core
 
 from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.whole import run_campaign

@@ -12,5 +12,5 @@ sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf
 number, bank = int(snakemake.wildcards.number), Path(snakemake.input.bank).parent
 plan = drawn(snakemake.params.seed, number + 1, levels=LEVELS, duration=float(snakemake.params.seconds))[number]
 folder = Path(snakemake.output.verdict).parent
-make_campaign(plan, folder / "campaign.nc", snakemake.output.truth)
+make_campaign(plan, folder / "campaign.nc", snakemake.output.truth, twin=False)
 run_sealed(snakemake.params.config, folder, bank, pickle.loads((bank / "tables.pickle").read_bytes()), left_out(plan.effects, plan.arm))

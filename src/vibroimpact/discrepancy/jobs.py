@@ -68,7 +68,7 @@ def screening(run, path, quick=False):
                            "ranked": [{"name": row.candidate.name, "score": row.score, "unit": row.unit.tolist()} for row in ranked]}, indent=1), path)  # fmt: skip
 
 
-QUICK_FINALISTS, QUICK_ROUNDS, PAIR_ROUNDS = 3, 1, 3
+QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS, PAIR_ROUNDS = 3, 1, 4, 3
 
 
 def rival_of(name, screened):
@@ -90,7 +90,7 @@ def finalist(run, name, unit, path, quick=False, rival=-np.inf):
         store.save_empty(path)
         return
     rounds = QUICK_ROUNDS if quick else ROUNDS if isinstance(candidate, Candidate) else PAIR_ROUNDS
-    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, rival=rival)
+    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, rival=rival, seeds=QUICK_SEEDS if quick else priors.FINAL_SEEDS)
     if found is not None and isinstance(candidate, Candidate) and not quick:
         other, there = placed(bench, null, measured, candidate, found.path, sizes, fit)
         if other is not candidate:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import linalg
+from scipy.linalg import lapack
 
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
@@ -55,13 +56,17 @@ def log_likelihood(residual, covariance, change=None, groups=None, more_variance
     covariance (feature, feature): of seeds and of what two codes differ by; change (feature,): what the effect changes, of which LAW_SD is uncertain feature
     by feature and LAW_COMMON_SD in each group of features of groups (feature,); more_variance (feature,): of the mean.
     """
-    total, size = covariance, len(residual)
+    total, size = np.array(covariance), len(residual)
+    own = total.reshape(-1)[:: size + 1]  # the diagonal, as a view
     if change is not None:
-        common = [np.where(groups == group, priors.LAW_COMMON_SD * change, 0.0) for group in np.unique(groups)]
-        total = total + np.diag((priors.LAW_SD * change) ** 2) + np.transpose(common) @ np.array(common)
+        common = np.array([np.where(groups == group, priors.LAW_COMMON_SD * change, 0.0) for group in np.unique(groups)])
+        total += common.T @ common
+        own += (priors.LAW_SD * change) ** 2
     if more_variance is not None:
-        total = total + np.diag(more_variance)
-    factor = linalg.cholesky(total, lower=True, check_finite=False)
-    white = linalg.solve_triangular(factor, residual, lower=True, check_finite=False)
+        own += more_variance
+    factor, failed = lapack.dpotrf(total.T, lower=1, overwrite_a=1)  # called ten thousand times a run: without the wrapper's checks and copies
+    if failed:
+        raise linalg.LinAlgError("the covariance of features is not positive definite")
+    white = lapack.dtrtrs(factor, residual, lower=1)[0]
     chi_square = float(white @ white)
     return -0.5 * (priors.TAIL + size) * np.log1p(chi_square / priors.TAIL) - float(np.sum(np.log(np.diag(factor)))), chi_square

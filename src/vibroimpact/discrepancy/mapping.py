@@ -9,6 +9,7 @@ from vibroimpact.discrepancy import naming, priors
 SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
 SHOWN_SEEDS = 4
+PEAK = 0.5  # of the largest difference in dB: bands beside it that differ by as much belong to it
 
 
 def z_of(bench, measured, seeds):
@@ -48,16 +49,30 @@ def regions(bench, difference, z, chosen):
     marked, edges, signals = significant(z, chosen), bench.layout.edges, bench.signals
     found = []
     for record, channel in np.ndindex(marked.shape[:2]):
-        bands = np.flatnonzero(marked[record, channel])
-        for group in np.split(bands, np.flatnonzero(np.diff(bands) > 1) + 1) if bands.size else []:
-            sign = np.sign(difference[record, channel, group])
-            for part in np.split(group, np.flatnonzero(np.diff(sign) != 0) + 1):
-                peak = part[np.argmax(np.abs(z[record, channel, part]))]
-                found.append({"band_Hz": [float(edges[part[0]]), float(edges[part[-1] + 1])], "load_rms_N": float(signals.load[record]),
-                              "gap_m": None if np.isnan(signals.gap[record]) else float(signals.gap[record]), "channel": signals.names[channel],
-                              "record": signals.record_names[record], "discrepancy_dB": float(difference[record, channel, part].mean()),
-                              "z": float(z[record, channel, peak]), "nearest_modes_Hz": nearest(bench, edges[part[0]], edges[part[-1] + 1])})  # fmt: skip
+        own = difference[record, channel]
+        for part in clusters(own, marked[record, channel]):
+            peak = part[np.argmax(np.abs(z[record, channel, part]))]
+            found.append({"band_Hz": [float(edges[part[0]]), float(edges[part[-1] + 1])], "load_rms_N": float(signals.load[record]),
+                          "gap_m": None if np.isnan(signals.gap[record]) else float(signals.gap[record]), "channel": signals.names[channel],
+                          "record": signals.record_names[record], "discrepancy_dB": float(own[part].mean()),
+                          "z": float(z[record, channel, peak]), "nearest_modes_Hz": nearest(bench, edges[part[0]], edges[part[-1] + 1])})  # fmt: skip
     return sorted(found, key=lambda row: -abs(row["z"]))
+
+
+def clusters(difference, marked):
+    """Return [(band,)]: runs of marked bands of one sign within PEAK of their largest difference, from the largest down; difference, marked (band,)."""
+    left, out = marked.copy(), []
+    while left.any():
+        top = int(np.argmax(np.where(left, np.abs(difference), 0.0)))
+        inside = left & (difference * np.sign(difference[top]) >= PEAK * np.abs(difference[top]))
+        low, high = top, top
+        while low > 0 and inside[low - 1]:
+            low -= 1
+        while high + 1 < len(left) and inside[high + 1]:
+            high += 1
+        out.append(np.arange(low, high + 1))
+        left[low : high + 1] = False
+    return out
 
 
 def nearest(bench, low, high):

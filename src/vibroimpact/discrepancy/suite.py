@@ -6,9 +6,12 @@ from pathlib import Path
 import numpy as np
 from scipy import stats
 
+from vibroimpact.discrepancy.misfit import excess
+
 EQUIVALENT = {"fluid": "fluid_added_mass_damping"}
 FAULT_CHECKS = {"clipping", "drop-outs", "delay", "swapped channels", "units", "gaps in time", "directions"}
 SENSOR = {"sensor_gain", "sensor_delay"}
+STRONG, MEDIUM = 3.0, 1.0  # floors of excess
 TARGETS = {  # arm, quantity -> (target, fails beyond); from the acceptance table
     ("null", "false name"): (0.05, 0.10), ("strong", "in the set"): (0.95, 0.80), ("strong", "first"): (0.85, 0.70),
     ("medium", "in the set"): (0.75, 0.60), ("medium", "wrong name"): (0.10, 0.15), ("alias", "both in the set"): (0.80, None),
@@ -23,6 +26,23 @@ SAME_QUANTITY = {"gap": ("factor", "gap_factor"), "contact_damping": ("damping",
                  "coulomb_friction": ("force", "force"), "quadratic_drag": ("coefficient", "coefficient"), "sensor_gain": ("factor", "factor")}  # fmt: skip
 
 
+def arm_of(verdict, truth):
+    """Return the arm of a campaign: one effect is strong from 3 floors of excess on the held-out records on, medium from 1 on, else weak.
+
+    The excess is the truth's where that states it, else what the verdict reports of the bare model.
+    """
+    if truth["arm"] not in ("strong", "medium"):
+        return truth["arm"]
+    gap = verdict["misfit"]["holdout"]
+    if "strength" in truth:
+        floors = truth["strength"]["excess_over_floor"]
+    elif gap["before_dB"] is None:
+        return truth["arm"]
+    else:
+        floors = excess(gap["before_dB"], gap["floor_dB"]) / gap["floor_dB"]
+    return "strong" if floors >= STRONG else "medium" if floors >= MEDIUM else "weak"
+
+
 def judged(verdict, truth):
     """Return a row {arm, hidden, verdict, named, in_set, first, one_right, wrong, flagged, closed, errors} of one campaign; contents of the two files."""
     hidden = sorted(EQUIVALENT.get(name, name) for name, _ in truth["effects"])
@@ -31,7 +51,7 @@ def judged(verdict, truth):
     first = sorted(verdict["ranking"][0]["ids"]) if verdict["ranking"] else []
     flagged = bool({row["check"] for row in verdict["checks"] if row["level"] != "pass"} & FAULT_CHECKS) or bool(named & SENSOR)
     single = verdict["verdict"] == "named"
-    return {"arm": truth["arm"], "hidden": "+".join(hidden), "verdict": verdict["verdict"], "named": "|".join("+".join(row) for row in sets), "first_name": "+".join(first),
+    return {"arm": arm_of(verdict, truth), "hidden": "+".join(hidden), "verdict": verdict["verdict"], "named": "|".join("+".join(row) for row in sets), "first_name": "+".join(first),
             "in_set": hidden in sets, "first": first == hidden, "one_right": bool(set(hidden) & named), "wrong": single and hidden not in sets,
             "any_name": bool(sets) and verdict["verdict"] in ("named", "ambiguous"),
             "open": verdict["verdict"] in ("unknown", "partly_explained", "not_testable"), "flagged": flagged,
