@@ -5,7 +5,7 @@ import pytest
 
 from vibroimpact.campaign import CampaignError, Channel, Level, campaign_dataset
 from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach
+from vibroimpact.discrepancy.attach import attach, with_channel_points
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.linear_record import LinearRecord
 from vibroimpact.discrepancy.linear_stage import fit_modes
@@ -115,3 +115,11 @@ def test_modes_far_from_the_model_s_are_found(study_config):
     for mode, factor in factors.items():
         assert np.exp(fit.log_frequency[list(fit.modes).index(mode)]) == pytest.approx(factor, rel=1e-3)
     assert fit.residual[:3].max() < 1.5 and not fit.delay.any()
+
+
+def test_a_mass_may_sit_where_only_a_channel_is(study_config):
+    blank = campaign_of(np.zeros((2, len(PLACES), 64)), np.zeros((2, 1, 64)))
+    blank["channel_point"][2] = [-0.3, 0.0, 0.533]
+    points = with_channel_points(study_config, blank).points
+    assert points["leg_y"] == (-0.3, 0.0, 0.533)
+    assert set(points) == {*study_config.points, "leg_y", "bend_y"}  # the apex has a name already

@@ -9,6 +9,7 @@ from vibroimpact.discrepancy.dag import shard_of
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import COARSE, FeatureLayout, compressed, record_features, uncompressed
 from vibroimpact.discrepancy.likelihood import log_likelihood, scatter_of
+from vibroimpact.discrepancy.mapping import clusters
 from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.screening import NINETY, _above, _best, _profile
@@ -170,7 +171,16 @@ def test_the_exact_alias_is_told_how_to_break():
 
 
 def verdict(name, sets, first):
-    return {"verdict": name, "ambiguity_set": sets, "ranking": [{"ids": first}], "checks": [], "effects": [], "misfit": {"holdout": {"closed_fraction": 0.9}}}
+    return {"verdict": name, "ambiguity_set": sets, "ranking": [{"ids": first}], "checks": [], "effects": [],
+            "misfit": {"holdout": {"before_dB": 4.0, "after_dB": 1.1, "floor_dB": 1.0, "closed_fraction": 0.9}}}  # fmt: skip
+
+
+@pytest.mark.parametrize(("before_dB", "arm"), [(1.1, "weak"), (2.0, "medium"), (4.0, "strong")])
+def test_the_arm_is_that_of_the_excess_over_the_floor(before_dB, arm):
+    found = verdict("named", [["gap"]], ["gap"])
+    found["misfit"]["holdout"]["before_dB"] = before_dB
+    assert judged(found, {"arm": "medium", "effects": [["gap", {"factor": 1.2}]]})["arm"] == arm
+    assert judged(found, {"arm": "stranger", "effects": [["loose_mass", {}]]})["arm"] == "stranger"
 
 
 def test_verdicts_are_held_against_truths():
@@ -195,3 +205,9 @@ def test_shuffled_truths_fall_to_chance():
 
 def test_priors_are_those_of_the_contract():
     assert (priors.FREQUENCY_SD, priors.DAMPING_SD, priors.GAIN_SD, priors.NAMED_BEYOND) == (0.003, 0.10, 0.02, 2.0)
+
+
+def test_clusters_end_where_the_difference_halves():
+    difference = np.array([0.5, 6.0, 10.0, 7.0, 3.0, 3.5, -4.0, 0.2])
+    found = clusters(difference, np.abs(difference) > 0.3)
+    assert [row.tolist() for row in found] == [[1, 2, 3], [6], [4, 5], [0]]

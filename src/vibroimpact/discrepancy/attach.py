@@ -1,5 +1,6 @@
 """A campaign's channels and forces on the model: the reduced model with the campaign's sensors and drives in place of the study's."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from vibroimpact.config_schema import Sensors
 from vibroimpact.reduction import build_model
 
 NEAR_M = 5.0e-3  # farther from the structure is no place on it
+SAME_POINT_M = 1.0e-3
 
 
 def attach(config, campaign):
@@ -35,6 +37,16 @@ def attach(config, campaign):
         sensor_shapes=shapes[:, :channels], sensor_names=tuple(names[:channels]), sensor_positions=places[:channels], sensor_directions=along[:channels],
         drive_shapes=shapes[:, channels:],
     )  # fmt: skip
+
+
+def with_channel_points(config, campaign):
+    """Return the configuration with a named point at every channel where it has none: what sits there, or was put there with it, may be missing in it."""
+    points, taken = dict(config.points), list(config.points.values())
+    for name, place in zip(campaign["channel_name"].values, campaign["channel_point"].values, strict=True):
+        if all(np.linalg.norm(np.subtract(place, other)) > SAME_POINT_M for other in taken):
+            points[re.sub(r"[^A-Za-z0-9_.-]", "_", str(name))] = tuple(map(float, place))
+            taken.append(place)
+    return config.model_copy(update={"points": points})
 
 
 def _ratio_of_points(campaign, model):

@@ -15,7 +15,7 @@ from vibroimpact.discrepancy.linearised import linearised, same_modes
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
 NUISANCES = ("mode_frequency_error", "modal_damping")  # logarithms of readings are straight in their normalised parameters
 STRAIGHT = 3
-COARSE_MESH = {"elements_per_span": 5, "elements_per_bend": 20}
+COARSE_MESH = {"elements_per_span": 8, "elements_per_bend": 32}
 REACH = 6.0  # the reduced basis for readings reaches to so many times the excited band
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from vibroimpact.config import check_config
 from vibroimpact.contraction import CONTRACTION_LIMIT, contact_contraction
 from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach
+from vibroimpact.discrepancy.attach import attach, with_channel_points
 from vibroimpact.discrepancy.features import feature_layout, record_features
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.linear_record import LinearRecord
@@ -26,6 +26,7 @@ class Workbench:
     """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s where given."""
 
     def __init__(self, config, campaign, longest_s=None):
+        config = with_channel_points(config, campaign)
         self.config, self.campaign = config, campaign
         self.signals = signals_of(campaign, longest_s)
         self.bare = attach(config, campaign)
