@@ -5,6 +5,7 @@ import json
 import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
+from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import ROUNDS, own, placed, refine, started
@@ -31,7 +32,7 @@ def null_part(run, part, path):
         responses = bench.respond(model, runs)
         for prefix, window in (("", bench), ("screened_", run.screening_bench)):
             arrays[prefix + name] = window.noisy_features(runs, responses).reshape(len(records), seeds, -1)
-    store.save(path, records=records, **arrays)
+    store.save(path, records=records, **described(bench, records), **arrays)
 
 
 def candidate_path(run, candidate, path, quick=False):
@@ -39,18 +40,6 @@ def candidate_path(run, candidate, path, quick=False):
     bench = run.screening_bench
     found = simulate_path(bench, candidate, candidate.design(quick), run.prepared.scales, contact_records(bench))
     store.save_empty(path) if found is None else store.save(path, **store.path_arrays(found))
-
-
-def known_paths(files, moved):
-    """Return {Candidate: Path} of {candidate name: file}, their features moved by (record, feature): from another campaign, or from shorter records."""
-    out = {}
-    for name, file in files.items():
-        arrays = store.load(file)
-        if arrays is not None:
-            path = store.path_of(arrays)
-            path.features = path.features + moved
-            out[candidate_named(name)] = path
-    return out
 
 
 def screening(run, path, quick=False):

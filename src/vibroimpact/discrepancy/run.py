@@ -5,7 +5,8 @@ from functools import cached_property
 from pathlib import Path
 
 from vibroimpact.config import check_config
-from vibroimpact.discrepancy import jobs, store
+from vibroimpact.discrepancy import store
+from vibroimpact.discrepancy.bank import Source, known_paths
 from vibroimpact.discrepancy.prepared import Prepared, workbench
 
 
@@ -72,17 +73,18 @@ class Run:
     @cached_property
     def screened_paths(self):
         """Return {Candidate: Path} of what was screened."""
-        return self._paths(self.screening_null)
+        return self._paths(self.screening_bench, self.screening_null)
 
     @cached_property
     def paths(self):
         """Return {Candidate: Path} of what was screened, moved to all that is compared."""
-        return self._paths(self.null)
+        return self._paths(self.bench, self.null)
 
     def _bench(self, seconds):
         return workbench(self.config, self.campaign, self.prepared, seconds)
 
-    def _paths(self, target):
-        """Return {Candidate: Path}, moved by the difference of the null of what was simulated to the null `target`."""
-        source = store.null_from(self.screening_bench, self.bank_nulls, "screened_") if self.bank_nulls else self.screening_null
-        return jobs.known_paths(dict(zip(self.candidates, self.path_files, strict=True)), target.mean - source.mean)
+    def _paths(self, bench, null):
+        """Return {Candidate: Path}, brought from the screened seconds, of a bank where there is one, to a Workbench and its Null."""
+        here = not self.bank_nulls and null is self.screening_null
+        source = None if here else Source(bench, null, self.bank_nulls or self.nulls, "screened_", bool(self.bank_nulls))
+        return known_paths(dict(zip(self.candidates, self.path_files, strict=True)), source)

@@ -65,6 +65,10 @@ def finalist_of(arrays):
 
 def null_from(bench, files, prefix=""):
     """Return the Null of the files of its parts; prefix "screened_": of the seconds that are screened."""
+    return null_of(bench, load(files[0])["records"], *null_features(files, prefix))
+
+
+def null_features(files, prefix=""):
+    """Return [(record, seed, feature)] of the null and of that with other damping of unseen modes, of the files of its parts."""
     parts = [load(file) for file in files]
-    features, unseen = (np.concatenate([part[prefix + name] for part in parts], axis=1) for name in ("features", "unseen"))
-    return null_of(bench, parts[0]["records"], features, unseen)
+    return [np.concatenate([part[prefix + name] for part in parts], axis=1) for name in ("features", "unseen")]

@@ -1,11 +1,13 @@
 """A whole discrepancy run without the workflow, for campaigns by the dozen or in a hurry: the files are those of the workflow, and what exists is kept."""
 
 import multiprocessing
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from vibroimpact.config import check_config
 from vibroimpact.discrepancy import jobs
+from vibroimpact.discrepancy.bank import lacking
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.conclusion import conclude
 from vibroimpact.discrepancy.dag import NULL_PARTS, local_names
@@ -16,7 +18,7 @@ from vibroimpact.discrepancy.run import Run
 def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, workers=1, without=frozenset()):
     """Run a campaign file against a configuration in plain values; results as the workflow's in the folder.
 
-    bank: folder of another campaign of the same model, loads and gaps, whose candidates' simulations serve this one; tables {name: LinearTable}, likewise
+    bank: folder of another campaign of the same model, loads and gaps, whose candidates' simulations serve this one if it holds all that is looked at; tables {name: LinearTable}, likewise
     of its linear candidates, extended here; workers: processes; without: ids of effects that are not in the catalogue this time.
     """
     folder, config = Path(folder), check_config(values, "model")
@@ -25,12 +27,15 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
         prepare(config, campaign, longest_s, tables, without).write(prepared_file)
     prepared, names = Prepared.read(prepared_file), [name for name in local_names(values) if name.split("@")[0] not in without]
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
-    paths = [Path(bank or folder) / "paths" / f"{name}.npz" for name in names]
-    bank_nulls = [Path(bank) / "null" / file.name for file in nulls] if bank else []
-    run = Run(config, str(campaign), folder, prepared, tuple(names), tuple(paths), tuple(nulls), tuple(bank_nulls))
+    run = Run(config, str(campaign), folder, prepared, tuple(names), (), tuple(nulls), ())
     if run.refused:
         conclude(run, None, [], provenance)
         return
+    bank_nulls = [Path(bank) / "null" / file.name for file in nulls] if bank else []
+    if bank_nulls and lacking(run.bench, jobs.contact_records(run.bench), bank_nulls[0]):
+        bank, bank_nulls = None, []
+    paths = [Path(bank or folder) / "paths" / f"{name}.npz" for name in names]
+    run = replace(run, path_files=tuple(paths), bank_nulls=tuple(bank_nulls))
     _make(workers, {file: partial(jobs.null_part, run, part) for part, file in enumerate(nulls)})
     _make(workers, {file: partial(_path, run, name, quick) for name, file in zip(names, paths, strict=True)})
     screened = _kept(folder / "screening.json", lambda file: jobs.screening(run, file, quick))
