@@ -17,7 +17,7 @@ LAYERS = (
     ("__init__", "config", "config_checks", "config_name_checks", "config_place_checks", "config_schema", "config_excitation", "config_local", "config_structure", "config_types", "settings", "stages", "cases",
      "provenance", "stopwatch", "kept", "centreline", "beam", "kernels", "laws", "model"),
     ("records", "variables"),
-    ("structure", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "force_stream", "spectra", "spectra_of_case", "spectral_kernel",
+    ("structure", "matrix_files", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "force_stream", "spectra", "spectra_of_case", "spectral_kernel",
      "units", "multisine", "campaign", "campaign_checks", "campaign_faults", "campaign_linear_checks", "campaign_model_checks", "campaign_signals"),
     ("importing",),
     ("ritz", "modifications", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),

@@ -128,9 +128,10 @@ class Chain(Section):
 
 
 class Matrices(Section):
-    """A structure given by its matrices, in files (.npz, .mat or MatrixMarket .mtx); points: name -> direction -> dof, from 0.
+    """A structure given by its matrices, in files (.npz, .mat, MatrixMarket .mtx or Nastran .op4), in SI units; points: name -> direction -> dof, from 0.
 
-    In .npz and .mat files with several arrays the one named mass, stiffness or damping is taken.
+    In files with several arrays the one named mass, stiffness or damping is taken; in .op4 files also MGG, KGG, BGG, MAA, KAA, BAA and the like,
+    whose dofs are the rows of Nastran's set, in its order.
     """
 
     kind: Literal["matrices"]

@@ -1,20 +1,15 @@
 """A structure that is not a tube: masses on springs, or matrices from files, with named points."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from scipy import io, sparse
+from scipy import sparse
 
+from vibroimpact.matrix_files import MatrixFileError, read_matrix
 from vibroimpact.supports import ContactPoints, place_at_points
 
 AXES = {"x": 0, "y": 1, "z": 2}
 GROUND = "ground"
-LETTERS = {"mass": ("M", "m"), "stiffness": ("K", "k"), "damping": ("C", "c")}
-
-
-class MatrixFileError(ValueError):
-    """A matrix file that can not be used; the message names it, what it holds and the remedy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,48 +134,3 @@ def _identified(structure):
                 directions.setdefault(name, {})[axis] = AXES[axis]
     diagonal = [sparse.diags_array(values, format="csr") for values in (np.ones(len(modes)), omega**2, 2.0 * ratios * omega)]
     return {"mass": diagonal[0], "stiffness": diagonal[1], "damping": diagonal[2], "dampers": [], "directions": directions, "rows": rows}
-
-
-def read_matrix(path, name):
-    """Return the square, symmetric matrix (dof, dof) of a .npz, .mat or .mtx file as sparse; `name` chooses among several arrays.
-
-    A MatrixMarket file or a scipy.sparse .npz holds one matrix. Raises MatrixFileError.
-    """
-    path = Path(path)
-    if not path.is_file():
-        raise MatrixFileError(f"{path}: no such file: give its path from the folder where the study is run")
-    try:
-        matrix = sparse.csr_array(READERS[path.suffix.lower()](path, name), dtype=float)
-    except KeyError as error:
-        raise MatrixFileError(f"{path}: {error.args[0] if path.suffix.lower() in READERS else 'ends in none of .npz, .mat, .mtx'}") from error
-    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise MatrixFileError(f"{path}: {name} is {matrix.shape}, a square matrix is needed")
-    largest = abs(matrix).max()
-    if abs(matrix - matrix.T).max() > 1e-8 * largest:
-        raise MatrixFileError(f"{path}: {name} is not symmetric: give both halves, in SI units")
-    return (0.5 * (matrix + matrix.T)).tocsr()
-
-
-def _npz(path, name):
-    with np.load(path, allow_pickle=False) as arrays:
-        if "format" in arrays.files:
-            return sparse.load_npz(path)
-        return arrays[_choose(arrays.files, name)]
-
-
-def _mat(path, name):
-    arrays = {key: value for key, value in io.loadmat(path).items() if not key.startswith("__")}
-    return arrays[_choose(list(arrays), name)]
-
-
-def _choose(names, name):
-    """The array called mass (or M, m) and the like, or the only one."""
-    for wanted in (name, *LETTERS[name]):
-        if wanted in names:
-            return wanted
-    if len(names) == 1:
-        return names[0]
-    raise KeyError(f"holds {', '.join(names)}: name the {name} matrix '{name}'")
-
-
-READERS = {".npz": _npz, ".mat": _mat, ".mtx": lambda path, name: io.mmread(path)}

@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 from vibroimpact.cases import all_cases
 from vibroimpact.config import ConfigError, check_config
 from vibroimpact.local_elements import split_damping
-from vibroimpact.point_structure import MatrixFileError, build_point_structure, read_matrix
+from vibroimpact.matrix_files import MatrixFileError, read_matrix
+from vibroimpact.point_structure import build_point_structure
 from vibroimpact.reduction import build_model
 from vibroimpact.simulate import simulate_cases
 
@@ -63,9 +64,10 @@ def test_matrices_that_can_not_be_used_are_refused(tmp_path):
     np.savez(tmp_path / "two.npz", first=MASS, second=MASS)
     np.savez(tmp_path / "skew.npz", M=np.array([[1.0, 2.0], [0.0, 1.0]]))
     np.savez(tmp_path / "long.npz", M=np.ones((2, 3)))
+    io.mmwrite(tmp_path / "complex.mtx", sparse.csr_array(MASS * 1j))
     (tmp_path / "text.txt").write_text("1")
     for name, part in (("two.npz", "name the mass matrix 'mass'"), ("skew.npz", "not symmetric"), ("long.npz", "a square matrix is needed"),
-                       ("text.txt", "none of .npz, .mat, .mtx"), ("no.npz", "no such file")):  # fmt: skip
+                       ("text.txt", "none of .npz, .mat, .mtx, .op4"), ("complex.mtx", "mass is complex"), ("no.npz", "no such file")):  # fmt: skip
         with pytest.raises(MatrixFileError, match=part):
             read_matrix(tmp_path / name, "mass")
 
