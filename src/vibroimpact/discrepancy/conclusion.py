@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 import yaml
 
-from vibroimpact.discrepancy import jobs, mapping, misfit, priors, verdict
+from vibroimpact.discrepancy import jobs, mapping, misfit, power_balance, priors, verdict
 from vibroimpact.discrepancy.by_level import by_level
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.invariances import broken_invariances
@@ -81,7 +81,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "ranking": [{"ids": row["ids"].split("+"), "heldout_score": row["heldout_score"], "closed_fraction": row["closed_fraction"], "location": row["location"]}
                     for row in ranking],
         "next_measurement": next_measurement(decision.ambiguity),
-        "broken_invariances": broken_invariances(bench, null, prepared),
+        "broken_invariances": broken_invariances(bench, null, prepared, power_balance.broken(before_bench, before.shown)),
         "regions": mapping.regions(before_bench, difference, z, chosen_cells),
         "misfit": gaps, "p_global_before": p_before, "p_global_after": p_after,
         "checks": contract_checks(prepared.checks) + bounds(decision, prepared),

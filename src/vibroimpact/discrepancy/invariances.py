@@ -7,8 +7,9 @@ from vibroimpact.discrepancy import priors
 PARITY_Z, MIRROR_Z, SCALING_DB = 3.5, 4.0, 1.0
 
 
-def broken_invariances(bench, null, prepared):
-    """Return [T1, ...]: the tests that fail beyond the seeds' scatter. T1 linearity below contact, T2 scaling, T3 parity, T4 mirror, T6 stationarity."""
+def broken_invariances(bench, null, prepared, power=False):
+    """Return [T1, ...]: the tests that fail beyond the seeds' scatter. T1 linearity below contact, T2 scaling, T3 parity, T4 mirror, T5 power balance
+    (power: see power_balance.broken), T6 stationarity."""
     layout, measured = bench.layout, bench.measured_features[null.records]
     spread = np.sqrt(null.seed_variance * (1.0 + 1.0 / null.seeds) + np.array([priors.FEATURE_SD[kind] for kind in layout.kind]) ** 2)
     z = (measured - null.mean) / spread
@@ -21,6 +22,8 @@ def broken_invariances(bench, null, prepared):
         out.append("T3")
     if np.abs(z[:, (layout.kind == "co") | (layout.kind == "quad")]).max(initial=0.0) > MIRROR_Z:
         out.append("T4")
+    if power:
+        out.append("T5")
     if any(row["check"] == "stationarity" and row["level"] != "pass" for row in prepared.checks):
         out.append("T6")
     return out
