@@ -86,12 +86,21 @@ def test_a_loss_on_held_out_records_is_a_veto(decided):
 
 
 def test_a_linear_effect_stands_beside_what_contact_adds(decided):
-    adopted = {"name": "added_mass@apex", "gain": 90.0}
+    adopted = {"name": "added_mass@apex", "unit": [0.4], "gain": 90.0}
     rows = [adopted, {"name": "mode_frequency_error@mode_1", "gain": 85.0}, {"name": "root_stiffness@roots", "gain": 40.0}]
     alone = decided([], adopted=adopted, rest=EXPLAINED, linear=rows)
     assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass"], ["mode_frequency_error"]])
     both = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
     assert both.ambiguity == [["added_mass", "dry_friction"]]
+
+
+def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_the_linear_one(decided):
+    adopted = {"name": "fluid_added_mass_damping@tube", "unit": [0.1, 0.2], "gain": 40.0}
+    beside, alone = finalist("quadratic_drag@tube", 310.0), finalist("quadratic_drag@tube@alone", 304.0)
+    both = decided([beside, alone], adopted=adopted, linear=[adopted])
+    assert (both.verdict, both.ambiguity, both.chosen) == ("named", [["quadratic_drag"]], alone)
+    worse = decided([beside, finalist("quadratic_drag@tube@alone", 280.0)], adopted=adopted, linear=[adopted])
+    assert worse.ambiguity == [["fluid_added_mass_damping", "quadratic_drag"]]
 
 
 def test_a_parameter_is_told_level_by_level(monkeypatch):

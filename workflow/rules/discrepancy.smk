@@ -10,8 +10,8 @@ BANK_NULLS = [f"{BANK}/null/{part}.npz" for part in range(NULL_PARTS)] if BANK e
 
 wildcard_constraints:
     part=r"[0-9]+",
-    candidate=r"[a-z_]+@[A-Za-z0-9_.-]+",
-    pair=r"[a-z_]+@[A-Za-z0-9_.-]+(\+[a-z_]+@[A-Za-z0-9_.-]+)?",
+    candidate=r"[a-z_]+@[A-Za-z0-9_.-]+(@alone)?",
+    pair=r"[a-z_]+@[A-Za-z0-9_.-]+(@alone)?(\+[a-z_]+@[A-Za-z0-9_.-]+)?",
 
 
 rule discrepancy_prepare:

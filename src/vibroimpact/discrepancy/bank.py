@@ -8,7 +8,7 @@ import numpy as np
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import store
 from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.candidates import candidate_named, in_place_of_adopted
 from vibroimpact.discrepancy.features import COARSE
 
 
@@ -49,37 +49,47 @@ class Source:
 
     def brought(self, path):
         """Return a Path of the source as one of this campaign."""
-        readings = [self._reading(row) for row in path.readings] if self.bank else path.readings
+        readings = [self._reading(row, self.bench.bare) for row in path.readings] if self.bank else path.readings
         return replace(path, features=self._here(path.features) - self.mean + self.null.mean, readings=readings)
+
+    def unmoved(self, path):
+        """Return a Path of a bank as one of this campaign in the place of the linear effect that it adopted: there is no null of that to move it by."""
+        return replace(path, features=self._here(path.features), readings=[self._reading(row, self.bare) for row in path.readings])
 
     @cached_property
     def bare(self):
         """Return the bare model with nothing adopted."""
         return attach(self.bench.config, self.bench.campaign)
 
-    def _reading(self, reading):
-        """Return a Reading of a variant with the channels and modes of this campaign: what it changes, on the model that holds what was adopted."""
-        if reading is None or not self.bench.linear_stage:
+    def _reading(self, reading, model):
+        """Return a Reading of a variant with the channels and modes of this campaign: what it changes, on a model."""
+        if not self.bench.linear_stage or reading is None and model is self.bench.bare:
             return None
+        if reading is None:
+            return linear.reading_of_model(model, self.bench.measured_fit.modes)
         bench, modes = self.bench, self.bench.measured_fit.modes
         common = np.intersect1d(modes, reading.modes)
         here, there = np.searchsorted(modes, common), [list(reading.modes).index(mode) for mode in common]
         was = linear.reading_of_model(self.bare, common)
-        now = linear.reading_of_model(bench.bare, modes)
+        now = linear.reading_of_model(model, modes)
         for name in ("log_frequency", "log_damping"):
             getattr(now, name)[here] += getattr(reading, name)[there] - getattr(was, name)
         now.participation[:, here] += reading.participation[self.channels][:, there] - was.participation
         return replace(now, residual=reading.residual[self.channels])
 
 
-def known_paths(files, source=None):
-    """Return {Candidate: Path} of {candidate name: file}, brought here from a Source where one is given."""
+def known_paths(files, source=None, prepared=None):
+    """Return {Candidate: Path} of {candidate name: file}, brought here from a Source where one is given, for the campaign of a Prepared."""
     out = {}
     for name, file in files.items():
-        arrays = store.load(file)
-        if arrays is not None:
-            path = store.path_of(arrays)
-            out[candidate_named(name)] = path if source is None else source.brought(path)
+        arrays = store.load(file) or {}
+        for alone, prefix in ((False, ""), (True, store.ALONE)):
+            path = store.path_of(arrays, prefix)
+            if path is not None:
+                candidate = candidate_named(name)
+                out[replace(candidate, alone=alone)] = path if source is None else source.brought(path)
+                if source is not None and source.bank and in_place_of_adopted(prepared, candidate):
+                    out[replace(candidate, alone=True)] = source.unmoved(path)
     return out
 
 

@@ -1,12 +1,13 @@
 """Candidates: an effect at a place, its parameters between 0 and 1, and what it does to the features of a campaign."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vibroimpact.discrepancy.measuring import measuring_of, places
 from vibroimpact.effects.registry import EFFECTS
 
+ALONE = "@alone"
 SCREENED = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
 ALONG = 0.2  # of a searched range
 LOWEST = 0.05  # of a range searched in its logarithm: as good as nothing
@@ -16,15 +17,16 @@ QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect at a location; its name is effect@location."""
+    """An effect at a location; its name is effect@location, and effect@location@alone where it stands in the place of the linear effect that was adopted."""
 
     effect_id: str
     location: str
+    alone: bool = False
 
     @property
     def name(self):
-        """Return effect@location."""
-        return f"{self.effect_id}@{self.location}"
+        """Return effect@location, or effect@location@alone."""
+        return f"{self.effect_id}@{self.location}" + ALONE * self.alone
 
     @property
     def effect(self):
@@ -91,6 +93,7 @@ class PairEffect:
 
     parameters: tuple
     linear: bool = False
+    below_contact: bool = False
     measured: bool = False
     aliases: tuple = ()
 
@@ -106,6 +109,11 @@ class Pair:
     def name(self):
         """Return effect@location+effect@location."""
         return f"{self.first.name}+{self.second.name}"
+
+    @property
+    def alone(self):
+        """Return whether the pair stands in the place of what was adopted."""
+        return self.first.alone
 
     @property
     def effect_id(self):
@@ -150,8 +158,13 @@ class Pair:
 
 def candidate_named(name):
     """Return the Candidate or Pair of a name."""
-    parts = [Candidate(*part.split("@")) for part in name.split("+")]
+    parts = [Candidate(*part.removesuffix(ALONE).split("@"), part.endswith(ALONE)) for part in name.split("+")]
     return parts[0] if len(parts) == 1 else Pair(*parts)
+
+
+def in_place_of_adopted(prepared, candidate):
+    """Return whether a candidate may be what the lowest record took for a linear effect of the structure."""
+    return candidate.effect.below_contact and prepared.adopted is not None and not candidate_named(prepared.adopted["name"]).effect.measured
 
 
 def elsewhere(candidate, values):
@@ -162,7 +175,7 @@ def elsewhere(candidate, values):
 def other_places(candidate, values):
     """Return the candidate at every other place of its kind, where it was at one of several."""
     locations = candidate.effect.locations(values)
-    return [] if "all" in locations else [Candidate(candidate.effect_id, place) for place in locations if place != candidate.location]
+    return [] if "all" in locations else [replace(candidate, location=place) for place in locations if place != candidate.location]
 
 
 def linear_candidates(values, names, held, modes):

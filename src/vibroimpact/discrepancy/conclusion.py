@@ -65,7 +65,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
         model = whole.model()
         if decision.chosen is not None:
             chosen = decision.chosen
-            model = whole.model(chosen.candidate.variant(whole.values, chosen.candidate.physical(chosen.unit, prepared.scales)))
+            model = whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, prepared.scales)))
         after = verified(whole, model, seeds, bench)
         p_after = mapping.global_p(bench, null, measured, after.compared[null.records])
     chosen_cells = misfit.counted(whole)
@@ -138,7 +138,7 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured):
     rows, seen = [], set()
     prefix = [] if prepared.adopted is None else [candidate_named(prepared.adopted["name"]).effect_id]
     for row in found:
-        ids = [*prefix, *row.candidate.effect_id.split("+")]
+        ids = [*([] if row.candidate.alone else prefix), *row.candidate.effect_id.split("+")]
         gain, on_fit, held_out = totals[row.candidate.name]
         location = "+".join(part.split("@")[1] for part in row.candidate.name.split("+"))
         rows.append({"ids": "+".join(ids), "location": location, "fit_score": on_fit, "heldout_score": held_out,
@@ -195,7 +195,7 @@ def updated_model(bench, decision, prepared):
     """Return the text of the completed configuration: effects, corrected modes; gains of channels as a comment, for they are not of the model."""
     values = bench.values
     if decision.chosen is not None:
-        values = decision.chosen.candidate.variant(values, decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales))
+        values = bench.variant(decision.chosen.candidate, decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales))
     if bench.nuisance is not None:
         values = with_nuisance(values, bench.nuisance, bench.bare)
     lines = ["# The model with what the campaign showed to be missing. Corrections of modes are in mode_frequency_factors and damping."]

@@ -143,7 +143,7 @@ def _to_judge(candidate, unit, simulated, scales):
 def judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed):
     """Return the Finalist at normalised parameters (parameter,), by `seeds` runs of every record."""
     physical = candidate.physical(unit, scales)
-    model = bench.model(candidate.variant(bench.values, physical))
+    model = bench.model(bench.variant(candidate, physical))
     runs = bench.runs(null.records, seeds, first_seed)
     features = bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1)
     scores = direct_scores(bench, null, measured, features.mean(axis=1))

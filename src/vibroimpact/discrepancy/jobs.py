@@ -1,12 +1,13 @@
 """The jobs of a discrepancy run, each from files to a file: null parts, candidates, finalists, pairs."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
-from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere
+from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import ROUNDS, own, placed, refine, started
 from vibroimpact.discrepancy.null import unseen_damping
@@ -37,9 +38,12 @@ def null_part(run, part, path):
 
 def candidate_path(run, candidate, path, quick=False):
     """Simulate a candidate at the points of its design."""
-    bench = run.screening_bench
-    found = simulate_path(bench, candidate, candidate.design(quick), run.prepared.scales, contact_records(bench))
-    store.save_empty(path) if found is None else store.save(path, **store.path_arrays(found))
+    bench, arrays = run.screening_bench, {}
+    for alone in (False, True) if in_place_of_adopted(run.prepared, candidate) else (False,):
+        found = simulate_path(bench, replace(candidate, alone=alone), candidate.design(quick), run.prepared.scales, contact_records(bench))
+        if found is not None:
+            arrays |= {alone * store.ALONE + name: value for name, value in store.path_arrays(found).items()}
+    store.save(path, **arrays) if arrays else store.save_empty(path)
 
 
 def screening(run, path, quick=False):

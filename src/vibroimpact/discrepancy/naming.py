@@ -71,7 +71,7 @@ def finalists(screened, count=priors.FINALISTS):
     best = {}
     for row in screened:
         if row.score > 0.0:
-            best.setdefault(row.candidate.effect_id, row)
+            best.setdefault((row.candidate.effect_id, row.candidate.alone), row)
     chosen = list(best.values())
     chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
     if chosen:

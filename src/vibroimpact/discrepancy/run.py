@@ -87,4 +87,4 @@ class Run:
         """Return {Candidate: Path}, brought from the screened seconds, of a bank where there is one, to a Workbench and its Null."""
         here = not self.bank_nulls and null is self.screening_null
         source = None if here else Source(bench, null, self.bank_nulls or self.nulls, "screened_", bool(self.bank_nulls))
-        return known_paths(dict(zip(self.candidates, self.path_files, strict=True)), source)
+        return known_paths(dict(zip(self.candidates, self.path_files, strict=True)), source, self.prepared)

@@ -50,7 +50,7 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
     kept, means, readings = [], [], []
     for number, unit in enumerate(np.atleast_2d(parameters)):
         physical = candidate.physical(unit, scales)
-        values = candidate.variant(bench.values, physical)
+        values = bench.variant(candidate, physical)
         runs = bench.runs(records, seeds, first_seed + 50 * number)
         low = bench.linear_stage and not candidate.effect.measured
         try:

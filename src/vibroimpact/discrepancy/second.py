@@ -21,7 +21,7 @@ def pairs(bench, null, measured, found, paths):
     for first in found[:FIRSTS]:
         moved = compressed(first.mean - null.mean, bench.layout)
         for candidate, path in paths.items():
-            if candidate.effect_id == first.candidate.effect_id:
+            if candidate.effect_id == first.candidate.effect_id or candidate.alone:
                 continue
             for unit, mean, reading in zip(path.parameters, path.features, path.readings, strict=True):
                 both = null.mean + uncompressed(moved + compressed(mean - null.mean, bench.layout), bench.layout)

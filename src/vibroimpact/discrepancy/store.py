@@ -12,6 +12,7 @@ from vibroimpact.discrepancy.null import null_of
 from vibroimpact.discrepancy.nuisance import Reading
 from vibroimpact.discrepancy.screening import Path
 
+ALONE = "alone_"  # before the names of arrays of a path without the linear effect that was adopted
 EMPTY = "empty"  # what a job writes where there is nothing to do
 
 
@@ -41,8 +42,11 @@ def path_arrays(path):
     return {"parameters": path.parameters, "features": path.features, "seeds": path.seeds, "readings": np.array(json.dumps(readings))}
 
 
-def path_of(arrays):
-    """Return the screening.Path of arrays."""
+def path_of(arrays, prefix=""):
+    """Return the screening.Path of arrays whose names begin with a prefix, None where there are none."""
+    if f"{prefix}parameters" not in arrays:
+        return None
+    arrays = {name.removeprefix(prefix): value for name, value in arrays.items() if name.startswith(prefix)}
     readings = [None if row is None else Reading(*[np.array(row[name]) for name in ("modes", "log_frequency", "log_damping", "participation", "residual")])
                 for row in json.loads(str(arrays["readings"]))]  # fmt: skip
     return Path(arrays["parameters"], arrays["features"], arrays["seeds"], readings)

@@ -35,18 +35,33 @@ def decide(bench, null, prepared, found, threshold, p_before):
         return Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
     if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, null, best.mean, measured).min() < priors.EXPLAINED_Z:
         best = doubles[0]
+    best = simpler(best, found, totals, prepared)
     left = naming.explained(bench, null, best.mean, measured)
     alike = doubles if isinstance(best.candidate, Pair) else singles
     sufficient = {row.candidate.name for row in alike if naming.explained(bench, null, row.mean, measured).min() > priors.EXPLAINED_Z}
-    sets = local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient)
-    together = [sorted({*one, *other}) for one in (linear or [[]]) for other in sets]
+    together = whole_sets(linear, local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient))
     share = closure(bench, null, best, measured)
     if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
         verdict = "partly_explained" if share > priors.PARTLY else "unknown"
         if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
-            together += [sorted({*one, singles[0].candidate.effect_id}) for one in (linear or [[]])]
+            together += whole_sets(linear, [([singles[0].candidate.effect_id], singles[0].candidate.alone)])
         return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
+
+
+def simpler(best, found, totals, prepared):
+    """Return the Finalist of one effect in the place of the adopted one that is as good as the best beside it, or the best: fewer effects are the better answer."""
+    if prepared.adopted is None or best.candidate.alone:
+        return best
+    spared = priors.PARAMETER_COST * len(prepared.adopted["unit"]) + priors.AMBIGUOUS
+    alone = [row for row in found if row.candidate.alone and totals[row.candidate.name][0] > totals[best.candidate.name][0] - spared]
+    return max(alone, key=lambda row: totals[row.candidate.name][0]) if alone else best
+
+
+def whole_sets(linear, sets):
+    """Return [[ids]]: every set [([ids], alone)] of what contact levels tell, with every linear effect [[id]] of the lowest record, or in its place."""
+    out = [sorted({*one, *ids}) for ids, alone in sets for one in ([[]] if alone or not linear else linear)]
+    return [list(row) for row in dict.fromkeys(map(tuple, out))]
 
 
 def idle(found, sizes):
@@ -70,16 +85,15 @@ def linear_sets(prepared):
 
 
 def local_sets(best, totals, names, sufficient=frozenset()):
-    """Return [[ids]] of what the contact levels can not tell apart, the best first; sufficient: names of those that leave nothing to be explained."""
-    out = [sorted(best.effect_id.split("+"))]
+    """Return [([ids], alone)] of what the contact levels can not tell apart, the best first; sufficient: names of those that leave nothing to be explained."""
     if isinstance(best, Candidate):
-        out += [[candidate_named(name).effect_id] for name in naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)]
-        if best.effect_id == "gap" and best.location == "all":
-            out.append(["sensor_gain"])  # force and all responses scaled alike are a gap scaled: an exact alias
+        alike = naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)
     else:
-        near = totals[best.name][0] - priors.AMBIGUOUS
-        out += [sorted(candidate_named(name).effect_id.split("+")) for name in names if totals[name][0] > near]
-    return [list(row) for row in dict.fromkeys(map(tuple, out))]
+        alike = [name for name in names if totals[name][0] > totals[best.name][0] - priors.AMBIGUOUS]
+    out = [(sorted(candidate.effect_id.split("+")), candidate.alone) for candidate in (best, *map(candidate_named, alike))]
+    if isinstance(best, Candidate) and best.effect_id == "gap" and best.location == "all":
+        out.append((["sensor_gain"], False))  # force and all responses scaled alike are a gap scaled: an exact alias
+    return out
 
 
 def closure(bench, null, found, measured):
@@ -99,7 +113,7 @@ def vetoed(total, share):
 def effects_of(prepared, decision, sizes):
     """Return the rows of `effects` of verdict.json."""
     rows = []
-    if prepared.adopted is not None:
+    if prepared.adopted is not None and not (decision.chosen is not None and decision.chosen.candidate.alone):
         rows.append(_effect(candidate_named(prepared.adopted["name"]), np.array(prepared.adopted["unit"]), np.atleast_2d(prepared.adopted["interval"]), sizes))
     if decision.chosen is not None:
         chosen = decision.chosen

@@ -35,7 +35,7 @@ class Workbench:
         self.forces = Forces(self.signals.force, self.schedule)
         self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
-        self.values = config.model_dump(mode="json")
+        self.values = self.given = config.model_dump(mode="json")
 
     def rebase(self, values):
         """Take another configuration, in plain values, for the bare model: an effect that was found belongs to it from here on."""
@@ -43,6 +43,10 @@ class Workbench:
         self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
         for name in ("measured_fit", "measured_reading", "low_response"):
             self.__dict__.pop(name, None)
+
+    def variant(self, candidate, physical):
+        """Return the configuration in plain values with a candidate: on what was adopted, or in its place."""
+        return candidate.variant(self.given if candidate.alone else self.values, physical)
 
     @property
     def gains(self):

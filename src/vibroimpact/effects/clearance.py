@@ -20,6 +20,7 @@ EFFECT = Effect(
         Parameter("stiffness", "N/m", 0.1, 1000.0, None, per="tube_translation", design=(0.3, 0.6, 0.9)),
     ),
     apply=apply,
+    below_contact=True,
     broken=("T1", "T2"),
     aliases=("cubic_stiffness",),
     locations=places.masses_and_springs,

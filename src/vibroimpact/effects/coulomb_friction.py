@@ -21,6 +21,7 @@ EFFECT = Effect(
         Parameter("force", "N", 0.003, 2.0, 0.0, per="load"),
     ),
     apply=apply,
+    below_contact=True,
     broken=("T1", "T2", "T5"),
     aliases=("saturation_stiffness", "dry_friction"),
     locations=places.masses_and_springs,

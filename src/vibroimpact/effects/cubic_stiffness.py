@@ -17,6 +17,7 @@ EFFECT = Effect(
         Parameter("coefficient", "N/m^3", 0.01, 300.0, 0.0, per="cubic"),
     ),
     apply=apply,
+    below_contact=True,
     broken=("T1", "T2"),
     aliases=("clearance",),
     locations=places.masses_and_springs,

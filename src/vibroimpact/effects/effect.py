@@ -33,7 +33,7 @@ class Effect:
     apply(values, parameters, location) -> values: values are a configuration in plain values (Config.model_dump), which are not changed; parameters
     {name: value in SI}. locations(values) -> names of the places that the effect may sit at. broken: the invariances it breaks;
     aliases: ids of effects that look alike; source: where the law is from; linear: it acts in the linear structure below contact too, and keeps
-    it linear; measured: it changes what was measured, not the model (see measurement.py); needs: what the campaign must hold.
+    it linear; below_contact: it is not linear, yet acts where nothing touches, and may be taken for a linear effect there; measured: it changes what was measured, not the model (see measurement.py); needs: what the campaign must hold.
     """
 
     id: str
@@ -45,6 +45,7 @@ class Effect:
     broken: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
     linear: bool = False
+    below_contact: bool = False
     measured: bool = False
     needs: tuple[str, ...] = ()
 

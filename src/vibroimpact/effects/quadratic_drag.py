@@ -25,6 +25,7 @@ EFFECT = Effect(
         Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag"),
     ),
     apply=apply,
+    below_contact=True,
     broken=("T1", "T2", "T5"),
     aliases=("modal_damping",),
     locations=lambda values: ["tube"] if values["structure"]["kind"] in places.TUBES else [],

@@ -17,6 +17,7 @@ EFFECT = Effect(
         Parameter("coefficient", "N/m^2", -0.15, 0.15, 0.0, per="quadratic", log=False, design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0)),
     ),
     apply=apply,
+    below_contact=True,
     broken=("T1", "T2", "T3"),
     aliases=("support_offset", "preload"),
     locations=places.masses_and_springs,

@@ -19,6 +19,7 @@ EFFECT = Effect(
         Parameter("limit", "N", 0.02, 2.0, 0.0, per="load", design=(0.2, 0.5, 0.8)),
     ),
     apply=apply,
+    below_contact=True,
     broken=("T1", "T2"),
     aliases=("coulomb_friction",),
     locations=places.masses_and_springs,
