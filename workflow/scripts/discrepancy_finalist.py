@@ -2,11 +2,8 @@
 
 import sys
 
-from vibroimpact.discrepancy.jobs import finalist, read_json, rival_of
+from vibroimpact.discrepancy.jobs import finalist, read_json
 from vibroimpact.discrepancy.run import Run
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-run = Run.opened(snakemake)
-name = snakemake.wildcards.candidate
-screened = read_json(snakemake.input.screening)
-finalist(run, name, screened["finalists"][name], snakemake.output.finalist, rival=rival_of(name, screened))
+finalist(Run.opened(snakemake), snakemake.wildcards.candidate, read_json(snakemake.input.screening), snakemake.output.finalist)

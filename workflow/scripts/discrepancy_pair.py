@@ -6,6 +6,4 @@ from vibroimpact.discrepancy.jobs import finalist, read_json
 from vibroimpact.discrepancy.run import Run
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-run = Run.opened(snakemake)
-name = snakemake.wildcards.pair
-finalist(run, name, read_json(snakemake.input.pairs)["pairs"][name], snakemake.output.pair)
+finalist(Run.opened(snakemake), snakemake.wildcards.pair, read_json(snakemake.input.pairs), snakemake.output.pair)

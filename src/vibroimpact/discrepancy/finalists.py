@@ -14,7 +14,6 @@ ENOUGH = 2  # this close is close enough where no parameter is known better
 ROUNDS = 4  # at most
 START_STEP, STARTS, NEW = 0.12, 3, 0.01
 TRIED = 2  # points that are tried at other places
-LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
 
@@ -65,12 +64,12 @@ def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500)
     return kept
 
 
-def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, rival=-np.inf, seeds=priors.FINAL_SEEDS, first_seed=3000):
+def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, least=-np.inf, seeds=priors.FINAL_SEEDS, first_seed=3000):
     """Return the Finalist of a candidate whose Path has been screened, None where it can not be simulated.
 
-    fit (record,) bool: the records its parameters are fitted to; rival: gain of log likelihood of the best other candidate in the screening.
+    fit (record,) bool: the records its parameters are fitted to; least: gain of log likelihood below which a closer look is
+    not worth its runs.
     """
-    start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
     level, centre = 0, _best_simulated(bench, null, measured, path, fit)
     for number in range(rounds):
         points = _around(centre, STEPS[level], candidate.periodic)[0 if number else 1 :]  # the first centre is known
@@ -80,7 +79,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, r
         if np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level]):
             level += 1  # it stayed within what was looked at: look closer
         centre = found.unit
-        losing = _scores(bench, null, measured, path, np.ones(len(measured), bool)).max() - start < LOSING * rival
+        losing = gains_of(bench, null, measured, path).max() < least
         if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
     found = _with_whole_interval(bench, null, measured, candidate, path, fit, found)
@@ -102,6 +101,12 @@ def _scores(bench, null, measured, path, fit):
     """Return (point,) the log likelihood of what was measured at the points of a path."""
     return np.array([direct_scores(bench, null, measured, mean)[fit].sum() + linear_score(bench, reading)
                      for mean, reading in zip(path.features, path.readings, strict=True)])  # fmt: skip
+
+
+def gains_of(bench, null, measured, path):
+    """Return (point,) the gain of log likelihood over the null, of all records, at the points of a path."""
+    start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
+    return _scores(bench, null, measured, path, np.ones(len(measured), bool)) - start
 
 
 def _best_simulated(bench, null, measured, path, fit):

@@ -9,7 +9,7 @@ from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import ROUNDS, own, placed, refine, started
+from vibroimpact.discrepancy.finalists import ROUNDS, gains_of, own, placed, refine, started
 from vibroimpact.discrepancy.null import unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.records import read_text, write_text
@@ -64,31 +64,50 @@ def screening(run, path, quick=False):
 QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS, PAIR_ROUNDS = 3, 1, 4, 3
 
 
-def rival_of(name, screened):
-    """Return the best screening score of the candidates that are not of the name's effects; screened: content of the screening's file."""
+def least_gain(name, chosen):
+    """Return the gain of log likelihood below which a closer look at a candidate is not worth its runs; chosen: content of the file that named it.
+
+    A pair must be better than the best single effect; a finalist not far behind the best of the other effects, as they were screened.
+    """
+    if "pairs" in chosen:
+        return chosen["least"]
     effects = {part.split("@")[0] for part in name.split("+")}
-    return max((row["score"] for row in screened["ranked"] if row["name"].split("@")[0] not in effects), default=-np.inf)
+    return LOSING * max((row["score"] for row in chosen["ranked"] if row["name"].split("@")[0] not in effects), default=-np.inf)
 
 
-def finalist(run, name, unit, path, quick=False, rival=-np.inf):
-    """Refine one finalist by direct simulation, or a pair from its start; rival: see finalists.refine."""
+def finalist(run, name, chosen, path, quick=False):
+    """Refine one finalist by direct simulation, or a pair from its start; chosen: content of the file that named it."""
     bench, null, paths, sizes = run.bench, run.null, run.paths, run.prepared.scales
     candidate, measured = candidate_named(name), bench.measured_features[null.records]
+    unit, least = np.array(chosen["pairs" if "pairs" in chosen else "finalists"][name]), least_gain(name, chosen)
     fit, known = naming.fit_mask(bench, null), paths.get(candidate) if isinstance(candidate, Candidate) else None
     if known is None:
-        known = started(bench, null, candidate, np.array(unit), sizes)
+        known = started(bench, null, candidate, unit, sizes)
     elif not run.simulated_here:
-        known = own(bench, null, measured, candidate, known, np.array(unit), sizes, fit)
+        known = own(bench, null, measured, candidate, known, unit, sizes, fit)
+        least *= longer(bench, null, measured, known, next(row["score"] for row in chosen["ranked"] if row["name"] == name))
     if known is None:
         store.save_empty(path)
         return
+    seeds = QUICK_SEEDS if quick else priors.FINAL_SEEDS
     rounds = QUICK_ROUNDS if quick else ROUNDS if isinstance(candidate, Candidate) else PAIR_ROUNDS
-    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, rival=rival, seeds=QUICK_SEEDS if quick else priors.FINAL_SEEDS)
+    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, least=least, seeds=seeds)
     if found is not None and isinstance(candidate, Candidate) and not quick:
         other, there = placed(bench, null, measured, candidate, found.path, sizes, fit)
         if other is not candidate:
-            found = refine(bench, null, measured, other, there, sizes, fit, rounds=rounds, rival=rival) or found
+            found = refine(bench, null, measured, other, there, sizes, fit, rounds=rounds, least=least, seeds=seeds) or found
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
+
+
+def longer(bench, null, measured, path, screened):
+    """Return by how much gains grow from what was screened (a candidate's score) to what is compared (its Path there): 1 to LONGER."""
+    if path is None or screened <= 0.0:
+        return 1.0
+    return float(np.clip(gains_of(bench, null, measured, path).max() / screened, 1.0, LONGER))
+
+
+LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
+LONGER = 3.0
 
 
 def known_finalists(files):
@@ -106,19 +125,21 @@ def ordered(bench, null, found):
 
 def pairs(run, files, screened, path, quick=False):
     """Write the pairs to simulate, {pairs: {name: unit}}: none where one effect explains the measurement, or none is found at all."""
-    out, found, threshold = {}, known_finalists(files), screened["threshold"]
+    out, least, found, threshold = {}, None, known_finalists(files), screened["threshold"]
     if quick or not found:
-        write_text(json.dumps({"pairs": out}), path)
+        write_text(json.dumps({"pairs": out, "least": None}), path)
         return
     bench, null, paths = run.bench, run.null, run.paths
     found, totals = ordered(bench, null, found)
     if totals[found[0].candidate.name][0] > threshold:
         measured = bench.measured_features[null.records]
         if second.needed(naming.explained(bench, null, found[0].mean, measured)):
+            # by as few seeds as the pairs' own runs: what is judged by more seeds scores higher
+            least = float(gains_of(bench, null, measured, found[0].path).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}
-    write_text(json.dumps({"pairs": out}, indent=1), path)
+    write_text(json.dumps({"pairs": out, "least": least}, indent=1), path)
 
 
 def read_json(path):

@@ -42,7 +42,7 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     files = []
     for kind in ("finalists", "pairs"):
         chosen = screened if kind == "finalists" else _kept(folder / "pairs.json", lambda file: jobs.pairs(run, list(files), screened, file, quick))
-        made = {folder / kind / f"{name}.npz": partial(_finalist, run, name, unit, quick, jobs.rival_of(name, screened)) for name, unit in chosen[kind].items()}
+        made = {folder / kind / f"{name}.npz": partial(_finalist, run, name, chosen, quick) for name in chosen[kind]}
         _make(workers, made)
         files += made
     conclude(run, screened, files, provenance, quick)
@@ -52,8 +52,8 @@ def _path(run, name, quick, file):
     jobs.candidate_path(run, candidate_named(name), file, quick)
 
 
-def _finalist(run, name, unit, quick, rival, file):
-    jobs.finalist(run, name, unit, file, quick, rival)
+def _finalist(run, name, chosen, quick, file):
+    jobs.finalist(run, name, chosen, file, quick)
 
 
 SHARED = {}  # {file: function}: inherited by forked processes, since what the functions hold is too large to be sent
