@@ -40,13 +40,16 @@ class Candidate:
             low, high = parameter.low, parameter.high
             scaled = low * (high / low) ** value if parameter.log else low + (high - low) * value
             out[parameter.name] = float(scaled * scales[parameter.per])
-        return out
+        sizes = {parameter.name: out[parameter.name] / scales[parameter.per] for parameter in self.effect.parameters}
+        return {parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0) for parameter in self.effect.parameters}
 
     def normalised(self, physical, scales):
         """Return (parameter,) from 0 to 1 of {name: value in SI}."""
         out = []
         for parameter in self.effect.parameters:
             value, low, high = physical[parameter.name] / scales[parameter.per], parameter.low, parameter.high
+            if parameter.over:
+                value = value / physical[parameter.over] * scales[next(other.per for other in self.effect.parameters if other.name == parameter.over)]
             out.append(np.log(value / low) / np.log(high / low) if parameter.log else (value - low) / (high - low))
         return np.array(out)
 

@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, li
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
 ENOUGH = 2  # this close is close enough where no parameter is known better
 ROUNDS = 4  # at most
-START_STEP, STARTS, NEW = 0.12, 3, 0.01
+START_STEP, STARTS, NEW = 0.12, 3, 0.003
 TRIED = 2  # points that are tried at other places
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
@@ -72,13 +72,16 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     """
     level, centre = 0, _best_simulated(bench, null, measured, path, fit)
     for number in range(rounds):
-        points = _around(centre, STEPS[level], candidate.periodic)[0 if number else 1 :]  # the first centre is known
-        fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number)
+        points = _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
+        fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
+        before = _scores(bench, null, measured, path, fit).max()
         path = path if fresh is None else path.joined(fresh)
         found = _calibrated_near(bench, null, measured, candidate, path, fit)
-        if np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level]):
-            level += 1  # it stayed within what was looked at: look closer
-        centre = found.unit
+        better = _scores(bench, null, measured, path, fit).max() > before + CLEARLY
+        stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level])
+        if stayed or number and not better:
+            level += 1  # it stayed within what was looked at, or led nowhere: look closer
+        centre = found.unit if stayed or better or not number else _best_simulated(bench, null, measured, path, fit)
         losing = gains_of(bench, null, measured, path).max() < least
         if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
@@ -95,6 +98,11 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     best = max(judgements, key=lambda row: row.scores[fit].sum() + row.low)
     clearly = best.scores[fit].sum() + best.low > judgements[0].scores[fit].sum() + judgements[0].low + CLEARLY
     return best if clearly else judgements[0]
+
+
+def _unknown(points, path, periodic):
+    """Return those of points (point, parameter) that a path does not hold."""
+    return np.array([unit for unit in points if not any(np.all(_apart(unit, other, periodic) < NEW) for other in path.parameters)])
 
 
 def _scores(bench, null, measured, path, fit):

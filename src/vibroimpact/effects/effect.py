@@ -13,7 +13,8 @@ class Parameter:
 
     unit; low, high: bounds in units of the scale named `per` (a key of scales.scales, "one" for SI as it is); neutral: value without the effect in
     SI, None where the effect has no neutral limit; log: searched in its logarithm; design: values to try first, as fractions from low (0) to
-    high (1) of the searched range.
+    high (1) of the searched range; over: the parameter that this one is searched as a multiple of (the range is that of a value of 1 in its
+    scale), where the two together set what is seen.
     """
 
     name: str
@@ -24,6 +25,7 @@ class Parameter:
     per: str = "one"
     log: bool = True
     design: tuple[float, ...] = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+    over: str | None = None
 
 
 @dataclass(frozen=True)
