@@ -30,9 +30,23 @@ FIGURES = {
 
 
 # What a run is asked to look at; no key of the study.
-REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds") if name in config}
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds", "compared_s") if name in config}
+
+
+def number_asked(name):
+    """The number that --config name=NUMBER gives, None where it is not given; a sentence where it is no positive number."""
+    try:
+        value = float(REQUEST[name]) if name in REQUEST else None
+    except ValueError:
+        value = -1.0
+    if value is not None and not value > 0.0:
+        sys.exit(f"{name} = '{REQUEST[name]}': give a positive number of seconds, as in --config {name}=49")
+    return value
+
+
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
+COMPARED_S = number_asked("compared_s")
 QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
 
 

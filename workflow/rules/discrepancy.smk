@@ -22,6 +22,7 @@ rule discrepancy_prepare:
         prepared=f"{DISCREPANCY}/prepared.json",
     params:
         config=MODEL.model_dump(mode="json"),
+        compared_s=COMPARED_S,
     log:
         f"{DISCREPANCY}/logs/prepare.log",
     benchmark:

@@ -73,7 +73,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     gaps = {name: misfit.misfit_of(whole, records, chosen_cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
             {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
     difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)
-    ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured)
+    ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured, decision)
     content = {
         "verdict": decision.verdict,
         "effects": verdict.effects_of(prepared, decision, prepared.scales) if decision.verdict in ("named", "partly_explained") else [],
@@ -133,8 +133,8 @@ def verified(whole, model, seeds, bench):
     return Verified(features, compared.mean(axis=1), shown)
 
 
-def ranking_rows(bench, null, prepared, found, totals, screening, measured):
-    """Return the rows of ranking.csv: what was simulated directly, best first, then what was screened, then linear effects that were not adopted."""
+def ranking_rows(bench, null, prepared, found, totals, screening, measured, decision):
+    """Return the rows of ranking.csv: what was simulated directly, what the decision chose and then the best first, then what was screened, then linear effects that were not adopted."""
     rows, seen = [], set()
     prefix = [] if prepared.adopted is None else [candidate_named(prepared.adopted["name"]).effect_id]
     for row in found:
@@ -142,16 +142,19 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured):
         gain, on_fit, held_out = totals[row.candidate.name]
         location = "+".join(part.split("@")[1] for part in row.candidate.name.split("+"))
         rows.append({"ids": "+".join(ids), "location": location, "fit_score": on_fit, "heldout_score": held_out,
-                     "closed_fraction": float(verdict.closure(bench, null, row, measured)), "threshold": screening["threshold"], "tested": True, "gain": gain})  # fmt: skip
+                     "closed_fraction": float(verdict.closure(bench, null, row, measured)), "threshold": screening["threshold"], "tested": True,
+                     "gain": np.inf if row is decision.chosen else gain})  # fmt: skip
         seen.add(row.candidate.name)
     if prefix:
-        only = {"ids": prefix[0], "location": prepared.adopted["name"].split("@")[1], "fit_score": prepared.adopted["gain"], "heldout_score": 0.0,
+        only = {"ids": prefix[0], "location": prepared.adopted["name"].split("@")[1], "fit_score": 0.0, "heldout_score": 0.0,  # all others are scored against it
                 "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True, "gain": screening["threshold"]}  # fmt: skip
         rows.append(only)
     rows.sort(key=lambda row: -row["gain"])
     for row in screening["ranked"]:
         if row["name"] not in seen:
-            rows.append({"ids": row["name"].split("@")[0], "location": row["name"].split("@")[1], "fit_score": row["score"], "heldout_score": None,
+            candidate = candidate_named(row["name"])
+            ids = [*([] if candidate.alone else prefix), candidate.effect_id]
+            rows.append({"ids": "+".join(ids), "location": candidate.location, "fit_score": row["score"], "heldout_score": None,
                          "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
     for row in prepared.linear[:SHOWN]:
         if prepared.adopted is None or row["name"] != prepared.adopted["name"]:
