@@ -38,8 +38,8 @@ def number_asked(name):
     try:
         value = float(REQUEST[name]) if name in REQUEST else None
     except ValueError:
-        value = -1.0
-    if value is not None and not value > 0.0:
+        value = -1
+    if value is not None and not value > 0:
         sys.exit(f"{name} = '{REQUEST[name]}': give a positive number of seconds, as in --config {name}=49")
     return value
 
