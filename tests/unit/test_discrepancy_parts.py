@@ -12,6 +12,7 @@ from vibroimpact.discrepancy.likelihood import log_likelihood, scatter_of
 from vibroimpact.discrepancy.mapping import clusters
 from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
 from vibroimpact.discrepancy.next_measurement import next_measurement
+from vibroimpact.discrepancy.null import Null
 from vibroimpact.discrepancy.screening import NINETY, _above, _best, _profile
 from vibroimpact.discrepancy.suite import judged, rates
 
@@ -211,3 +212,15 @@ def test_clusters_end_where_the_difference_halves():
     difference = np.array([0.5, 6.0, 10.0, 7.0, 3.0, 3.5, -4.0, 0.2])
     found = clusters(difference, np.abs(difference) > 0.3)
     assert [row.tolist() for row in found] == [[1, 2, 3], [6], [4, 5], [0]]
+
+
+def test_what_other_damping_changes_is_no_evidence():
+    """A difference along a free direction costs its prior, however large; across it nothing is forgiven."""
+    covariance = np.eye(40)[None]
+    null = Null(np.array([1]), np.zeros((1, 4, 40)), np.zeros((1, 40)), covariance, np.zeros(40, int))
+    silent = np.where(np.arange(40) < 20, 8.0, 0.0)
+    freed = null.freed(silent[None, None])
+    along, across = log_likelihood(silent, freed.covariance[0])[1], log_likelihood(silent[::-1], freed.covariance[0])[1]
+    assert along == pytest.approx(1.0, abs=0.01)
+    assert across == pytest.approx(20 * 64.0)
+    assert null.covariance is covariance

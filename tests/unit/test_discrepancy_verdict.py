@@ -18,7 +18,8 @@ def finalist(name, gain, explained=EXPLAINED, held_out=10.0, interval=None):
     candidate = candidate_named(name)
     count = len(candidate.effect.parameters)
     interval = np.tile([0.75, 0.85], (count, 1)) if interval is None else np.array(interval)
-    return SimpleNamespace(candidate=candidate, mean=name, gain=gain, left=explained, held_out=held_out, interval=interval, unit=interval.mean(axis=1))
+    return SimpleNamespace(candidate=candidate, mean=name, gain=gain, left=explained, held_out=held_out, interval=interval, unit=interval.mean(axis=1),
+                           own=lambda null: null)  # fmt: skip
 
 
 @pytest.fixture
@@ -108,7 +109,7 @@ def test_a_parameter_is_told_level_by_level(monkeypatch):
     monkeypatch.setattr(levels, "calibrate", lambda *_: SimpleNamespace(unit=np.array([next(fitted)]), interval=np.array([[0.2, 0.7]])))
     signals = SimpleNamespace(load=np.array([0.5, 3.0, 10.0]), gap=np.full(3, 2.0e-4))
     (row,) = levels.by_level(SimpleNamespace(signals=signals), SimpleNamespace(records=np.array([1, 2])), np.zeros((2, 4)),
-                             SimpleNamespace(candidate=candidate_named("dry_friction@all"), path=None), SCALES)  # fmt: skip
+                             SimpleNamespace(candidate=candidate_named("dry_friction@all"), path=None, own=lambda null: null), SCALES)  # fmt: skip
     assert (row["parameter"], row["load_rms_N"]) == ("mu", [3.0, 10.0])
     np.testing.assert_allclose([row["value"], row["low"], row["high"]], [[0.1, 100**0.25 / 100], [100**0.2 / 100] * 2, [100**0.7 / 100] * 2])
     pair = SimpleNamespace(candidate=candidate_named("dry_friction@all+gap@all"), path=None)

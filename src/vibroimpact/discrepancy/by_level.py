@@ -14,7 +14,7 @@ def by_level(bench, null, measured, finalist, scales):
     candidate = finalist.candidate
     if isinstance(candidate, Pair):
         return []
-    alone = [calibrate(bench, null, measured, candidate, finalist.path, chosen) for chosen in np.eye(len(measured), dtype=bool)]
+    alone = [calibrate(bench, finalist.own(null), measured, candidate, finalist.path, chosen) for chosen in np.eye(len(measured), dtype=bool)]
     rows = []
     for number, parameter in enumerate(candidate.effect.parameters):
         values, ends = [], []

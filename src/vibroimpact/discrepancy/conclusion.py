@@ -67,7 +67,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
             chosen = decision.chosen
             model = whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, prepared.scales)))
         after = verified(whole, model, seeds, bench)
-        p_after = mapping.global_p(bench, null, measured, after.compared[null.records])
+        p_after = mapping.global_p(bench, null if decision.chosen is None else decision.chosen.own(null), measured, after.compared[null.records])
     chosen_cells = misfit.counted(whole)
     splits = {"fit": whole.signals.fit(), "holdout": whole.signals.holdout()}
     gaps = {name: misfit.misfit_of(whole, records, chosen_cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else

@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import other_places
+from vibroimpact.discrepancy.null import free_at
 from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, linear_score, null_scores, simulate_path
 
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
@@ -15,13 +16,15 @@ ROUNDS = 4  # at most
 START_STEP, STARTS, NEW = 0.12, 3, 0.003
 TRIED = 2  # points that are tried at other places
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
+MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
 NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
 
 
 @dataclass(frozen=True)
 class Finalist:
     """A candidate after direct simulation: unit (parameter,) normalised; interval (parameter, 2); scores (record,) and low: log likelihoods by direct
-    simulation; mean (record, feature) over `features` (record, seed, feature); path: all that was simulated; profile: see screening.Calibrated."""
+    simulation; mean (record, feature) over `features` (record, seed, feature); path: all that was simulated; profile: see screening.Calibrated; free: see
+    null.free_at."""
 
     candidate: object
     unit: np.ndarray
@@ -31,11 +34,16 @@ class Finalist:
     features: np.ndarray
     path: Path
     profile: list
+    free: np.ndarray
 
     @property
     def mean(self):
         """Return (record, feature) the mean over seeds."""
         return self.features.mean(axis=1)
+
+    def own(self, null):
+        """Return the Null with what the damping of unseen modes changes of this finalist left free."""
+        return null.freed(self.free)
 
 
 def started(bench, null, candidate, unit, scales, first_seed=2000):
@@ -70,27 +78,32 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     fit (record,) bool: the records its parameters are fitted to; least: gain of log likelihood below which a closer look is
     not worth its runs.
     """
-    level, centre = 0, _best_simulated(bench, null, measured, path, fit)
+    level, centre, at = 0, _best_simulated(bench, null, measured, path, fit), None
     for number in range(rounds):
         points = _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
-        before = _scores(bench, null, measured, path, fit).max()
+        known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
-        found = _calibrated_near(bench, null, measured, candidate, path, fit)
-        better = _scores(bench, null, measured, path, fit).max() > before + CLEARLY
+        if at is None or _apart(centre, at, candidate.periodic).max() > MOVED:
+            at = path.parameters[_nearest(path, centre, candidate.periodic)]
+            free = _free(bench, null, candidate, path, at, scales, first_seed + 400 + 50 * number)
+            own = null.freed(free)
+        found = _calibrated_near(bench, own, measured, candidate, path, fit)
+        scores = _scores(bench, own, measured, path, fit)
+        better = scores.max() > scores[:known].max() + CLEARLY
         stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level])
         if stayed or number and not better:
             level += 1  # it stayed within what was looked at, or led nowhere: look closer
-        centre = found.unit if stayed or better or not number else _best_simulated(bench, null, measured, path, fit)
-        losing = gains_of(bench, null, measured, path).max() < least
+        centre = found.unit if stayed or better or not number else _best_simulated(bench, own, measured, path, fit)
+        losing = gains_of(bench, null, measured, path, own).max() < least
         if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
-    found = _with_whole_interval(bench, null, measured, candidate, path, fit, found)
+    found = _with_whole_interval(bench, own, measured, candidate, path, fit, found)
     judgements = []
-    simulated = _best_simulated(bench, null, measured, path, fit)
+    simulated = _best_simulated(bench, own, measured, path, fit)
     for unit in [simulated] if losing else _to_judge(candidate, found.unit, simulated, scales):
         try:
-            judgements.append(judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed + 5000))
+            judgements.append(judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000))
         except IntegrationError:
             continue  # between points that can be simulated lies one that can not
     if not judgements:
@@ -98,6 +111,20 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     best = max(judgements, key=lambda row: row.scores[fit].sum() + row.low)
     clearly = best.scores[fit].sum() + best.low > judgements[0].scores[fit].sum() + judgements[0].low + CLEARLY
     return best if clearly else judgements[0]
+
+
+def _nearest(path, unit, periodic):
+    """Return the number of the point of a path that is nearest to unit (parameter,)."""
+    return int(np.argmin([np.sum(_apart(unit, other, periodic) ** 2) for other in path.parameters]))
+
+
+def _free(bench, null, candidate, path, unit, scales, first_seed):
+    """Return null.free_at of a point of a path, nothing where it can not be simulated."""
+    mean = path.features[_nearest(path, unit, candidate.periodic)]
+    try:
+        return free_at(bench, candidate, unit, mean, scales, null.records, first_seed)
+    except IntegrationError:
+        return np.zeros((0, *mean.shape))
 
 
 def _unknown(points, path, periodic):
@@ -111,10 +138,10 @@ def _scores(bench, null, measured, path, fit):
                      for mean, reading in zip(path.features, path.readings, strict=True)])  # fmt: skip
 
 
-def gains_of(bench, null, measured, path):
-    """Return (point,) the gain of log likelihood over the null, of all records, at the points of a path."""
+def gains_of(bench, null, measured, path, own=None):
+    """Return (point,) the gain of log likelihood over the null, of all records, at the points of a path; own: the Null of the path's candidate."""
     start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
-    return _scores(bench, null, measured, path, np.ones(len(measured), bool)) - start
+    return _scores(bench, null if own is None else own, measured, path, np.ones(len(measured), bool)) - start
 
 
 def _best_simulated(bench, null, measured, path, fit):
@@ -153,7 +180,7 @@ def _to_judge(candidate, unit, simulated, scales):
     return points
 
 
-def judged(bench, null, measured, candidate, unit, path, found, scales, seeds, first_seed):
+def judged(bench, null, measured, candidate, unit, path, found, free, scales, seeds, first_seed):
     """Return the Finalist at normalised parameters (parameter,), by `seeds` runs of every record."""
     physical = candidate.physical(unit, scales)
     model = bench.model(bench.variant(candidate, physical))
@@ -162,7 +189,7 @@ def judged(bench, null, measured, candidate, unit, path, found, scales, seeds, f
     scores = direct_scores(bench, null, measured, features.mean(axis=1))
     nearest = int(np.argmin(np.sum((path.parameters - unit) ** 2, axis=1)))
     interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)
-    return Finalist(candidate, unit, interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile)
+    return Finalist(candidate, unit, interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile, free)
 
 
 def _apart(one, other, periodic):

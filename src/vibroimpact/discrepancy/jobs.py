@@ -133,9 +133,9 @@ def pairs(run, files, screened, path, quick=False):
     found, totals = ordered(bench, null, found)
     if totals[found[0].candidate.name][0] > threshold:
         measured = bench.measured_features[null.records]
-        if second.needed(naming.explained(bench, null, found[0].mean, measured)):
+        if second.needed(naming.explained(bench, found[0].own(null), found[0].mean, measured)):
             # by as few seeds as the pairs' own runs: what is judged by more seeds scores higher
-            least = float(gains_of(bench, null, measured, found[0].path).max())
+            least = float(gains_of(bench, null, measured, found[0].path, found[0].own(null)).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}

@@ -19,13 +19,13 @@ def pairs(bench, null, measured, found, paths):
     start, low = null_scores(bench, null, measured).sum(), linear_score(bench, None)
     best = {}
     for first in found[:FIRSTS]:
-        moved = compressed(first.mean - null.mean, bench.layout)
+        own, moved = first.own(null), compressed(first.mean - null.mean, bench.layout)
         for candidate, path in paths.items():
             if candidate.effect_id == first.candidate.effect_id or candidate.alone:
                 continue
             for unit, mean, reading in zip(path.parameters, path.features, path.readings, strict=True):
                 both = null.mean + uncompressed(moved + compressed(mean - null.mean, bench.layout), bench.layout)
-                gain = direct_scores(bench, null, measured, both).sum() - start + min(first.low, linear_score(bench, reading)) - low
+                gain = direct_scores(bench, own, measured, both).sum() - start + min(first.low, linear_score(bench, reading)) - low
                 key = frozenset((first.candidate.effect_id, candidate.effect_id))
                 if key not in best or gain > best[key][2]:
                     best[key] = (Pair(first.candidate, candidate), np.concatenate([first.unit, unit]), float(gain))

@@ -56,7 +56,7 @@ def finalist_arrays(finalist):
     """Return the arrays of a finalists.Finalist."""
     profile = json.dumps([[np.asarray(part).tolist() for part in row] for row in finalist.profile])
     return {"name": np.array(finalist.candidate.name), "unit": finalist.unit, "interval": finalist.interval, "scores": finalist.scores,
-            "low": np.array(finalist.low), "runs": finalist.features, "profile": np.array(profile),
+            "low": np.array(finalist.low), "runs": finalist.features, "free": finalist.free, "profile": np.array(profile),
             **{f"path_{name}": value for name, value in path_arrays(finalist.path).items()}}  # fmt: skip
 
 
@@ -64,7 +64,7 @@ def finalist_of(arrays):
     """Return the finalists.Finalist of arrays."""
     path = path_of({name.removeprefix("path_"): value for name, value in arrays.items() if name.startswith("path_")})
     profile = [tuple(np.array(part) for part in row) for row in json.loads(str(arrays["profile"]))]
-    return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile)
+    return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile, arrays["free"])
 
 
 def null_from(bench, files, prefix=""):

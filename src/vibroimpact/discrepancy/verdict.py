@@ -33,12 +33,12 @@ def decide(bench, null, prepared, found, threshold, p_before):
             return Decision("none" if p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z else "unknown", None, [], totals, rest, threshold)
         named = "named" if len(linear) == 1 else "ambiguous"
         return Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
-    if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, null, best.mean, measured).min() < priors.EXPLAINED_Z:
+    if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z:
         best = doubles[0]
     best = simpler(best, found, totals, prepared)
-    left = naming.explained(bench, null, best.mean, measured)
+    left = naming.explained(bench, best.own(null), best.mean, measured)
     alike = doubles if isinstance(best.candidate, Pair) else singles
-    sufficient = {row.candidate.name for row in alike if naming.explained(bench, null, row.mean, measured).min() > priors.EXPLAINED_Z}
+    sufficient = {row.candidate.name for row in alike if naming.explained(bench, row.own(null), row.mean, measured).min() > priors.EXPLAINED_Z}
     together = whole_sets(linear, local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient))
     share = closure(bench, null, best, measured)
     if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
@@ -101,7 +101,7 @@ def closure(bench, null, found, measured):
     size = measured.shape[1]
     spread = naming.SPREAD * np.sqrt(2.0 * size)
     before = np.sum(-naming.explained(bench, null, null.mean, measured, False) * spread)
-    after = np.sum(-naming.explained(bench, null, found.mean, measured) * spread)
+    after = np.sum(-naming.explained(bench, found.own(null), found.mean, measured) * spread)
     return 1.0 - np.sqrt(max(after, 0.0) / before) if before > 0.0 else 0.0
 
 
