@@ -10,6 +10,7 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, ORANGE, label_of
 
 MOST_RECORDS, CHANNELS_SHOWN = 3, 2
+MOVED = 0.5  # of the bands of a channel above noise
 BELOW = 1e-3  # of the smallest measured PSD in the bands: what is drawn beneath
 STAGES = (("before", "model as given", ORANGE), ("after", "completed model", BLUE))
 
@@ -21,8 +22,8 @@ def spectra_figure(before, after, regions=()):
     optionally channel_unit (channel), m s-2 where it is missing; or None; regions: those of verdict.json, shaded in their panels.
     """
     caption = ("PSD, measured (black) and simulated: with the model as given (orange) and with the completed one (blue); bands hold the spectra of "
-               "the seeds. Records: the lowest load, the highest fitted one, and the held-out one that disagrees most; channels: those that disagree "
-               "most. Dotted: edges of the compared bands.")
+               "the seeds. Records: the lowest load, the highest fitted one, and the held-out one that disagrees most; channels: the one that disagrees "
+               "most, and the next that the lowest load moves beyond noise. Dotted: edges of the compared bands.")
     if before is None or "psd_measured" not in before:
         sheet = Sheet("discrepancy_psd", "Measured and simulated spectra", caption)
         sheet.note(sheet.axes["main"], "no spectra: the campaign was refused", "frequency_Hz", "psd_m2_per_s4_per_Hz")
@@ -58,10 +59,13 @@ def chosen_records(data):
 
 
 def chosen_channels(data):
-    """Return up to two channel indices, those of the largest discrepancy over all records."""
+    """Return up to two channel indices: that of the largest discrepancy over all records, and that of the next one, among those that the lowest load moves."""
     counted = counted_cells(data)
-    size = [_rms(data["D"].values[:, channel][counted[:, channel]]) for channel in range(data.sizes["channel"])]
-    return [int(index) for index in np.argsort(size)[::-1][:CHANNELS_SHOWN]]
+    size = np.array([_rms(data["D"].values[:, channel][counted[:, channel]]) for channel in range(data.sizes["channel"])])
+    order = np.argsort(size)[::-1]
+    moved = counted[int(np.argmin(data["load_rms"].values))].mean(axis=-1) > MOVED
+    rest = sorted(order[1:], key=lambda channel: not moved[channel])  # stable: by discrepancy within each half
+    return [int(index) for index in (order[0], *rest)][:CHANNELS_SHOWN]
 
 
 def _rms(values):
