@@ -217,7 +217,7 @@ def test_clusters_end_where_the_difference_halves():
 def test_what_other_damping_changes_is_no_evidence():
     """A difference along a free direction costs its prior, however large; across it nothing is forgiven."""
     covariance = np.eye(40)[None]
-    null = Null(np.array([1]), np.zeros((1, 4, 40)), np.zeros((1, 40)), covariance, np.zeros(40, int))
+    null = Null(np.array([1]), np.zeros((1, 4, 40)), np.zeros((1, 40)), covariance, covariance, np.zeros(40, int))
     silent = np.where(np.arange(40) < 20, 8.0, 0.0)
     freed = null.freed(silent[None, None])
     along, across = log_likelihood(silent, freed.covariance[0])[1], log_likelihood(silent[::-1], freed.covariance[0])[1]

@@ -41,7 +41,7 @@ class Source:
             raise ValueError(f"the bank has no {missing}: take one of the same model, loads, gaps and channels, or leave out bank=")
         there, here = store.load(files[0]), described(bench, null.records)
         self.features, self.records, self.channels = ([list(there[name]).index(key) for key in here[name]] for name in here)
-        self.mean = self._here(store.null_features(files, prefix)[0].mean(axis=1))
+        self.mean = self._here(store.null_features(files, prefix, ("features",))[0].mean(axis=1))
 
     def _here(self, features):
         """Return (..., record, feature) of this campaign from those of the source."""

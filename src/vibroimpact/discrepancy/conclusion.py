@@ -227,7 +227,7 @@ def with_nuisance(values, nuisance: Nuisance, model):
 def simulations(null, paths, found, before, after):
     """Return how many records were simulated."""
     records = len(null.mean)
-    count = records * (null.seeds + jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (1 if after is before else 2)
+    count = records * (null.seeds + 2 * jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (1 if after is before else 2)
     count += sum(int(path.seeds.sum()) * records for path in paths.values())
     return count + sum(int(row.path.seeds.sum()) * records + row.features.shape[1] * records for row in found)
 

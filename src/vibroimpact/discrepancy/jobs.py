@@ -10,11 +10,11 @@ from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import ROUNDS, gains_of, own, placed, refine, started
-from vibroimpact.discrepancy.null import unseen_damping
+from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.records import read_text, write_text
 
-UNSEEN_SEEDS = 8
+UNSEEN_SEEDS = 4  # of each damping
 
 
 def contact_records(bench):
@@ -28,7 +28,9 @@ def null_part(run, part, path):
     bench, records = run.bench, contact_records(run.bench)
     each, unseen = priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS // NULL_PARTS
     arrays = {}
-    for name, model, seeds, first in (("features", bench.model(), each, each * part), ("unseen", unseen_damping(bench), unseen, 900 + unseen * part)):
+    models = [("features", bench.model(), each, each * part)]
+    models += [(name, unseen_damping(bench, bench.model(), factor), unseen, 900 + unseen * part) for name, factor in zip(store.UNSEEN, UNSEEN, strict=True)]
+    for name, model, seeds, first in models:
         runs = bench.runs(records, seeds, first)
         responses = bench.respond(model, runs)
         for prefix, window in (("", bench), ("screened_", run.screening_bench)):

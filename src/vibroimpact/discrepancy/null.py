@@ -9,15 +9,19 @@ from vibroimpact.discrepancy.features import compressed
 from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, scatter_of
 
 
+UNSEEN = (priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)  # times the damping of modes that the lowest record does not show
+
+
 @dataclass(frozen=True)
 class Null:
     """records (record,) of the campaign; features (record, seed, feature); mean (record, feature); covariance (record, feature, feature) of one
-    record about the mean, with what two codes differ by; groups (feature,): channels that the force drives, or does not."""
+    record about the mean, with what two codes differ by, and apart (record, feature, feature) the same without what other damping of unseen modes changes; groups (feature,): channels that the force drives, or does not."""
 
     records: np.ndarray
     features: np.ndarray
     mean: np.ndarray
     covariance: np.ndarray
+    apart: np.ndarray
     groups: np.ndarray
 
     @property
@@ -31,31 +35,30 @@ class Null:
         return self.features.shape[1]
 
     def freed(self, directions):
-        """Return the Null with directions (direction, record, compressed feature) left free, one sigma each."""
-        return replace(self, covariance=self.covariance + np.einsum("drf,drg->rfg", directions, directions))
+        """Return the Null with directions (direction, record, compressed feature) left free, one sigma each, in place of its own; itself where there are none."""
+        return replace(self, covariance=self.apart + np.einsum("drf,drg->rfg", directions, directions)) if len(directions) else self
 
 
-def unseen_damping(bench, model=None, factor=priors.UNSEEN_DAMPING):
-    """Return a model, the corrected bare one where None, with other damping of the modes that the lowest record does not show."""
-    model = bench.model() if model is None else model
+def unseen_damping(bench, model, factor):
+    """Return a model with another damping of the modes that the lowest record does not show."""
     unseen = np.ones(model.modes, bool)
     if bench.linear_stage:
         unseen[bench.measured_fit.modes] = False  # a variant's first modes stand in the same order
     return replace(model, damping=np.where(unseen, factor, 1.0) * model.damping)
 
 
-def null_of(bench, records, features, unseen):
-    """Return the Null of (record, seed, feature) of the bare model and of `unseen`, the same with other damping of unseen modes."""
+def null_of(bench, records, features, *others):
+    """Return the Null of (record, seed, feature) of the bare model and of others, the same with less and with more damping of unseen modes."""
     driven = driven_channels(bench)
     common, own = free_directions(bench.layout, driven), np.diag(feature_sd(bench.layout) ** 2)
-    means, covariances, bursts = [], [], bursting(bench, records, driven)
-    for nominal, other, burst in zip(features, unseen, bursts, strict=True):
+    means, apart, bursts = [], [], bursting(bench, records, driven)
+    for nominal, burst in zip(features, bursts, strict=True):
         scatter = scatter_of(nominal, bench.layout)
-        direction = compressed(other.mean(axis=0) - scatter.mean, bench.layout)
-        free = np.vstack([common, direction])
         means.append(scatter.mean)
-        covariances.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + np.diag((burst * bench.layout.blend) ** 2) + free.T @ free)
-    return Null(np.asarray(records), features, np.array(means), np.array(covariances), driven[bench.layout.channel].astype(int))
+        apart.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + np.diag((burst * bench.layout.blend) ** 2) + common.T @ common)
+    means, apart = np.array(means), np.array(apart)
+    directions = np.array([compressed(other.mean(axis=1) - means, bench.layout) for other in others])
+    return Null(np.asarray(records), features, means, apart, apart, driven[bench.layout.channel].astype(int)).freed(directions)
 
 
 def bursting(bench, records, driven):
@@ -84,7 +87,7 @@ def free_at(bench, candidate, unit, mean, scales, records, first_seed):
     physical, seeds = candidate.physical(unit, scales), bench.seeds_of_a_batch(records)
     model, measuring = bench.model(bench.variant(candidate, physical)), candidate.measuring(physical, bench.signals.names)
     out = []
-    for number, factor in enumerate((priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)):
+    for number, factor in enumerate(UNSEEN):
         runs = bench.runs(records, seeds, first_seed + 20 * number)
         features = bench.features(unseen_damping(bench, model, factor), runs, measuring).reshape(len(records), seeds, -1)
         out.append(compressed(features.mean(axis=1) - mean, bench.layout))

@@ -13,6 +13,7 @@ from vibroimpact.discrepancy.nuisance import Reading
 from vibroimpact.discrepancy.screening import Path
 
 ALONE = "alone_"  # before the names of arrays of a path without the linear effect that was adopted
+UNSEEN = ("less_damped", "more_damped")  # names of the null's arrays with other damping of unseen modes
 EMPTY = "empty"  # what a job writes where there is nothing to do
 
 
@@ -72,7 +73,7 @@ def null_from(bench, files, prefix=""):
     return null_of(bench, load(files[0])["records"], *null_features(files, prefix))
 
 
-def null_features(files, prefix=""):
-    """Return [(record, seed, feature)] of the null and of that with other damping of unseen modes, of the files of its parts."""
+def null_features(files, prefix="", names=("features", *UNSEEN)):
+    """Return [(record, seed, feature)] of the null and of that with less and more damping of unseen modes, of the files of its parts."""
     parts = [load(file) for file in files]
-    return [np.concatenate([part[prefix + name] for part in parts], axis=1) for name in ("features", "unseen")]
+    return [np.concatenate([part[prefix + name] for part in parts], axis=1) for name in names]
