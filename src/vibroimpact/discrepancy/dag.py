@@ -6,7 +6,7 @@ from pathlib import Path
 
 from vibroimpact.discrepancy.candidates import local_candidates
 
-QUICK_S = 12.0  # records are cut to it where the run must be quick
+QUICK_S = 10.0  # records are cut to it where the run must be quick
 NULL_PARTS = 4  # jobs; each runs its share of the seeds with and without the damping of unseen modes
 
 
