@@ -123,3 +123,11 @@ def test_a_mass_may_sit_where_only_a_channel_is(study_config):
     points = with_channel_points(study_config, blank).points
     assert points["leg_y"] == (-0.3, 0.0, 0.533)
     assert set(points) == {*study_config.points, "leg_y", "bend_y"}  # the apex has a name already
+
+
+def test_the_first_seconds_of_a_run_from_rest_are_not_compared_with_a_record_under_way(rig, study_config):
+    bench, _ = rig
+    under_way = Workbench(study_config, bench.campaign.assign_attrs(start_up="stationary"))
+    assert bench.settled.all()
+    assert np.flatnonzero(under_way.settled)[0] == 4 * RATE == SECONDS * RATE / 4
+    assert not np.allclose(under_way.measured_features, bench.measured_features)

@@ -19,6 +19,7 @@ from vibroimpact.kernels import LANES
 
 FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
 TOUCHES = 0.98  # of the gap: a linear response that comes that near is not taken for free of contact
+SETTLING_S = 4.0  # until a run from rest has forgotten it
 SAME = 1.0e-5  # relative difference of two responses without contact
 
 
@@ -54,6 +55,12 @@ class Workbench:
         return np.ones(len(self.signals.names)) if self.nuisance is None else self.nuisance.gain
 
     @cached_property
+    def settled(self):
+        """Return (sample,) bool: what is compared. A record that was cut out of a steady state is simulated from rest, and its first seconds are not compared."""
+        samples = self.signals.force.shape[-1]
+        return np.arange(samples) >= (0 if self.signals.from_rest else min(round(SETTLING_S * self.signals.rate), samples // 4))
+
+    @cached_property
     def linear_stage(self):
         """Return True where the lowest record tells of the linear structure: a mode is seen and the bare model does not touch."""
         return not self.touches(self.bare) and self.measured_fit is not None
@@ -80,7 +87,7 @@ class Workbench:
         """Return (record, feature) of the measurement."""
         out = []
         for record in range(len(self.signals.load)):
-            keep = np.isfinite(self.signals.response[record]).all(axis=0)
+            keep = np.isfinite(self.signals.response[record]).all(axis=0) & self.settled
             out.append(record_features(self.layout, self.signals.force[record][0, keep], self.signals.response[record][:, keep]))
         return np.array(out)
 
@@ -111,7 +118,7 @@ class Workbench:
         """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each cut to the valid samples of its record."""
         out = []
         for (record, _, seed), response in zip(runs, responses, strict=True):
-            keep = np.isfinite(self.signals.force[record][0])
+            keep = np.isfinite(self.signals.force[record][0]) & self.settled
             noise = np.random.default_rng([7, seed, record]).standard_normal((len(self.signals.noise), int(keep.sum())), dtype=np.float32)
             noisy = response[:, : keep.size][:, keep] + noise * self.signals.noise[:, None].astype(np.float32)
             out.append(record_features(self.layout, self.signals.force[record][0, keep], noisy))
