@@ -125,6 +125,14 @@ def test_a_mass_may_sit_where_only_a_channel_is(study_config):
     assert set(points) == {*study_config.points, "leg_y", "bend_y"}  # the apex has a name already
 
 
+def test_a_channel_of_a_point_s_name_does_not_move_the_point(study_config):
+    blank = campaign_of(np.zeros((2, len(PLACES), 64)), np.zeros((2, 1, 64)))
+    blank["channel_name"][2], blank["channel_point"][2] = "shaker", [-0.3, 0.0, 0.533]
+    points = with_channel_points(study_config, blank).points
+    assert points["shaker"] == study_config.points["shaker"]
+    assert points["at_shaker"] == (-0.3, 0.0, 0.533)
+
+
 def test_the_first_seconds_of_a_run_from_rest_are_not_compared_with_a_record_under_way(rig, study_config):
     bench, _ = rig
     under_way = Workbench(study_config, bench.campaign.assign_attrs(start_up="stationary"))

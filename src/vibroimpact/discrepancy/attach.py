@@ -44,7 +44,10 @@ def with_channel_points(config, campaign):
     points, taken = dict(config.points), list(config.points.values())
     for name, place in zip(campaign["channel_name"].values, campaign["channel_point"].values, strict=True):
         if all(np.linalg.norm(np.subtract(place, other)) > SAME_POINT_M for other in taken):
-            points[re.sub(r"[^A-Za-z0-9_.-]", "_", str(name))] = tuple(map(float, place))
+            new = re.sub(r"[^A-Za-z0-9_.-]", "_", str(name))
+            while new in points:  # a channel may bear the name of a point elsewhere, which the model means
+                new = f"at_{new}"
+            points[new] = tuple(map(float, place))
             taken.append(place)
     return config.model_copy(update={"points": points})
 

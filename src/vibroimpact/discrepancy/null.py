@@ -43,7 +43,7 @@ def unseen_damping(bench, model, factor):
     """Return a model with another damping of the modes that the lowest record does not show."""
     unseen = np.ones(model.modes, bool)
     if bench.linear_stage:
-        unseen[bench.measured_fit.modes] = False  # a variant's first modes stand in the same order
+        unseen[bench.measured_fit.modes] = False  # by number, as in nuisance.corrected: a plate's own mode below them shifts them
     return replace(model, damping=np.where(unseen, factor, 1.0) * model.damping)
 
 
