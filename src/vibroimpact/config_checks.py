@@ -175,6 +175,6 @@ TUBE_CHECKS = (place.wall, place.path_directions, place.points_on_the_tube, plac
                names.sensors_of_a_tube, _step_and_modes)
 POINT_CHECKS = (names.point_supports,)
 CHECKS = (*TUBE_CHECKS, *POINT_CHECKS, names.chain_names, place.support_lists, place.gaps_of_supports, names.names_twice, _repeated_values,
-          names.known_points, names.identified_points, names.identification_needs, names.initial_points, _every_step, names.sensors,
+          names.known_points, names.drag_partners, names.identified_points, names.identification_needs, names.initial_points, _every_step, names.sensors,
           names.driven_direction_is_recorded, _force, _overlay, _bands_in_order, _bands_below_nyquist, _broadband_is_excited,
           _main_peak_is_excited, _segments, _bands_resolved, _step_and_force, _step_and_samples, _whole_samples)

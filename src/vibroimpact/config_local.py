@@ -78,7 +78,10 @@ class Support(Section):
 
 
 class LocalElement(Section):
-    """A force law along a direction, between a named point and the ground or between two named points; terms add up."""
+    """A force law along a direction, between a named point and the ground or between two named points; terms add up.
+
+    drag_partner: name of the element, across this one, whose rate counts in the speed that drags: |v| of a motion in a plane.
+    """
 
     name: Name
     point: Name
@@ -89,6 +92,7 @@ class LocalElement(Section):
     cubic_N_per_m3: Number = 0.0
     damping_N_s_per_m: Number = 0.0
     drag_N_s2_per_m2: Non_negative = 0.0
+    drag_partner: Name | None = None
     slip_limit_N: Non_negative = 0.0
     stick_stiffness_N_per_m: Non_negative = 0.0
     saturation_stiffness_N_per_m: Number = 0.0

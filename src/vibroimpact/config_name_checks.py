@@ -17,6 +17,15 @@ def names_twice(supports):
             yield "supports", name, f"names {times} supports: give each a name of its own"
 
 
+def drag_partners(elements):
+    """Yield a problem unless elements that share the speed of a drag are there."""
+    names = [element.name for element in elements]
+    for index, element in enumerate(elements):
+        if element.drag_partner is not None and (element.drag_partner == element.name or names.count(element.drag_partner) != 1):
+            yield (f"elements[{index}].drag_partner", element.drag_partner,
+                   f"is not one other element: give one of {', '.join(name for name in names if name != element.name) or 'none, there is no other'}")
+
+
 def known_points(structure, points, excitation, record, supports, elements):
     """Yield a problem unless points that the configuration names are there."""
     known = {"chain": lambda: [mass.name for mass in structure.masses], "matrices": lambda: list(structure.points),

@@ -456,6 +456,7 @@ class Laws(NamedTuple):
     cubic: np.ndarray  # (element, lane) N/m³
     element_damping: np.ndarray  # (element, lane) N s/m
     drag: np.ndarray  # (element, lane) N s²/m²
+    partner_row: np.ndarray  # (element,) row of the motion across that counts in the speed of the drag, -1 for none
     element_stick: np.ndarray  # (element, lane) N/m
     element_flexibility: np.ndarray  # (element, lane) m/N, its inverse, 0 without a slider
     slip_limit: np.ndarray  # (element, lane) N
@@ -743,12 +744,12 @@ def friction_force(laws, state, k, slip, normal):
 
 
 @njit(**INLINE)
-def element_force(laws, state, e, u, v, moved):
-    """Force of local element e on the structure and that of its slider: (force, slider)."""
+def element_force(laws, state, e, u, v, speed, moved):
+    """Force of local element e on the structure and that of its slider: (force, slider); v its rate, speed the size of the motion that drags."""
     slider = fma(spread(-1.0) * load(laws.element_stick, e), moved, load(state.slider, e))
     slider = clip(slider, load(laws.slip_limit, e))
     stiffness = fma(u, fma(u, load(laws.cubic, e), load(laws.quadratic, e)), load(laws.element_stiffness, e))
-    force = fma(stiffness, u, fma(load(laws.drag, e), magnitude(v), load(laws.element_damping, e)) * v)
+    force = fma(stiffness, u, fma(load(laws.drag, e), speed, load(laws.element_damping, e)) * v)
     return slider - force - clip(load(laws.saturation_stiffness, e) * u, load(laws.saturation_limit, e)), slider
 
 
@@ -790,7 +791,12 @@ def all_forces(modal, contact, laws, state, work, u):
     for e in range(laws.row.size):
         r = laws.row[e]
         ur = load(u, r)
-        f, slider = element_force(laws, state, e, ur, row_speed(modal, state, ur, r), ur - load(state.row_displacement, r))
+        v = row_speed(modal, state, ur, r)
+        speed, across = magnitude(v), laws.partner_row[e]
+        if across >= 0:
+            w = row_speed(modal, state, load(u, across), across)
+            speed = root(fma(v, v, w * w))
+        f, slider = element_force(laws, state, e, ur, v, speed, ur - load(state.row_displacement, r))
         store(work.fresh, r, f)
         store(work.slider, e, slider)
 

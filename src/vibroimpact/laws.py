@@ -82,7 +82,8 @@ class LocalLaws:
     Force on the structure along the element's direction, u the displacement (or the relative one) and v its rate:
     -(stiffness u + quadratic u² + cubic u³ + damping v + drag |v| v + slider + saturation), with slider an elastic stick spring of
     stick_stiffness N/m that slips at slip_limit N, and saturation = clip(saturation_stiffness u, +-saturation_limit) N.
-    Units: N/m, N/m², N/m³, N s/m, N s²/m².
+    drag_partner: number of the element whose rate w counts in the speed too, |v| = sqrt(v² + w²), -1 for none: a fluid brakes a motion
+    in its plane, not along each axis by itself. Units: N/m, N/m², N/m³, N s/m, N s²/m².
 
     Raises ValueError for columns of unequal length or values that are not finite.
     """
@@ -96,11 +97,12 @@ class LocalLaws:
     slip_limit: np.ndarray
     saturation_stiffness: np.ndarray
     saturation_limit: np.ndarray
+    drag_partner: np.ndarray
 
     @classmethod
     def neutral(cls, elements: int):
         """Return the laws of `elements` elements that exert no force."""
-        return cls(**{field.name: np.zeros(elements) for field in fields(cls)})
+        return cls(**{field.name: np.zeros(elements) for field in fields(cls)} | {"drag_partner": np.full(elements, -1)})
 
     def __post_init__(self):
         """Refuse columns that do not belong together."""

@@ -115,6 +115,11 @@ class ModalLayout:
         rows = self._rows()
         return np.array([rows[element] for element in range(len(self.model.element_names))], np.int64)
 
+    def partner_rows(self) -> np.ndarray:
+        """Row of the element whose rate counts in the speed of each local element's drag, -1 for none: (element,) int."""
+        partner, rows = np.asarray(self.model.local_laws.drag_partner, np.int64), self.element_rows()
+        return np.array([rows[other] if other >= 0 else -1 for other in partner], np.int64)
+
     def _rows(self):
         rows, row = {}, 0
         for keys, (_, driven) in zip(self.implicit_shapes, self.groups, strict=True):
@@ -176,6 +181,7 @@ class ModalLayout:
             lobes=own.lobes[point].astype(np.int64),
             gap=np.ascontiguousarray(self.gaps(gap)[point]),
             row=self.element_rows(),
+            partner_row=self.partner_rows(),
             **{name: np.outer(values[point], np.ones(LANES)) for name, values in contact.items()},
             **{name: np.outer(values, np.ones(LANES)) for name, values in element.items()},
         )

@@ -24,6 +24,8 @@ def element_laws(elements, dampers=()):
     names = tuple(element.name for element in elements) + tuple(f"damper_{number + 1}" for number in range(len(dampers)))
     columns = {column: np.array([getattr(element, key) for element in elements] + [0.0] * len(dampers)) for column, key in COLUMNS.items()}
     columns["damping"][len(elements):] = dampers
+    own = {element.name: number for number, element in enumerate(elements)}
+    columns["drag_partner"] = np.array([own[element.drag_partner] if element.drag_partner else -1 for element in elements] + [-1] * len(dampers), np.int64)
     return names, LocalLaws(**columns)
 
 

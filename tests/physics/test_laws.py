@@ -211,6 +211,18 @@ def test_drag_takes_the_energy_of_its_closed_form():
     assert -run.energy["contact_work"][0] == pytest.approx(5 * 8.0 / 3.0 * d * w**2 * a**3, rel=0.01)
 
 
+def test_drag_of_a_circling_motion_is_that_of_its_speed():
+    """With its partner: d |v|³ all the way, 2 pi d w² a³ a turn; the axes by themselves would take 2 x 8/3 d w² a³."""
+    w, d, a = 20 * np.pi, 0.5, 1e-3
+    model = oscillator(1.0, w**2, displacement=(a, 0.0), velocity=(0.0, a * w), element={})
+    lost = []
+    for partner in ([1, 0], [-1, -1]):
+        laws = replace(LocalLaws.neutral(2), drag=np.full(2, d), drag_partner=np.array(partner))
+        run = trace(replace(model, element_shapes=model.sensor_shapes, element_names=("x", "y"), local_laws=laws), 0.1)
+        lost.append(-run.energy["contact_work"][0])
+    assert lost == pytest.approx([2.0 * np.pi * d * w**2 * a**3, 16.0 / 3.0 * d * w**2 * a**3], rel=0.01)
+
+
 def test_slider_slide_loses_four_mu_n_per_cycle():
     """Successive extremes fall by 2 f/k (the friction slide of code_aster's SDND100)."""
     run = trace(oscillator(1.0, 1e4, displacement=(0.85e-3, 0.0), element={"stick_stiffness": 4e7, "slip_limit": 1.0}), 0.2)

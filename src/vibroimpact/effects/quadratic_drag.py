@@ -12,15 +12,16 @@ def apply(values, parameters, location):
     points, length = places.stations(values, STATIONS)
     values = values | {"points": values["points"] | points}
     for name in points:
-        for axis, direction in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0))):
-            values = places.with_element(values, f"drag_{name}_{axis}", name, direction, drag_N_s2_per_m2=parameters["coefficient"] * length)
+        for axis, across, direction in (("x", "y", (1.0, 0.0, 0.0)), ("y", "x", (0.0, 1.0, 0.0))):
+            drag = {"drag_N_s2_per_m2": parameters["coefficient"] * length, "drag_partner": f"drag_{name}_{across}"}
+            values = places.with_element(values, f"drag_{name}_{axis}", name, direction, **drag if parameters["coefficient"] else {})
     return values
 
 
 EFFECT = Effect(
     id="quadratic_drag",
     explanation="a fluid at rest brakes the tube with the square of its speed",
-    source="J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v",
+    source="J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v, v the vector across z",
     parameters=(
         Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag"),
     ),
