@@ -33,6 +33,11 @@ class Candidate:
         """Return the Effect."""
         return EFFECTS[self.effect_id]
 
+    @property
+    def ids(self):
+        """Return [id] as it is reported."""
+        return [self.effect.reported]
+
     def physical(self, unit, scales):
         """Return {name: value in SI} of normalised parameters unit (parameter,) from 0 to 1."""
         out = {}
@@ -79,7 +84,7 @@ class Candidate:
     @property
     def periodic(self):
         """Return the numbers of the parameters that are angles over a whole period."""
-        return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.name == "angle" and self.effect_id == "foliate_obstacle")
+        return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.name == "angle" and self.ids == ["foliate_obstacle"])
 
     def variant(self, values, parameters):
         """Return the configuration in plain values with the effect; unchanged for a fault of the measuring chain."""
@@ -122,6 +127,11 @@ class Pair:
     def effect_id(self):
         """Return both ids."""
         return f"{self.first.effect_id}+{self.second.effect_id}"
+
+    @property
+    def ids(self):
+        """Return both ids as they are reported."""
+        return self.first.ids + self.second.ids
 
     @property
     def effect(self):
@@ -213,4 +223,4 @@ UNSEEN_LINEAR = [Candidate("lateral_stinger", "along_x")]  # linear, but across 
 
 def not_testable(held):
     """Return the effects that need what the campaign does not hold."""
-    return [effect.id for effect in EFFECTS.values() if not set(effect.needs) <= set(held)]
+    return [effect.reported for effect in EFFECTS.values() if not set(effect.needs) <= set(held)]

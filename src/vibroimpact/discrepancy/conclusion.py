@@ -136,9 +136,9 @@ def verified(whole, model, seeds, bench):
 def ranking_rows(bench, null, prepared, found, totals, screening, measured, decision):
     """Return the rows of ranking.csv: what was simulated directly, what the decision chose and then the best first, then what was screened, then linear effects that were not adopted."""
     rows, seen = [], set()
-    prefix = [] if prepared.adopted is None else [candidate_named(prepared.adopted["name"]).effect_id]
+    prefix = [] if prepared.adopted is None else candidate_named(prepared.adopted["name"]).ids
     for row in found:
-        ids = [*([] if row.candidate.alone else prefix), *row.candidate.effect_id.split("+")]
+        ids = [*([] if row.candidate.alone else prefix), *row.candidate.ids]
         gain, on_fit, held_out = totals[row.candidate.name]
         location = "+".join(part.split("@")[1] for part in row.candidate.name.split("+"))
         rows.append({"ids": "+".join(ids), "location": location, "fit_score": on_fit, "heldout_score": held_out,
@@ -153,7 +153,7 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
     for row in screening["ranked"]:
         if row["name"] not in seen:
             candidate = candidate_named(row["name"])
-            ids = [*([] if candidate.alone else prefix), candidate.effect_id]
+            ids = [*([] if candidate.alone else prefix), *candidate.ids]
             rows.append({"ids": "+".join(ids), "location": candidate.location, "fit_score": row["score"], "heldout_score": None,
                          "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
     for row in prepared.linear[:SHOWN]:
@@ -186,10 +186,10 @@ def write_candidates(found, prepared, totals, folder, levels):
                     moved = unit.copy()
                     moved[number] = value
                     sizes.append(candidate.physical(moved, prepared.scales)[parameter.name])
-                name = parameter.name if len(parts) == 1 else f"{candidate.effect_id}.{parameter.name}"
+                name = parameter.name if len(parts) == 1 else f"{candidate.effect.reported}.{parameter.name}"
                 profile.append({"parameter": name, "unit": parameter.unit, "values": sizes[:-3], "score": score.tolist()})
                 parameters[name] = {"value": sizes[-3], "unit": parameter.unit, "low": min(sizes[-2:]), "high": max(sizes[-2:])}
-        content = {"ids": row.candidate.effect_id.split("+"), "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
+        content = {"ids": row.candidate.ids, "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
                    "parameters": parameters, "by_level": levels.get(row.candidate.name, [])}  # fmt: skip
         write_text(json.dumps(plain(content), indent=1), folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json")
 

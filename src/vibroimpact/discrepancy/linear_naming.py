@@ -21,11 +21,16 @@ REACH = 6.0  # the reduced basis for readings reaches to so many times the excit
 
 @dataclass(frozen=True)
 class LinearTable:
-    """Readings of a candidate on a grid: axes of each parameter normalised from 0 to 1; values (..., reading) over the grid."""
+    """Readings of a candidate on a grid: axes of each parameter normalised from 0 to 1; values (..., reading) over the grid, of modes (mode,) and channels."""
 
     axes: tuple
     values: np.ndarray
     modes: np.ndarray
+    channels: tuple
+
+    def serves(self, bench):
+        """Return whether the readings are of the modes and channels of a Workbench."""
+        return np.array_equal(self.modes, bench.measured_fit.modes) and self.channels == tuple(bench.signals.names)
 
     @cached_property
     def _interpolator(self):
@@ -56,7 +61,7 @@ def table_of(bench, candidate, scales):
         rows.append(np.concatenate([full.log_frequency + found.log_frequency - reference.log_frequency,
                                     full.log_damping + found.log_damping - reference.log_damping,
                                     (full.participation + found.participation - reference.participation).ravel()]))  # fmt: skip
-    return LinearTable(axes, np.array(rows).reshape(*[count] * len(axes), -1), modes)
+    return LinearTable(axes, np.array(rows).reshape(*[count] * len(axes), -1), modes, tuple(bench.signals.names))
 
 
 def coarse(config, highest_Hz):

@@ -76,7 +76,7 @@ def finalists(screened, count=priors.FINALISTS):
     chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
     if chosen:
         first = chosen[0].candidate.effect
-        chosen += [row for row in screened if row.candidate.effect_id in first.aliases and row not in chosen and row.score > FAR * chosen[0].score][:2]
+        chosen += [row for row in screened if row.candidate.ids[0] in first.aliases and row not in chosen and row.score > FAR * chosen[0].score][:2]
     return chosen
 
 
@@ -115,8 +115,8 @@ def not_told_apart(total, best, sufficient=frozenset()):
     first, out = candidate_named(best), []
     for name, (gain, _, _) in total.items():
         other = candidate_named(name)
-        alias = other.effect_id in first.effect.aliases or first.effect_id in other.effect.aliases
+        alias = bool({*other.ids} & {*first.effect.aliases} or {*first.ids} & {*other.effect.aliases})
         near = gain > total[best][0] - (priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS) or alias and name in sufficient
-        if other.effect_id != first.effect_id and near:
+        if other.ids != first.ids and near:
             out.append(name)
     return out

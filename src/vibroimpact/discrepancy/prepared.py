@@ -158,8 +158,8 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
         if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
             continue
         known = tables.get(candidate.name)
-        if not candidate.effect.measured and (known is None or not np.array_equal(known.modes, fit.modes)):
-            tables[candidate.name] = table_of(bench, candidate, out.scales)  # a table is of the modes that a record shows
+        if not candidate.effect.measured and not (known and known.serves(bench)):
+            tables[candidate.name] = table_of(bench, candidate, out.scales)  # a table is of what a record shows
         result = calibrate(bench, candidate, out.scales, tables.get(candidate.name))
         found.append({"name": candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()})
     out.linear = sorted(found, key=lambda row: -row["gain"])

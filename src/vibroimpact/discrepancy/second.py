@@ -21,12 +21,12 @@ def pairs(bench, null, measured, found, paths):
     for first in found[:FIRSTS]:
         own, moved = first.own(null), compressed(first.mean - null.mean, bench.layout)
         for candidate, path in paths.items():
-            if candidate.effect_id == first.candidate.effect_id or candidate.alone:
+            if candidate.ids == first.candidate.ids or candidate.alone:
                 continue
             for unit, mean, reading in zip(path.parameters, path.features, path.readings, strict=True):
                 both = null.mean + uncompressed(moved + compressed(mean - null.mean, bench.layout), bench.layout)
                 gain = direct_scores(bench, own, measured, both).sum() - start + min(first.low, linear_score(bench, reading)) - low
-                key = frozenset((first.candidate.effect_id, candidate.effect_id))
+                key = frozenset((*first.candidate.ids, *candidate.ids))
                 if key not in best or gain > best[key][2]:
                     best[key] = (Pair(first.candidate, candidate), np.concatenate([first.unit, unit]), float(gain))
     ordered = sorted(best.values(), key=lambda row: -row[2])

@@ -44,7 +44,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
         verdict = "partly_explained" if share > priors.PARTLY else "unknown"
         if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
-            together += whole_sets(linear, [([singles[0].candidate.effect_id], singles[0].candidate.alone)])
+            together += whole_sets(linear, [(singles[0].candidate.ids, singles[0].candidate.alone)])
         return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
 
@@ -90,7 +90,7 @@ def local_sets(best, totals, names, sufficient=frozenset()):
         alike = naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)
     else:
         alike = [name for name in names if totals[name][0] > totals[best.name][0] - priors.AMBIGUOUS]
-    out = [(sorted(candidate.effect_id.split("+")), candidate.alone) for candidate in (best, *map(candidate_named, alike))]
+    out = [(sorted(candidate.ids), candidate.alone) for candidate in (best, *map(candidate_named, alike))]
     if isinstance(best, Candidate) and best.effect_id == "gap" and best.location == "all":
         out.append((["sensor_gain"], False))  # force and all responses scaled alike are a gap scaled: an exact alias
     return out
@@ -134,4 +134,4 @@ def _effect(candidate, unit, interval, sizes):
     if candidate.effect_id == "gap":
         nominal = sizes["gap"]
         parameters["gap"] = {"unit": "m", **{key: nominal * parameters["gap_factor"][key] for key in ("value", "low", "high")}}
-    return {"id": candidate.effect_id, "location": candidate.location, "parameters": parameters}
+    return {"id": candidate.effect.reported, "location": candidate.location, "parameters": parameters}

@@ -25,7 +25,7 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
         prepare(config, campaign, longest_s, tables, without).write(prepared_file)
-    prepared, names = Prepared.read(prepared_file), [name for name in local_names(values) if name.split("@")[0] not in without]
+    prepared, names = Prepared.read(prepared_file), [name for name in local_names(values) if not without & set(candidate_named(name).ids)]
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
     run = Run(config, str(campaign), folder, prepared, tuple(names), (), tuple(nulls), ())
     if run.refused:

@@ -35,7 +35,8 @@ class Effect:
     apply(values, parameters, location) -> values: values are a configuration in plain values (Config.model_dump), which are not changed; parameters
     {name: value in SI}. locations(values) -> names of the places that the effect may sit at. broken: the invariances it breaks;
     aliases: ids of effects that look alike; source: where the law is from; linear: it acts in the linear structure below contact too, and keeps
-    it linear; below_contact: it is not linear, yet acts where nothing touches, and may be taken for a linear effect there; measured: it changes what was measured, not the model (see measurement.py); needs: what the campaign must hold.
+    it linear; below_contact: it is not linear, yet acts where nothing touches, and may be taken for a linear effect there; measured: it changes what was measured, not the model (see measurement.py); needs: what the campaign must hold;
+    law_of: id of the effect of the catalogue that it is another law of, under which it is reported.
     """
 
     id: str
@@ -50,6 +51,12 @@ class Effect:
     below_contact: bool = False
     measured: bool = False
     needs: tuple[str, ...] = ()
+    law_of: str = ""
+
+    @property
+    def reported(self):
+        """Return the id under which the effect is reported."""
+        return self.law_of or self.id
 
     def neutral(self):
         """Return {name: neutral value}; None when a parameter has none."""
