@@ -186,9 +186,9 @@ def elsewhere(candidate, values):
 
 
 def other_places(candidate, values):
-    """Return the candidate at every other place of its kind, where it was at one of several."""
+    """Return the candidate at every other place of its kind, where it was at one of several; linear effects were tried everywhere."""
     locations = candidate.effect.locations(values)
-    return [] if "all" in locations else [replace(candidate, location=place) for place in locations if place != candidate.location]
+    return [] if "all" in locations or candidate.effect.linear else [replace(candidate, location=place) for place in locations if place != candidate.location]
 
 
 def linear_candidates(values, names, held, modes):
@@ -218,7 +218,14 @@ def local_candidates(values, held):
     return found + UNSEEN_LINEAR
 
 
-UNSEEN_LINEAR = [Candidate("lateral_stinger", "along_x")]  # linear, but across the plane that a low level shows
+UNSEEN_MODES = 6  # the first so many modes of the structure: those that the lowest record does not show are tried
+# linear, but the motion that a low level shows may hold nothing of them
+UNSEEN_LINEAR = [Candidate("lateral_stinger", "along_x"), *(Candidate("mode_frequency_error", f"mode_{mode + 1}") for mode in range(UNSEEN_MODES))]
+
+
+def seen(candidate, modes):
+    """Return whether a candidate is the frequency of a mode that the lowest record shows; modes: those, from 0."""
+    return candidate.effect_id == "mode_frequency_error" and int(candidate.location.removeprefix("mode_")) - 1 in modes
 
 
 def not_testable(held):
