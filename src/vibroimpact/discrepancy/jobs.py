@@ -29,7 +29,7 @@ def null_part(run, part, path):
     each, unseen = priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS // NULL_PARTS
     arrays = {}
     models = [("features", bench.model(), each, each * part)]
-    models += [(name, unseen_damping(bench, bench.model(), factor), unseen, 900 + unseen * part) for name, factor in zip(store.UNSEEN, UNSEEN, strict=True)]
+    models += [(name, unseen_damping(bench, bench.values, factor), unseen, 900 + unseen * part) for name, factor in zip(store.UNSEEN, UNSEEN, strict=True)]
     for name, model, seeds, first in models:
         runs = bench.runs(records, seeds, first)
         responses = bench.respond(model, runs)

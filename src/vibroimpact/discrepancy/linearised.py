@@ -24,7 +24,6 @@ def linearised(model):
 
 def same_modes(model, modes, reference):
     """Return (mode,) indices of the modes of `model` that are those of `reference` (a model) at `modes`: alike in shape at the sensors, near in frequency."""
-
     out = []
     for mode in modes:
         wanted = reference.sensor_shapes[mode]

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import linalg
 
 from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.linearised import same_modes
 
 SEEN = 0.05  # of a mode's largest participation among the channels: below it a channel says nothing of the mode
 
@@ -96,11 +97,12 @@ def without(reading, nuisance):
     return replace(reading, log_frequency=reading.log_frequency - np.log(nuisance.frequency), log_damping=reading.log_damping - np.log(nuisance.damping))
 
 
-def corrected(model, nuisance):
-    """Return the ModalModel with the frequencies and damping of a Nuisance."""
+def corrected(model, nuisance, bare=None):
+    """Return the ModalModel with the frequencies and damping of a Nuisance; bare: the model whose modes that numbers, where it is another."""
     if nuisance is None or not len(nuisance.modes):
         return model
     omega, damping = model.omega.copy(), model.damping.copy()
-    omega[nuisance.modes] *= nuisance.frequency
-    damping[nuisance.modes] *= nuisance.damping * nuisance.frequency
+    modes = nuisance.modes if bare is None else same_modes(model, nuisance.modes, bare)
+    omega[modes] *= nuisance.frequency
+    damping[modes] *= nuisance.damping * nuisance.frequency
     return replace(model, omega=np.maximum.accumulate(omega), damping=damping)

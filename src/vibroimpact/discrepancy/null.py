@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
 from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, scatter_of
+from vibroimpact.discrepancy.linearised import same_modes
 
 
 UNSEEN = (priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)  # times the damping of modes that the lowest record does not show
@@ -39,11 +40,13 @@ class Null:
         return replace(self, covariance=self.apart + np.einsum("drf,drg->rfg", directions, directions)) if len(directions) else self
 
 
-def unseen_damping(bench, model, factor):
-    """Return a model with another damping of the modes that the lowest record does not show."""
-    unseen = np.ones(model.modes, bool)
+def unseen_damping(bench, values, factor):
+    """Return the model of a configuration in plain values with another damping of the structure's modes that the lowest record does not show."""
+    model = bench.model(values)
+    plates = [np.sqrt(support["plate"]["stiffness_N_per_m"] / support["plate"]["mass_kg"]) for support in values["supports"] if support["plate"]]
+    unseen = ~np.isin(model.omega, plates)
     if bench.linear_stage:
-        unseen[bench.measured_fit.modes] = False  # by number, as in nuisance.corrected: a plate's own mode below them shifts them
+        unseen[same_modes(model, bench.measured_fit.modes, bench.bare)] = False
     return replace(model, damping=np.where(unseen, factor, 1.0) * model.damping)
 
 
@@ -85,10 +88,10 @@ def free_at(bench, candidate, unit, mean, scales, records, first_seed):
     moves with the candidate: at a clearance 1.72 times the nominal one 10 N are at it, at the nominal one far beyond.
     """
     physical, seeds = candidate.physical(unit, scales), bench.seeds_of_a_batch(records)
-    model, measuring = bench.model(bench.variant(candidate, physical)), candidate.measuring(physical, bench.signals.names)
+    values, measuring = bench.variant(candidate, physical), candidate.measuring(physical, bench.signals.names)
     out = []
     for number, factor in enumerate(UNSEEN):
         runs = bench.runs(records, seeds, first_seed + 20 * number)
-        features = bench.features(unseen_damping(bench, model, factor), runs, measuring).reshape(len(records), seeds, -1)
+        features = bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1)
         out.append(compressed(features.mean(axis=1) - mean, bench.layout))
     return np.array(out)

@@ -93,8 +93,9 @@ class Workbench:
 
     def model(self, values=None):
         """Return the attached model of a configuration in plain values, with the nuisance corrections."""
-        model = self.bare if values is None or values is self.values else attach(check_config(values, "variant of the model"), self.campaign)
-        return linear.corrected(model, self.nuisance)
+        if values is None or values is self.values:
+            return linear.corrected(self.bare, self.nuisance)
+        return linear.corrected(attach(check_config(values, "variant of the model"), self.campaign), self.nuisance, self.bare)
 
     def touches(self, model=None):
         """Return True where the lowest record already brings the bare model into contact."""
