@@ -198,10 +198,10 @@ def test_verdicts_are_held_against_truths():
 def test_shuffled_truths_fall_to_chance():
     rng, names = np.random.default_rng(6), ["gap", "dry_friction", "support_offset", "hertz", "preload"]
     truths = [names[place] for place in rng.integers(0, 5, 200)]
-    verdicts = [verdict("named", [[name]], [name]) for name in truths]
-    honest = [judged(one, {"arm": "strong", "effects": [[name, {}]]})["in_set"] for one, name in zip(verdicts, truths, strict=True)]
-    shuffled = [judged(one, {"arm": "strong", "effects": [[name, {}]]})["in_set"] for one, name in zip(verdicts, rng.permutation(truths), strict=True)]
-    assert np.mean(honest) == 1.0 and 0.1 < np.mean(shuffled) < 0.3
+    rows = [judged(verdict("named", [[name]], [name]), {"arm": "strong", "effects": [[name, {}]]}) for name in truths]
+    table = {row["quantity"]: row for row in rates(rows) if row["arm"] == "strong"}
+    assert table["in the set"]["rate"] == table["first"]["rate"] == 1.0
+    assert table["in the set"]["by_chance"] == pytest.approx(0.2, abs=0.03) and table["first"]["by_chance"] == pytest.approx(0.2, abs=0.03)
 
 
 def test_priors_are_those_of_the_contract():

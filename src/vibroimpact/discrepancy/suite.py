@@ -11,6 +11,7 @@ from vibroimpact.discrepancy.misfit import excess
 EQUIVALENT = {"fluid": "fluid_added_mass_damping"}
 FAULT_CHECKS = {"clipping", "drop-outs", "delay", "swapped channels", "units", "gaps in time", "directions"}
 SENSOR = {"sensor_gain", "sensor_delay"}
+NAMEABLE = ("strong", "medium", "weak", "two", "alias")  # arms whose truth is in the catalogue
 STRONG, MEDIUM = 3.0, 1.0  # floors of excess
 TARGETS = {  # arm, quantity -> (target, fails beyond); from the acceptance table
     ("null", "false name"): (0.05, 0.10), ("strong", "in the set"): (0.95, 0.80), ("strong", "first"): (0.85, 0.70),
@@ -70,8 +71,22 @@ def _error(verdict, truth):
     return float("nan"), float("nan")
 
 
+TURNS = 200  # of the labels
+
+
+def by_chance(rows, arm, key):
+    """Return the rate of "in_set" or "first" in an arm where what is hidden is dealt anew among all campaigns that hide something nameable, NaN for other keys."""
+    if key not in ("in_set", "first"):
+        return float("nan")
+    dealt = [row["hidden"] for row in rows if row["arm"] in NAMEABLE and row["hidden"]]
+    answers = [row["named"].split("|") if key == "in_set" else [row["first_name"]] for row in rows if row["arm"] == arm]
+    rng = np.random.default_rng(3)
+    return float(np.mean([label in answer for _ in range(TURNS) for label, answer in zip(rng.choice(dealt, len(answers)), answers, strict=True)]))
+
+
 def rates(rows):
-    """Return rows {arm, quantity, campaigns, rate, low, high, target, fails_beyond}: point estimate and 95 % interval (Clopper-Pearson)."""
+    """Return rows {arm, quantity, campaigns, rate, low, high, by_chance, target, fails_beyond}: point estimate, 95 % interval (Clopper-Pearson; quartiles
+    where it is no share of campaigns), and the rate that shuffled labels give."""
     wanted = [("null", "false name", "any_name", "null"), ("strong", "in the set", "in_set", "strong"), ("strong", "first", "first", "strong"),
               ("medium", "in the set", "in_set", "medium"), ("medium", "wrong name", "wrong", "medium"), ("alias", "both in the set", "both", "alias"),
               ("two", "pair in the set", "in_set", "two"), ("two", "one right", "one_right", "two"), ("stranger", "unknown or partly", "open", "stranger"),
@@ -83,7 +98,7 @@ def rates(rows):
             hits, count = int(sum(chosen)), len(chosen)
             low = stats.beta.ppf(0.025, hits, count - hits + 1) if hits else 0.0
             high = stats.beta.ppf(0.975, hits + 1, count - hits) if hits < count else 1.0
-            out.append(_rate(arm, quantity, count, hits / count, low, high))
+            out.append(_rate(arm, quantity, count, hits / count, low, high, by_chance(rows, of, key)))
     errors = np.array([row["parameter_error"] for row in rows])
     covered = np.array([row["covered"] for row in rows])
     closed = np.array([row["closed"] for row in rows if row["arm"] == "strong" and row["in_set"] and row["closed"] is not None], float)
@@ -95,9 +110,9 @@ def rates(rows):
     return out
 
 
-def _rate(arm, quantity, count, rate, low, high):
+def _rate(arm, quantity, count, rate, low, high, chance=float("nan")):
     target, limit = TARGETS[arm, quantity]
-    return {"arm": arm, "quantity": quantity, "campaigns": count, "rate": rate, "low": float(low), "high": float(high), "target": target,
+    return {"arm": arm, "quantity": quantity, "campaigns": count, "rate": rate, "low": float(low), "high": float(high), "by_chance": chance, "target": target,
             "fails_beyond": np.nan if limit is None else limit}  # fmt: skip
 
 
