@@ -114,3 +114,13 @@ def test_a_parameter_is_told_level_by_level(monkeypatch):
     np.testing.assert_allclose([row["value"], row["low"], row["high"]], [[0.1, 100**0.25 / 100], [100**0.2 / 100] * 2, [100**0.7 / 100] * 2])
     pair = SimpleNamespace(candidate=candidate_named("dry_friction@all+gap@all"), path=None)
     assert levels.by_level(None, None, np.zeros((2, 4)), pair, SCALES) == []
+
+
+def test_an_estimate_allows_for_a_gain_common_to_force_and_responses():
+    """Lengths and forces are known no better than such a gain: 2 %, one sigma; a friction coefficient is."""
+    gap, friction = candidate_named("gap@all"), candidate_named("dry_friction@all")
+    unit = np.array([0.5])
+    value, low, high = gap.estimate(unit, np.array([[0.5, 0.5]]), {"one": 1.0})["gap_factor"]
+    assert (value / low, high / value) == pytest.approx((1.0 / (1.0 - 1.645 * 0.02), 1.0 + 1.645 * 0.02))
+    mu, narrow, _ = friction.estimate(unit, np.array([[0.49, 0.51]]), {"one": 1.0})["mu"]
+    assert narrow == pytest.approx(friction.physical([0.49], {"one": 1.0})["mu"]) and narrow < mu

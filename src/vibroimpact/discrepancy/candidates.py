@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.measuring import measuring_of, places
 from vibroimpact.effects.registry import EFFECTS
 
@@ -47,6 +48,19 @@ class Candidate:
             out[parameter.name] = float(scaled * scales[parameter.per])
         sizes = {parameter.name: out[parameter.name] / scales[parameter.per] for parameter in self.effect.parameters}
         return {parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0) for parameter in self.effect.parameters}
+
+    def estimate(self, unit, interval, scales):
+        """Return {name: (value, low, high)} in SI of normalised parameters unit (parameter,) and their intervals (parameter, 2).
+
+        What a gain common to force and responses may hide (priors.GAIN_SD) is no scatter of the features: it is added here, in quadrature.
+        """
+        value, *ends = (self.physical(row, scales) for row in (unit, interval[:, 0], interval[:, 1]))
+        out = {}
+        for parameter in self.effect.parameters:
+            best, row = value[parameter.name], [end[parameter.name] for end in ends]
+            hidden = priors.NINETY_SD * priors.GAIN_SD * abs(parameter.gain_power * best)
+            out[parameter.name] = best, best - np.hypot(best - min(best, *row), hidden), best + np.hypot(max(best, *row) - best, hidden)
+        return {name: tuple(map(float, row)) for name, row in out.items()}
 
     def normalised(self, physical, scales):
         """Return (parameter,) from 0 to 1 of {name: value in SI}."""

@@ -178,17 +178,18 @@ def write_candidates(found, prepared, totals, folder, levels):
         parts = [(row.candidate.first, 0), (row.candidate.second, row.candidate.split)] if isinstance(row.candidate, Pair) else [(row.candidate, 0)]
         profile, parameters = [], {}
         for candidate, offset in parts:
+            unit, interval = (np.array(rows[offset : offset + len(candidate.effect.parameters)]) for rows in (row.unit, row.interval))
+            estimate = candidate.estimate(unit, interval, prepared.scales)
             for number, parameter in enumerate(candidate.effect.parameters):
                 values, score = row.profile[offset + number]
-                unit = np.array(row.unit[offset : offset + len(candidate.effect.parameters)])
                 sizes = []
-                for value in (*values, row.unit[offset + number], *row.interval[offset + number]):
+                for value in values:
                     moved = unit.copy()
                     moved[number] = value
                     sizes.append(candidate.physical(moved, prepared.scales)[parameter.name])
                 name = parameter.name if len(parts) == 1 else f"{candidate.effect.reported}.{parameter.name}"
-                profile.append({"parameter": name, "unit": parameter.unit, "values": sizes[:-3], "score": score.tolist()})
-                parameters[name] = {"value": sizes[-3], "unit": parameter.unit, "low": min(sizes[-2:]), "high": max(sizes[-2:])}
+                profile.append({"parameter": name, "unit": parameter.unit, "values": sizes, "score": score.tolist()})
+                parameters[name] = dict(zip(("value", "low", "high"), estimate[parameter.name], strict=True)) | {"unit": parameter.unit}
         content = {"ids": row.candidate.ids, "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
                    "parameters": parameters, "by_level": levels.get(row.candidate.name, [])}  # fmt: skip
         write_text(json.dumps(plain(content), indent=1), folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json")

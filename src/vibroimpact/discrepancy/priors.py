@@ -4,6 +4,7 @@
 FREQUENCY_SD = 0.003  # of each modal frequency
 DAMPING_SD = 0.10  # of each modal damping
 GAIN_SD = 0.02  # of each channel
+NINETY_SD = 1.645  # sigma: half of the interval of 90 % of a normal law
 SHAPE_SD = 0.003  # of a mode shape, relative to its largest value among the channels
 CORRECTION_LIMIT = 2.0  # sigma: a nuisance is not corrected beyond it, so that it can not hide an effect
 NAMED_BEYOND = 2.0  # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their interval outside

@@ -128,9 +128,9 @@ def effects_of(prepared, decision, sizes):
 
 def _effect(candidate, unit, interval, sizes):
     """Return {id, location, parameters: {name: {value, unit, low, high}}}."""
-    value, low, high = candidate.physical(unit, sizes), candidate.physical(interval[:, 0], sizes), candidate.physical(interval[:, 1], sizes)
-    parameters = {parameter.name: {"value": value[parameter.name], "unit": parameter.unit, "low": min(low[parameter.name], high[parameter.name]),
-                                   "high": max(low[parameter.name], high[parameter.name])} for parameter in candidate.effect.parameters}  # fmt: skip
+    estimate = candidate.estimate(unit, interval, sizes)
+    parameters = {parameter.name: dict(zip(("value", "low", "high"), estimate[parameter.name], strict=True)) | {"unit": parameter.unit}
+                  for parameter in candidate.effect.parameters}  # fmt: skip
     if candidate.effect_id == "gap":
         nominal = sizes["gap"]
         parameters["gap"] = {"unit": "m", **{key: nominal * parameters["gap_factor"][key] for key in ("value", "low", "high")}}

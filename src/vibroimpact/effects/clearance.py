@@ -16,7 +16,7 @@ EFFECT = Effect(
     explanation="a stop behind a clearance that the model lacks",
     source="dead zone: stiffness (|u| - half_gap) beyond half_gap",
     parameters=(
-        Parameter("half_gap", "m", 0.05, 3.0, None, per="displacement", design=(0.3, 0.55, 0.8)),
+        Parameter("half_gap", "m", 0.05, 3.0, None, per="displacement", design=(0.3, 0.55, 0.8), gain_power=1.0),
         Parameter("stiffness", "N/m", 0.1, 1000.0, None, per="tube_translation", design=(0.12, 0.35, 0.7)),
     ),
     apply=apply,

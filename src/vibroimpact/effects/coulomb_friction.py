@@ -18,7 +18,7 @@ EFFECT = Effect(
     explanation="something rubs with a constant force",
     source="Coulomb with an elastic stick spring (Jenkins element)",
     parameters=(
-        Parameter("force", "N", 0.003, 2.0, 0.0, per="load"),
+        Parameter("force", "N", 0.003, 2.0, 0.0, per="load", gain_power=1.0),
     ),
     apply=apply,
     below_contact=True,

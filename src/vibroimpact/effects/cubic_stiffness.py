@@ -14,7 +14,7 @@ EFFECT = Effect(
     explanation="a spring stiffens with the amplitude",
     source="Duffing: force = coefficient u^3",
     parameters=(
-        Parameter("coefficient", "N/m^3", 0.01, 300.0, 0.0, per="cubic"),
+        Parameter("coefficient", "N/m^3", 0.01, 300.0, 0.0, per="cubic", gain_power=-2.0),
     ),
     apply=apply,
     below_contact=True,

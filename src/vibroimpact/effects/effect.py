@@ -14,7 +14,8 @@ class Parameter:
     unit; low, high: bounds in units of the scale named `per` (a key of scales.scales, "one" for SI as it is); neutral: value without the effect in
     SI, None where the effect has no neutral limit; log: searched in its logarithm; design: values to try first, as fractions from low (0) to
     high (1) of the searched range; over: the parameter that this one is searched as a multiple of (the range is that of a value of 1 in its
-    scale), where the two together set what is seen.
+    scale), where the two together set what is seen; gain_power: with which power of a gain common to force and responses the value that explains the
+    records grows: such a gain is a length scaled and can not be told from one.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Parameter:
     log: bool = True
     design: tuple[float, ...] = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
     over: str | None = None
+    gain_power: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ EFFECT = Effect(
     explanation="the hole is not circular: lobes, or flat lands as their limit",
     source="r(theta) = gap + depth (1 - cos(4 (theta - angle))) / 2; force along the normal of the profile",
     parameters=(
-        Parameter("depth", "m", 0.03, 1.5, 0.0, per="gap", design=(0.25, 0.65, 1.0)),
+        Parameter("depth", "m", 0.03, 1.5, 0.0, per="gap", design=(0.25, 0.65, 1.0), gain_power=1.0),
         Parameter("angle", "rad", 0.0, 1.5707963267948966, 0.0, log=False, design=(0.0, 0.25, 0.5, 0.75)),
     ),
     apply=apply,

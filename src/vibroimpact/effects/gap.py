@@ -25,7 +25,7 @@ EFFECT = Effect(
     explanation="the radial clearance differs from the nominal one",
     source="scaling: q/gap depends on force/gap alone",
     parameters=(
-        Parameter("gap_factor", "1", 0.4, 2.5, 1.0, design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9)),
+        Parameter("gap_factor", "1", 0.4, 2.5, 1.0, design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9), gain_power=1.0),
     ),
     apply=apply,
     locations=places.supports,

@@ -14,7 +14,7 @@ EFFECT = Effect(
     explanation="the contact stiffens with the indentation (Hertz)",
     source="H. Hertz (1882): force = coefficient p^1.5",
     parameters=(
-        Parameter("coefficient", "N/m^1.5", 0.005, 5.0, None, per="hertz"),
+        Parameter("coefficient", "N/m^1.5", 0.005, 5.0, None, per="hertz", gain_power=-0.5),
     ),
     apply=apply,
     locations=places.supports,

@@ -14,7 +14,7 @@ EFFECT = Effect(
     explanation="the contact dissipates with indentation times its speed",
     source="K.H. Hunt, F.R.E. Crossley, J. Appl. Mech. 42 (1975): k p max(0, 1 + alpha dp/dt)",
     parameters=(
-        Parameter("alpha", "s/m", 0.03, 30.0, 0.0),
+        Parameter("alpha", "s/m", 0.03, 30.0, 0.0, gain_power=-1.0),
     ),
     apply=apply,
     locations=places.supports,

@@ -23,8 +23,8 @@ EFFECT = Effect(
     explanation="a constant force presses the tube to one side",
     source="statics",
     parameters=(
-        Parameter("force_x", "N", -2.0, 2.0, 0.0, per="gap_force", log=False, design=(0.1, 0.5, 0.9)),
-        Parameter("force_y", "N", -2.0, 2.0, 0.0, per="gap_force", log=False, design=(0.1, 0.5, 0.9)),
+        Parameter("force_x", "N", -2.0, 2.0, 0.0, per="gap_force", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
+        Parameter("force_y", "N", -2.0, 2.0, 0.0, per="gap_force", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
     ),
     apply=apply,
     locations=locations,

@@ -23,7 +23,7 @@ EFFECT = Effect(
     explanation="a fluid at rest brakes the tube with the square of its speed",
     source="J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v, v the vector across z",
     parameters=(
-        Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag"),
+        Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag", gain_power=-1.0),
     ),
     apply=apply,
     below_contact=True,

@@ -14,7 +14,7 @@ EFFECT = Effect(
     explanation="a spring is stiffer to one side",
     source="force = coefficient u^2",
     parameters=(
-        Parameter("coefficient", "N/m^2", -0.15, 0.15, 0.0, per="quadratic", log=False, design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0)),
+        Parameter("coefficient", "N/m^2", -0.15, 0.15, 0.0, per="quadratic", log=False, design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0), gain_power=-1.0),
     ),
     apply=apply,
     below_contact=True,

@@ -14,8 +14,8 @@ EFFECT = Effect(
     explanation="the support is not centred on the tube",
     source="geometry",
     parameters=(
-        Parameter("offset_x", "m", -1.5, 1.5, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9)),
-        Parameter("offset_y", "m", -1.5, 1.5, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9)),
+        Parameter("offset_x", "m", -1.5, 1.5, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
+        Parameter("offset_y", "m", -1.5, 1.5, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
     ),
     apply=apply,
     locations=places.supports,
