@@ -11,6 +11,7 @@ import yaml
 from vibroimpact.discrepancy import jobs, mapping, misfit, power_balance, priors, verdict
 from vibroimpact.discrepancy.by_level import by_level
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
+from vibroimpact.discrepancy.estimate_scatter import with_scatter
 from vibroimpact.discrepancy.invariances import broken_invariances
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.nuisance import Nuisance
@@ -54,6 +55,10 @@ def conclude(run, screening, final_files, provenance, quick=False):
     measured = bench.measured_features[null.records]
     p_before = mapping.global_p(bench, null, measured)
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
+    if decision.chosen is not None:
+        chosen = with_scatter(bench, null, measured, decision.chosen)
+        found = [chosen if row is decision.chosen else row for row in found]
+        decision = replace(decision, chosen=chosen)
     whole = before_bench = run.whole_bench
     seeds = LEAST_FRESH if quick else max(LEAST_FRESH, min(priors.FINAL_SEEDS, FRESH_RUNS // len(bench.signals.load)))
     if prepared.adopted is not None:

@@ -53,7 +53,7 @@ def started(bench, null, candidate, unit, scales, first_seed=2000):
 
 def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=2000):
     """Return the Path of a candidate at the points of a Path that was moved here, from another campaign or shorter records, that look best, and at unit."""
-    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:STARTS]
+    order = np.argsort(scores_along(bench, null, measured, path, fit))[::-1][:STARTS]
     points = path.parameters[order]
     if not any(np.allclose(unit, point, atol=NEW) for point in points):
         points = np.vstack([unit, points[: STARTS - 1]])
@@ -62,11 +62,11 @@ def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=20
 
 def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):
     """Return (candidate, its Path) at the place where the best points of its Path come nearest to what was measured."""
-    scores = _scores(bench, null, measured, path, fit)
+    scores = scores_along(bench, null, measured, path, fit)
     order, best, kept = np.argsort(scores)[::-1][:TRIED], scores.max(), (candidate, path)
     for other in other_places(candidate, bench.values):
         there = simulate_path(bench, other, path.parameters[order], scales, null.records, first_seed=first_seed)
-        found = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
+        found = -np.inf if there is None else scores_along(bench, null, measured, there, fit).max()
         if found > best:
             best, kept = found, (other, there)
     return kept
@@ -89,7 +89,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
             free = _free(bench, null, candidate, path, at, scales, first_seed + 400 + 50 * number)
             own = null.freed(free)
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
-        scores = _scores(bench, own, measured, path, fit)
+        scores = scores_along(bench, own, measured, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY
         stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level])
         if stayed or number and not better:
@@ -132,7 +132,7 @@ def _unknown(points, path, periodic):
     return np.array([unit for unit in points if not any(np.all(_apart(unit, other, periodic) < NEW) for other in path.parameters)])
 
 
-def _scores(bench, null, measured, path, fit):
+def scores_along(bench, null, measured, path, fit):
     """Return (point,) the log likelihood of what was measured at the points of a path."""
     return np.array([direct_scores(bench, null, measured, mean)[fit].sum() + linear_score(bench, reading)
                      for mean, reading in zip(path.features, path.readings, strict=True)])  # fmt: skip
@@ -141,21 +141,25 @@ def _scores(bench, null, measured, path, fit):
 def gains_of(bench, null, measured, path, own=None):
     """Return (point,) the gain of log likelihood over the null, of all records, at the points of a path; own: the Null of the path's candidate."""
     start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
-    return _scores(bench, null if own is None else own, measured, path, np.ones(len(measured), bool)) - start
+    return scores_along(bench, null if own is None else own, measured, path, np.ones(len(measured), bool)) - start
 
 
 def _best_simulated(bench, null, measured, path, fit):
     """Return (parameter,) the point of a path that comes nearest to what was measured."""
-    return path.parameters[np.argmax(_scores(bench, null, measured, path, fit))]
+    return path.parameters[np.argmax(scores_along(bench, null, measured, path, fit))]
 
 
 def _calibrated_near(bench, null, measured, candidate, path, fit):
     """Return the Calibrated of the points near the best simulated one, and not far beyond them: what an effect changes elsewhere tells little."""
     best = _best_simulated(bench, null, measured, path, fit)
-    near = np.array([_apart(unit, best, candidate.periodic).max() for unit in path.parameters]) <= NEAR
-    found = calibrate(bench, null, measured, candidate, path.of(near), fit)
+    found = calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit)
     inside = np.clip(found.unit, best - NEAR, best + NEAR)
     return found if candidate.periodic or np.allclose(found.unit, inside) else replace(found, unit=inside)
+
+
+def near(path, unit, periodic):
+    """Return (point,) bool: the points of a path near unit (parameter,)."""
+    return np.array([_apart(unit, other, periodic).max() for other in path.parameters]) <= NEAR
 
 
 def _with_whole_interval(bench, null, measured, candidate, path, fit, found):
@@ -192,11 +196,15 @@ def judged(bench, null, measured, candidate, unit, path, found, free, scales, se
     return Finalist(candidate, unit, interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile, free)
 
 
+def offset(one, other, periodic):
+    """Return (parameter,) one minus other of two points, the short way round where an angle wraps."""
+    difference = one - other
+    return np.where(np.isin(np.arange(len(one)), periodic), (difference + 0.5) % 1.0 - 0.5, difference)
+
+
 def _apart(one, other, periodic):
     """Return (parameter,) the distances of two points (an angle wraps round)."""
-    distance = np.abs(one - other)
-    wrapped = np.minimum(distance, 1.0 - distance)
-    return np.where(np.isin(np.arange(len(one)), periodic), wrapped, distance)
+    return np.abs(offset(one, other, periodic))
 
 
 def _around(unit, step, periodic):

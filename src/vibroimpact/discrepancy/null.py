@@ -43,7 +43,7 @@ class Null:
 def unseen_damping(bench, values, factor):
     """Return the model of a configuration in plain values with another damping of the structure's modes that the lowest record does not show."""
     model = bench.model(values)
-    plates = [np.sqrt(support["plate"]["stiffness_N_per_m"] / support["plate"]["mass_kg"]) for support in values["supports"] if support["plate"]]
+    plates = [np.sqrt(support["plate"]["stiffness_N_per_m"] / support["plate"]["mass_kg"]) for support in values["supports"] if support.get("plate")]
     unseen = ~np.isin(model.omega, plates)
     if bench.linear_stage:
         unseen[same_modes(model, bench.measured_fit.modes, bench.bare)] = False
