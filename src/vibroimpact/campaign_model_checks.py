@@ -69,7 +69,15 @@ def compare_with_model(spectra, simulated, names, kinds, record=None):
         if abs(gain) > UNIT_FACTOR_DB:
             rows.append(_row("units", record, names[channel], f"{names[channel]} is {10 ** (gain / 20):.3g} times the model in record "
                                                               f"{record}{_known(gain)}: check its unit."))
-    return rows
+    return _together(rows)
+
+
+def _together(rows):
+    """Return the rows with those of units as rows of "gains" where several channels are off: then no channel is to be left out for it."""
+    if sum(row["check"] == "units" for row in rows) < 2:
+        return rows
+    why = " Several channels are off: the structure is another than the model at this level, or the force has another unit."
+    return [row | {"check": "gains", "message": row["message"].split(": check")[0] + "." + why} if row["check"] == "units" else row for row in rows]
 
 
 def _swaps(misfit, kinds):

@@ -59,3 +59,10 @@ def test_a_channel_that_hears_nothing_is_not_judged():
     quiet = spectra(measured)
     quiet.coherence[3] = 0.1
     assert compare_with_model(quiet, beam(), NAMES, KINDS) == []
+
+
+def test_several_channels_off_are_the_structure_and_no_units():
+    """Friction that holds the tube at the lowest level quietens many channels: none is left out for it."""
+    rows = compare_with_model(spectra(beam(1.003) * np.array([0.2, 0.3, 1.0, 0.4, 1.0])[:, None]), beam(), NAMES, KINDS, "low")
+    assert [(row["check"], row["channel"]) for row in rows] == [("gains", "y0"), ("gains", "y1"), ("gains", "y3")]
+    assert "Several channels are off" in rows[0]["message"] and "check its unit" not in rows[0]["message"]
