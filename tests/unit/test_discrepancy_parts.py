@@ -224,3 +224,7 @@ def test_what_other_damping_changes_is_no_evidence():
     assert along == pytest.approx(1.0, abs=0.01)
     assert across == pytest.approx(20 * 64.0)
     assert null.covariance is covariance
+
+
+def test_where_no_band_counts_nothing_is_closed():
+    assert closed_fraction(0.0, 0.0, 0.0) is None

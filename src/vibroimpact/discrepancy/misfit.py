@@ -29,7 +29,7 @@ def excess(distance, floor):
 def closed_fraction(before, after, floor):
     """Return 1 - excess after / excess before; None where there was next to nothing before."""
     gap = excess(before, floor)
-    return None if gap < priors.NO_EXCESS * floor else 1.0 - excess(after, floor) / gap
+    return None if gap <= priors.NO_EXCESS * floor else 1.0 - excess(after, floor) / gap
 
 
 def floor_of(power, chosen):
