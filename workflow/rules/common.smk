@@ -16,6 +16,7 @@ from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.completion.study import STUDIES, study_of
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, local_names, pair_names, shard_of
+from vibroimpact.discrepancy.suite_check import CHECKS
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
 

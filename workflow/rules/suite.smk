@@ -77,3 +77,6 @@ rule suite:
         f"Suite of seed {SUITE_SEED}: {SUITE}/rates.csv"
     script:
         "../scripts/suite.py"
+
+
+include: "suite_check.smk"

@@ -1,0 +1,45 @@
+"""A few sealed campaigns whose quick verdicts must be right: the check of the whole chain that a change can afford."""
+
+from dataclasses import dataclass
+
+CONTACT = {"gap", "contact_stiffness", "contact_damping", "hunt_crossley", "hertz", "dry_friction", "support_offset", "foliate_obstacle", "preload", "plate_flexibility"}
+
+
+@dataclass(frozen=True)
+class Check:
+    """hidden: ((id, parameters), ...) of vibroimpact_truth; wanted: sets of ids that must be in the ambiguity set, none of them for the verdict none;
+    never: ids that must be in no set."""
+
+    hidden: tuple
+    wanted: tuple
+    never: frozenset = frozenset()
+
+    def faults(self, verdict):
+        """Return the sentences of what a verdict (content of verdict.json) gets wrong, none where it is right."""
+        sets = [sorted(row) for row in verdict["ambiguity_set"]]
+        said = f"the verdict is {verdict['verdict']} with {sets}"
+        wrong = [] if self.wanted or verdict["verdict"] == "none" else [f"nothing is hidden, but {said}"]
+        wrong += [f"{ids} is not in the set: {said}" for ids in self.wanted if sorted(ids) not in sets]
+        return wrong + [f"{name} can not be, but {said}" for name in sorted(self.never & {name for row in sets for name in row})]
+
+
+CHECKS = {
+    "nothing": Check((), ()),
+    "contact_damping": Check((("contact_damping", {"damping": 600.0}),), (("contact_damping",),)),
+    "gap": Check((("gap", {"factor": 0.65}),), (("gap",), ("sensor_gain",))),
+    "one_gain": Check((("sensor_gain", {"channel": "right_leg_upper_y", "factor": 0.6}),), (("sensor_gain",),), frozenset(CONTACT)),
+    # mutations of the measuring chain: the force alone is a gain and no contact effect; force and every response alike are a gap scaled
+    "force_gain": Check((("sensor_gain", {"channel": "force", "factor": 1.1}),), (("sensor_gain",),), frozenset(CONTACT)),
+    "common_gain": Check((("sensor_gain", {"channel": "all", "factor": 1.3}),), (("gap",), ("sensor_gain",))),
+}  # fmt: skip
+SEED, SECONDS = 77, 20.0
+
+
+def table(verdicts):
+    """Return rows {check, hidden, verdict, ambiguity_set, right, faults} of {check name: content of verdict.json}."""
+    rows = []
+    for name, verdict in verdicts.items():
+        faults = CHECKS[name].faults(verdict)
+        rows.append({"check": name, "hidden": "+".join(effect for effect, _ in CHECKS[name].hidden) or "nothing", "verdict": verdict["verdict"],
+                     "ambiguity_set": "|".join("+".join(row) for row in verdict["ambiguity_set"]), "right": not faults, "faults": "; ".join(faults)})  # fmt: skip
+    return rows

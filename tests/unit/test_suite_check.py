@@ -1,0 +1,32 @@
+"""The check of quick verdicts fails where a verdict is wrong."""
+
+import pytest
+
+from vibroimpact.discrepancy.suite_check import CHECKS, table
+
+
+def verdict(kind, *sets):
+    """The part of verdict.json that is looked at."""
+    return {"verdict": kind, "ambiguity_set": [list(row) for row in sets]}
+
+
+@pytest.mark.parametrize("name, said, right", [
+    ("nothing", verdict("none"), True),
+    ("nothing", verdict("unknown"), False),
+    ("nothing", verdict("named", ["gap"]), False),
+    ("gap", verdict("ambiguous", ["gap"], ["sensor_gain"]), True),
+    ("gap", verdict("named", ["gap"]), False),
+    ("force_gain", verdict("named", ["sensor_gain"]), True),
+    ("force_gain", verdict("ambiguous", ["gap"], ["sensor_gain"]), False),
+    ("contact_damping", verdict("ambiguous", ["hunt_crossley"], ["contact_damping"]), True),
+    ("contact_damping", verdict("named", ["dry_friction"]), False)])  # fmt: skip
+def test_a_verdict_is_right_or_told_why_not(name, said, right):
+    (row,) = table({name: said})
+    assert row["right"] == right and bool(row["faults"]) != right
+
+
+def test_every_check_hides_what_the_generator_knows():
+    from vibroimpact_truth.hidden import EFFECTS
+    from vibroimpact_truth.measure import INSTRUMENTS
+
+    assert {effect for check in CHECKS.values() for effect, _ in check.hidden} <= {*EFFECTS, *INSTRUMENTS}

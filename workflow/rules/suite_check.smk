@@ -1,0 +1,46 @@
+# The suite's little sister: `snakemake -j2 suite_check`, a few sealed campaigns by quick verdicts, in minutes. Fails where one of them is wrong.
+
+SUITE_CHECK = "results/suite_check"
+
+
+rule suite_check_campaign:
+    input:
+        library=library("suite_check_campaign"),
+    output:
+        verdict=f"{SUITE_CHECK}/{{check}}/verdict.json",
+    params:
+        config=MODEL.model_dump(mode="json"),
+    log:
+        f"{SUITE_CHECK}/logs/{{check}}.log",
+    benchmark:
+        f"{SUITE_CHECK}/benchmarks/{{check}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=20,
+    message:
+        "Quick verdict of a sealed campaign: {wildcards.check}"
+    script:
+        "../scripts/suite_check_campaign.py"
+
+
+rule suite_check:
+    input:
+        library=library("suite_check"),
+        verdicts=[f"{SUITE_CHECK}/{name}/verdict.json" for name in CHECKS],
+    output:
+        table=f"{SUITE_CHECK}/table.csv",
+    params:
+        checks=list(CHECKS),
+    log:
+        f"{SUITE_CHECK}/logs/suite_check.log",
+    benchmark:
+        f"{SUITE_CHECK}/benchmarks/suite_check.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=1,
+    message:
+        f"Check of quick verdicts: {SUITE_CHECK}/table.csv"
+    script:
+        "../scripts/suite_check.py"
