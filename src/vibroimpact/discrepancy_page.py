@@ -29,19 +29,23 @@ def discrepancy_page(name, verdict, figures):
         sets=sets_in_words(verdict["ambiguity_set"]),
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
-        figures=[{"name": file.stem, "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
-                  "data": base64.b64encode(file.read_bytes()).decode()}
-                 for file in map(Path, figures)],
-        ranking=[{"ids": in_words(row["ids"]), "score": _digits(row["heldout_score"]),
-                  "closed": _percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
-        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=_digits(verdict["seconds"]),
+        figures=embedded(figures),
+        ranking=[{"ids": in_words(row["ids"]), "score": digits(row["heldout_score"]),
+                  "closed": percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
+        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=digits(verdict["seconds"]),
         provenance=[*_flat(verdict["provenance"])])
+
+
+def embedded(figures):
+    """Return {name, caption, data} of PNG files, each with its caption beside it as .txt; data as the text of a data: address."""
+    return [{"name": file.stem, "caption": file.with_suffix(".txt").read_text(encoding="utf-8"), "data": base64.b64encode(file.read_bytes()).decode()}
+            for file in map(Path, figures)]
 
 
 def verdict_sentence(verdict):
     """Return what the verdict says, in one or two sentences."""
     kind, closed = verdict["verdict"], (verdict["misfit"].get("holdout") or {}).get("closed_fraction")
-    shrinks = f" Adding it closes {_percent(closed)} of the excess misfit on records that were not fitted." if closed is not None else ""
+    shrinks = f" Adding it closes {percent(closed)} of the excess misfit on records that were not fitted." if closed is not None else ""
     named = "; and ".join(_with_parameters(effect) for effect in verdict["effects"])
     alternatives = [ids for ids in verdict["ambiguity_set"] if sorted(ids) != sorted(effect["id"] for effect in verdict["effects"])]
     others = f" This campaign can not tell it from {sets_in_words(alternatives)}." if named and alternatives else ""
@@ -71,8 +75,8 @@ def sets_in_words(sets):
 
 def _with_parameters(effect):
     """Return an effect in words with its parameters: dry friction at both plates (mu 0.149, between 0.128 and 0.171)."""
-    values = ", ".join(f"{name.replace('_', ' ')} {_digits(value['value'])}{_unit(value['unit'])}, between {_digits(value['low'])} and "
-                       f"{_digits(value['high'])}"
+    values = ", ".join(f"{name.replace('_', ' ')} {digits(value['value'])}{_unit(value['unit'])}, between {digits(value['low'])} and "
+                       f"{digits(value['high'])}"
                        for name, value in effect["parameters"].items())
     place = f" at {effect['location']}" if effect.get("location") not in (None, "", "all") else ""
     return f"{in_words([effect['id']])}{place}" + (f" ({values})" if values else "")
@@ -83,7 +87,7 @@ def _effect_rows(verdict):
         known = EFFECTS.get(effect["id"])
         head = {"effect": in_words([effect["id"]]), "explanation": known.explanation if known else "", "location": effect.get("location") or "all"}
         for name, value in effect["parameters"].items() or [("", None)]:
-            cells = {key: _digits(value[key]) if value else "" for key in ("value", "low", "high")}
+            cells = {key: digits(value[key]) if value else "" for key in ("value", "low", "high")}
             yield {**head, "parameter": name.replace("_", " "), **cells, "unit": _unit(value["unit"]).strip() or "-" if value else ""}
             head = {"effect": "", "explanation": "", "location": ""}
 
@@ -91,14 +95,14 @@ def _effect_rows(verdict):
 def _misfit_rows(verdict):
     for split, words in SPLITS.items():
         values = verdict["misfit"].get(split) or {}
-        yield {"records": words, **{key: _digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")},
-               "closed": _percent(values.get("closed_fraction"))}
+        yield {"records": words, **{key: digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")},
+               "closed": percent(values.get("closed_fraction"))}
 
 
 def _region_row(region):
     gap = region.get("gap_m")
-    return {"band": " to ".join(_digits(edge) for edge in region["band_Hz"]), "channel": region["channel"], "load": _digits(region["load_rms_N"]),
-            "gap": _digits(gap * 1e3) if gap is not None else "-", "discrepancy": f"{region['discrepancy_dB']:+.1f}", "z": f"{region['z']:+.1f}"}
+    return {"band": " to ".join(digits(edge) for edge in region["band_Hz"]), "channel": region["channel"], "load": digits(region["load_rms_N"]),
+            "gap": digits(gap * 1e3) if gap is not None else "-", "discrepancy": f"{region['discrepancy_dB']:+.1f}", "z": f"{region['z']:+.1f}"}
 
 
 def _flat(values, prefix=""):
@@ -113,11 +117,13 @@ def _unit(unit):
     return "" if unit in ("1", "", "-", None) else f" {unit}"
 
 
-def _digits(value):
+def digits(value):
+    """Return a number with 3 digits, - where there is none."""
     return "-" if value is None or value != value else f"{value:.3g}" if abs(value) < 1e5 else f"{value:.3e}"
 
 
-def _percent(fraction):
+def percent(fraction):
+    """Return a share in whole per cent, - where there is none."""
     return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"
 
 

@@ -5,6 +5,7 @@ SUITE_SEED = int(REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/di
 SUITE = f"results/suite_{SUITE_SEED}"
 SUITE_S = int(REQUEST.get("seconds", 20))
 SUITE_CAMPAIGNS = shard_of(int(REQUEST.get("count", 12)), REQUEST.get("shard", "0/1"))
+SUITE_FIGURES = ("suite_rates", "suite_confusion", "suite_strength", "suite_parameters")  # in the order of the page
 
 
 rule suite_bank:
@@ -58,23 +59,28 @@ rule suite_campaign:
 rule suite:
     input:
         library=library("suite"),
+        template=f"{SOURCE}/vibroimpact/suite_page.html",
         verdicts=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
     output:
         rates=f"{SUITE}/rates.csv",
         campaigns=f"{SUITE}/campaigns.csv",
         confusion=f"{SUITE}/confusion.csv",
+        detection=f"{SUITE}/detection.csv",
+        figures=[f"{SUITE}/figures/{name}.{suffix}" for name in SUITE_FIGURES for suffix in ("png", "pdf", "csv", "txt")],
+        page=f"{SUITE}/report.html",
     params:
         campaigns=len(SUITE_CAMPAIGNS),
+        seed=SUITE_SEED,
     log:
         f"{SUITE}/logs/suite.log",
     benchmark:
         f"{SUITE}/benchmarks/suite.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=2000,
         runtime=10,
     message:
-        f"Suite of seed {SUITE_SEED}: {SUITE}/rates.csv"
+        f"Suite of seed {SUITE_SEED}: {SUITE}/report.html"
     script:
         "../scripts/suite.py"
 

@@ -4,7 +4,7 @@ import pickle
 import sys
 from pathlib import Path
 
-from vibroimpact.discrepancy.suite import left_out, run_sealed
+from vibroimpact.discrepancy.suite_run import left_out, run_sealed
 from vibroimpact_truth.campaign import LEVELS, make_campaign
 from vibroimpact_truth.draw import drawn
 

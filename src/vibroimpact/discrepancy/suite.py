@@ -8,9 +8,9 @@ from scipy import stats
 
 from vibroimpact.discrepancy.misfit import excess
 
-EQUIVALENT = {"fluid": "fluid_added_mass_damping"}
 FAULT_CHECKS = {"clipping", "drop-outs", "delay", "swapped channels", "units", "gaps in time", "directions"}
 SENSOR = {"sensor_gain", "sensor_delay"}
+GROUPS = {"null": "nothing", "stranger": "stranger", "left_out": "left out", "fault": "fault"}  # others: in the catalogue
 NAMEABLE = ("strong", "medium", "weak", "two", "alias")  # arms whose truth is in the catalogue
 STRONG, MEDIUM = 3.0, 1.0  # floors of excess
 TARGETS = {  # arm, quantity -> (target, fails beyond); from the acceptance table
@@ -27,48 +27,54 @@ SAME_QUANTITY = {"gap": ("factor", "gap_factor"), "contact_damping": ("damping",
                  "coulomb_friction": ("force", "force"), "quadratic_drag": ("coefficient", "coefficient"), "sensor_gain": ("factor", "factor")}  # fmt: skip
 
 
-def arm_of(verdict, truth):
-    """Return the arm of a campaign: one effect is strong from 3 floors of excess on the held-out records on, medium from 1 on, else weak.
+def strength_of(verdict, truth):
+    """Return the excess of the bare model's misfit over its floor on the held-out records, in floors; NaN where neither file tells it.
 
-    The excess is the truth's where that states it, else what the verdict reports of the bare model.
+    It is the truth's where that states it, else what the verdict reports of the bare model.
     """
-    if truth["arm"] not in ("strong", "medium"):
-        return truth["arm"]
-    gap = verdict["misfit"]["holdout"]
     if "strength" in truth:
-        floors = truth["strength"]["excess_over_floor"]
-    elif gap["before_dB"] is None:
+        return float(truth["strength"]["excess_over_floor"])
+    gap = verdict["misfit"]["holdout"]
+    return excess(gap["before_dB"], gap["floor_dB"]) / gap["floor_dB"] if gap["before_dB"] is not None and gap["floor_dB"] else float("nan")
+
+
+def arm_of(verdict, truth):
+    """Return the arm of a campaign: one effect is strong from 3 floors of excess on the held-out records on, medium from 1 on, else weak."""
+    floors = strength_of(verdict, truth)
+    if truth["arm"] not in ("strong", "medium") or np.isnan(floors):
         return truth["arm"]
-    else:
-        floors = excess(gap["before_dB"], gap["floor_dB"]) / gap["floor_dB"]
     return "strong" if floors >= STRONG else "medium" if floors >= MEDIUM else "weak"
 
 
 def judged(verdict, truth):
-    """Return a row {arm, hidden, verdict, named, in_set, first, one_right, wrong, flagged, closed, errors} of one campaign; contents of the two files."""
-    hidden = sorted(EQUIVALENT.get(name, name) for name, _ in truth["effects"])
+    """Return the row of one campaign from the contents of its two files: arm, strength, what was hidden and what was said of it, which of the suite's
+    questions it answers with yes, and the first named parameter that both codes state."""
+    hidden = sorted(name for name, _ in truth["effects"])
     sets = [sorted(row) for row in verdict["ambiguity_set"]]
     named = {name for row in sets for name in row}
     first = sorted(verdict["ranking"][0]["ids"]) if verdict["ranking"] else []
     flagged = bool({row["check"] for row in verdict["checks"] if row["level"] != "pass"} & FAULT_CHECKS) or bool(named & SENSOR)
     single = verdict["verdict"] == "named"
-    return {"arm": arm_of(verdict, truth), "hidden": "+".join(hidden), "verdict": verdict["verdict"], "named": "|".join("+".join(row) for row in sets), "first_name": "+".join(first),
+    return {"arm": arm_of(verdict, truth), "strength": strength_of(verdict, truth), "hidden": "+".join(hidden), "verdict": verdict["verdict"],
+            "named": "|".join("+".join(row) for row in sets), "first_name": "+".join(first),
             "in_set": hidden in sets, "first": first == hidden, "one_right": bool(set(hidden) & named), "wrong": single and hidden not in sets,
             "any_name": bool(sets) and verdict["verdict"] in ("named", "ambiguous"),
             "open": verdict["verdict"] in ("unknown", "partly_explained", "not_testable"), "flagged": flagged,
             "both": len(hidden) == 1 and {hidden[0], ALIASES.get(hidden[0])} <= named, "closed": verdict["misfit"]["holdout"]["closed_fraction"],
-            "parameter_error": _error(verdict, truth)[0], "covered": _error(verdict, truth)[1]}  # fmt: skip
+            **_parameter(verdict, truth)}  # fmt: skip
 
 
-def _error(verdict, truth):
-    """Return (relative error, covered) of the first parameter that is the same quantity in both codes; NaN where none is named."""
+def _parameter(verdict, truth):
+    """Return {parameter, true, value, low, high, parameter_error, covered} of the first parameter that is the same quantity in both codes, in the
+    catalogue's unit; "" and NaN where none is named."""
     for name, parameters in truth["effects"]:
         own = SAME_QUANTITY.get(name)
         for effect in verdict["effects"]:
             if own and effect["id"] == name and own[0] in parameters and own[1] in effect["parameters"]:
                 found, true = effect["parameters"][own[1]], parameters[own[0]]
-                return abs(found["value"] / true - 1.0), float(found["low"] <= true <= found["high"])
-    return float("nan"), float("nan")
+                return {"parameter": f"{name}.{own[1]}", "true": true, "value": found["value"], "low": found["low"], "high": found["high"],
+                        "parameter_error": abs(found["value"] / true - 1.0), "covered": float(found["low"] <= true <= found["high"])}  # fmt: skip
+    return {"parameter": "", **dict.fromkeys(("true", "value", "low", "high", "parameter_error", "covered"), float("nan"))}
 
 
 TURNS = 200  # of the labels
@@ -84,9 +90,16 @@ def by_chance(rows, arm, key):
     return float(np.mean([label in answer for _ in range(TURNS) for label, answer in zip(rng.choice(dealt, len(answers)), answers, strict=True)]))
 
 
+def share(hits, count):
+    """Return (low, high), the 95 % interval of Clopper and Pearson of a share, hits of count."""
+    low = stats.beta.ppf(0.025, hits, count - hits + 1) if hits else 0.0
+    high = stats.beta.ppf(0.975, hits + 1, count - hits) if hits < count else 1.0
+    return float(low), float(high)
+
+
 def rates(rows):
-    """Return rows {arm, quantity, campaigns, rate, low, high, by_chance, target, fails_beyond}: point estimate, 95 % interval (Clopper-Pearson; quartiles
-    where it is no share of campaigns), and the rate that shuffled labels give."""
+    """Return rows {arm, quantity, campaigns, rate, low, high, by_chance, target, fails_beyond, standing}: point estimate, 95 % interval (Clopper-Pearson;
+    quartiles of the two medians, which are no share of campaigns), the rate that shuffled labels give, and whether the target is met."""
     wanted = [("null", "false name", "any_name", "null"), ("strong", "in the set", "in_set", "strong"), ("strong", "first", "first", "strong"),
               ("medium", "in the set", "in_set", "medium"), ("medium", "wrong name", "wrong", "medium"), ("alias", "both in the set", "both", "alias"),
               ("two", "pair in the set", "in_set", "two"), ("two", "one right", "one_right", "two"), ("stranger", "unknown or partly", "open", "stranger"),
@@ -95,34 +108,46 @@ def rates(rows):
     for arm, quantity, key, of in wanted:
         chosen = [row[key] for row in rows if row["arm"] == of]
         if chosen:
-            hits, count = int(sum(chosen)), len(chosen)
-            low = stats.beta.ppf(0.025, hits, count - hits + 1) if hits else 0.0
-            high = stats.beta.ppf(0.975, hits + 1, count - hits) if hits < count else 1.0
-            out.append(_rate(arm, quantity, count, hits / count, low, high, by_chance(rows, of, key)))
-    errors = np.array([row["parameter_error"] for row in rows])
-    covered = np.array([row["covered"] for row in rows])
-    closed = np.array([row["closed"] for row in rows if row["arm"] == "strong" and row["in_set"] and row["closed"] is not None], float)
-    for quantity, arm, values in (("median error", "parameters", errors), ("covered", "parameters", covered), ("closed on hold-out", "misfit", closed)):
-        values = values[np.isfinite(values)]
-        if values.size:
-            middle = float(np.mean(values) if quantity == "covered" else np.median(values))
-            out.append(_rate(arm, quantity, values.size, middle, float(np.quantile(values, 0.25)), float(np.quantile(values, 0.75))))
-    return out
+            out.append(_rate(arm, quantity, len(chosen), float(np.mean(chosen)), *share(sum(chosen), len(chosen)), by_chance(rows, of, key)))
+    errors = [row["parameter_error"] for row in rows]
+    closed = [row["closed"] for row in rows if row["arm"] == "strong" and row["in_set"] and row["closed"] is not None]
+    covered = [row["covered"] for row in rows if np.isfinite(row["covered"])]
+    out += _middle("parameters", "median error", errors)
+    if covered:
+        out.append(_rate("parameters", "covered", len(covered), float(np.mean(covered)), *share(sum(covered), len(covered))))
+    return out + _middle("misfit", "closed on hold-out", closed)
+
+
+def _middle(arm, quantity, values):
+    """Return [row] of the median of values and their quartiles, [] where none is finite."""
+    values = np.asarray(values, float)
+    values = values[np.isfinite(values)]
+    return [_rate(arm, quantity, values.size, *(float(np.quantile(values, at)) for at in (0.5, 0.25, 0.75)))] if values.size else []
 
 
 def _rate(arm, quantity, count, rate, low, high, chance=float("nan")):
     target, limit = TARGETS[arm, quantity]
-    return {"arm": arm, "quantity": quantity, "campaigns": count, "rate": rate, "low": float(low), "high": float(high), "by_chance": chance, "target": target,
-            "fails_beyond": np.nan if limit is None else limit}  # fmt: skip
+    return {"arm": arm, "quantity": quantity, "campaigns": count, "rate": rate, "low": low, "high": high, "by_chance": chance, "target": target,
+            "fails_beyond": np.nan if limit is None else limit, "standing": standing(arm, quantity, rate)}  # fmt: skip
+
+
+def standing(arm, quantity, rate):
+    """Return "met", "missed", or "fails" where a rate lies beyond the limit too; a limit above its target bounds from above."""
+    target, limit = TARGETS[arm, quantity]
+    sense = -1.0 if limit is not None and limit > target else 1.0
+    if sense * rate >= sense * target:
+        return "met"
+    return "missed" if limit is None or sense * rate >= sense * limit else "fails"
 
 
 def confusion(rows):
-    """Return rows {hidden, first_name, campaigns}: what was hidden against what came first."""
+    """Return rows {group, hidden, first_name, campaigns}: what was hidden against what came first, or the verdict where nothing was named; group: which kind
+    of thing it was, by the names there were to give."""
     counts = {}
     for row in rows:
-        key = row["hidden"] or "nothing", row["first_name"] if row["any_name"] or row["open"] and row["named"] else row["verdict"]
+        key = GROUPS.get(row["arm"], "in the catalogue"), row["hidden"] or "nothing", row["first_name"] if row["any_name"] or row["open"] and row["named"] else row["verdict"]
         counts[key] = counts.get(key, 0) + 1
-    return [{"hidden": hidden, "first_name": name, "campaigns": count} for (hidden, name), count in sorted(counts.items())]
+    return [{"group": group, "hidden": hidden, "first_name": name, "campaigns": count} for (group, hidden, name), count in sorted(counts.items())]
 
 
 def read(folder):
@@ -133,17 +158,3 @@ def read(folder):
         if truth.is_file():
             rows.append({"campaign": file.parent.name} | judged(json.loads(file.read_text(encoding="utf-8")), json.loads(truth.read_text(encoding="utf-8"))))
     return rows
-
-
-def left_out(plan_effects, arm):
-    """Return the ids to take out of the catalogue for a campaign of the arm left_out."""
-    return {EQUIVALENT.get(name, name) for name, _ in plan_effects} if arm == "left_out" else set()
-
-
-def run_sealed(values, folder, bank, tables, without=frozenset()):
-    """Run the campaign in a folder against a configuration with the candidates of a bank, those of some ids left out; the campaign file is then dropped."""
-    from vibroimpact.discrepancy.whole import run_campaign
-
-    folder = Path(folder)
-    run_campaign(values, folder / "campaign.nc", folder, {}, bank=bank, tables=tables, without=without)
-    (folder / "campaign.nc").unlink()

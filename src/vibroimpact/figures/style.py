@@ -64,6 +64,9 @@ COLUMNS = {
     "score": ("Score (-)", 1.0), "parameter": ("Parameter (in its unit)", 1.0), "place_in_list": ("Place in the list (-)", 1.0),
     "psd_N2_per_Hz": ("PSD of force (N²/Hz)", 1.0), "psd_m2_per_s2_per_Hz": ("PSD of velocity ((m/s)²/Hz)", 1.0),
     "psd_V2_per_Hz": ("PSD of voltage (V²/Hz)", 1.0), "psd_unit2_per_Hz": ("PSD (unit²/Hz)", 1.0), "rms_over_lowest": ("RMS / RMS of the lowest level (-)", 1.0),
+    "rate": ("Share of campaigns; of the two medians: relative error, share of the excess closed (%)", 1e2), "campaigns": ("Campaigns (-)", 1.0),
+    "strength_over_floor": ("Strength: misfit of the bare model beyond its floor, held-out records (floors)", 1.0), "found": ("Truth in the set (%)", 1e2),
+    "estimate_over_truth": ("Estimate / truth (-)", 1.0),
 }
 
 METHODS = {
