@@ -124,3 +124,9 @@ def test_an_estimate_allows_for_a_gain_common_to_force_and_responses():
     assert (value / low, high / value) == pytest.approx((1.0 / (1.0 - 1.645 * 0.02), 1.0 + 1.645 * 0.02))
     mu, narrow, _ = friction.estimate(unit, np.array([[0.49, 0.51]]), {"one": 1.0})["mu"]
     assert narrow == pytest.approx(friction.physical([0.49], {"one": 1.0})["mu"]) and narrow < mu
+
+
+def test_a_linear_effect_stands_where_nothing_explains_the_rest(decided):
+    adopted = {"name": "sensor_gain@apex_y", "gain": 400.0, "unit": [0.7]}
+    found = decided([finalist("lateral_stinger@along_x", 30.0, explained=LEFT)], adopted=adopted, share=-0.2, linear=[adopted])
+    assert (found.verdict, found.ambiguity, found.chosen) == ("partly_explained", [["sensor_gain"]], None)

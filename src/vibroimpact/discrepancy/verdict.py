@@ -26,13 +26,12 @@ def decide(bench, null, prepared, found, threshold, p_before):
     linear = linear_sets(prepared)
     singles = [row for row in found if isinstance(row.candidate, Candidate)]
     doubles = [row for row in found if isinstance(row.candidate, Pair) and not idle(row, prepared.scales)]
-    best = singles[0] if singles else None
+    best, rest = singles[0] if singles else None, naming.explained(bench, null, null.mean, measured, False)
+    named = "named" if len(linear) == 1 else "ambiguous"
+    of_adopted = Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
     if best is None or totals[best.candidate.name][0] < threshold:
-        rest = naming.explained(bench, null, null.mean, measured, False)
-        if prepared.adopted is None:
-            return Decision("none" if p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z else "unknown", None, [], totals, rest, threshold)
-        named = "named" if len(linear) == 1 else "ambiguous"
-        return Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
+        nothing = "none" if p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z else "unknown"
+        return Decision(nothing, None, [], totals, rest, threshold) if prepared.adopted is None else of_adopted
     if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z:
         best = doubles[0]
     best = simpler(best, found, totals, prepared)
@@ -43,6 +42,8 @@ def decide(bench, null, prepared, found, threshold, p_before):
     share = closure(bench, null, best, measured)
     if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
         verdict = "partly_explained" if share > priors.PARTLY else "unknown"
+        if verdict == "unknown" and prepared.adopted is not None:
+            return of_adopted  # what the lowest record told stands, whatever else there is
         if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
             together += whole_sets(linear, [(singles[0].candidate.ids, singles[0].candidate.alone)])
         return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
