@@ -26,7 +26,6 @@ class Check:
 CHECKS = {
     "nothing": Check((), ()),
     "contact_damping": Check((("contact_damping", {"damping": 600.0}),), (("contact_damping",),)),
-    "gap": Check((("gap", {"factor": 0.65}),), (("gap",), ("sensor_gain",))),
     "one_gain": Check((("sensor_gain", {"channel": "right_leg_upper_y", "factor": 0.6}),), (("sensor_gain",),), frozenset(CONTACT)),
     # mutations of the measuring chain: the force alone is a gain and no contact effect; force and every response alike are a gap scaled
     "force_gain": Check((("sensor_gain", {"channel": "force", "factor": 1.1}),), (("sensor_gain",),), frozenset(CONTACT)),
