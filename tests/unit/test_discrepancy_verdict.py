@@ -130,3 +130,11 @@ def test_a_linear_effect_stands_where_nothing_explains_the_rest(decided):
     adopted = {"name": "sensor_gain@apex_y", "gain": 400.0, "unit": [0.7]}
     found = decided([finalist("lateral_stinger@along_x", 30.0, explained=LEFT)], adopted=adopted, share=-0.2, linear=[adopted])
     assert (found.verdict, found.ambiguity, found.chosen) == ("partly_explained", [["sensor_gain"]], None)
+
+
+def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
+    """A gain on the fitted records alone, where the bare model is within the scatter of its seeds."""
+    overfit = [finalist("hunt_crossley@all", 18.0, held_out=-20.0)]
+    assert decided(overfit, rest=EXPLAINED, p=0.4).verdict == "none"
+    adopted = {"name": "sensor_gain@force", "gain": 52.0, "unit": [0.53]}
+    assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [["sensor_gain"]]

@@ -28,10 +28,13 @@ def decide(bench, null, prepared, found, threshold, p_before):
     doubles = [row for row in found if isinstance(row.candidate, Pair) and not idle(row, prepared.scales)]
     best, rest = singles[0] if singles else None, naming.explained(bench, null, null.mean, measured, False)
     named = "named" if len(linear) == 1 else "ambiguous"
-    of_adopted = Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
+    if prepared.adopted is None:
+        quiet = p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z
+        without = Decision("none" if quiet else "unknown", None, [], totals, rest, threshold)
+    else:
+        without = Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
     if best is None or totals[best.candidate.name][0] < threshold:
-        nothing = "none" if p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z else "unknown"
-        return Decision(nothing, None, [], totals, rest, threshold) if prepared.adopted is None else of_adopted
+        return without
     if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z:
         best = doubles[0]
     best = simpler(best, found, totals, prepared)
@@ -40,13 +43,13 @@ def decide(bench, null, prepared, found, threshold, p_before):
     sufficient = {row.candidate.name for row in alike if naming.explained(bench, row.own(null), row.mean, measured).min() > priors.EXPLAINED_Z}
     together = whole_sets(linear, local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient))
     share = closure(bench, null, best, measured)
-    if left.min() < priors.EXPLAINED_Z or vetoed(totals[best.candidate.name], share):
-        verdict = "partly_explained" if share > priors.PARTLY else "unknown"
-        if verdict == "unknown" and prepared.adopted is not None:
-            return of_adopted  # what the lowest record told stands, whatever else there is
+    contradicted = vetoed(totals[best.candidate.name], share)
+    if left.min() < priors.EXPLAINED_Z or contradicted:
+        if share <= priors.PARTLY or contradicted and without.verdict not in ("unknown", "partly_explained"):
+            return without  # what the lowest record told, and no more
         if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
             together += whole_sets(linear, [(singles[0].candidate.ids, singles[0].candidate.alone)])
-        return Decision(verdict, best if verdict == "partly_explained" else None, together if verdict == "partly_explained" else [], totals, left, threshold)
+        return Decision("partly_explained", best, together, totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
 
 
