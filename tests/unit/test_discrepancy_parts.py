@@ -195,6 +195,13 @@ def test_verdicts_are_held_against_truths():
     assert table["strong", "in the set"]["low"] == pytest.approx(0.0063, abs=1e-4)  # Clopper-Pearson, 1 of 4
 
 
+def test_effects_taken_out_of_the_catalogue_count_as_strangers():
+    rows = [judged(verdict("unknown", [], []), {"arm": "left_out", "effects": [["gap", {"factor": 1.5}]]}),
+            judged(verdict("named", [["hertz"]], ["hertz"]), {"arm": "stranger", "effects": [["loose_mass", {}]]})]  # fmt: skip
+    table = {row["quantity"]: row for row in rates(rows)}
+    assert (table["unknown or partly"]["campaigns"], table["unknown or partly"]["rate"], table["wrong single name"]["rate"]) == (2, 0.5, 0.5)
+
+
 def test_shuffled_truths_fall_to_chance():
     rng, names = np.random.default_rng(6), ["gap", "dry_friction", "support_offset", "hertz", "preload"]
     truths = [names[place] for place in rng.integers(0, 5, 200)]

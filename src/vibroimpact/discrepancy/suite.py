@@ -11,6 +11,7 @@ from vibroimpact.discrepancy.misfit import excess
 FAULT_CHECKS = {"clipping", "drop-outs", "delay", "swapped channels", "units", "gaps in time", "directions"}
 SENSOR = {"sensor_gain", "sensor_delay"}
 GROUPS = {"null": "nothing", "stranger": "stranger", "left_out": "left out", "fault": "fault"}  # others: in the catalogue
+OUT_OF_CATALOGUE = ("stranger", "left_out")  # one arm of the acceptance table: what no name fits, and true effects taken out of the catalogue
 NAMEABLE = ("strong", "medium", "weak", "two", "alias")  # arms whose truth is in the catalogue
 STRONG, MEDIUM = 3.0, 1.0  # floors of excess
 TARGETS = {  # arm, quantity -> (target, fails beyond); from the acceptance table
@@ -106,7 +107,7 @@ def rates(rows):
               ("stranger", "wrong single name", "wrong", "stranger"), ("fault", "flagged", "flagged", "fault")]  # fmt: skip
     out = []
     for arm, quantity, key, of in wanted:
-        chosen = [row[key] for row in rows if row["arm"] == of]
+        chosen = [row[key] for row in rows if row["arm"] in (OUT_OF_CATALOGUE if of == "stranger" else (of,))]
         if chosen:
             out.append(_rate(arm, quantity, len(chosen), float(np.mean(chosen)), *share(sum(chosen), len(chosen)), by_chance(rows, of, key)))
     errors = [row["parameter_error"] for row in rows]
