@@ -16,16 +16,21 @@ MOST_ROWS = 20
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 
 
-def discrepancy_page(name, verdict, figures):
+SEEDS = "that between two seeds of the completed model"
+NOISE = "what the measurement itself scatters by, from period to period or from average to average"
+
+
+def discrepancy_page(name, verdict, figures, floor=SEEDS):
     """Return the HTML page.
 
-    name: of the campaign; verdict: content of verdict.json; figures: PNG files in their order, each with its caption beside it as .txt.
+    name: of the campaign; verdict: content of verdict.json; figures: PNG files in their order, each with its caption beside it as .txt;
+    floor: what the floor of the misfit is, SEEDS or NOISE.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     tests = [f"{test}, {TESTS[test]}" if test in TESTS else str(test) for test in verdict["broken_invariances"]]
     return template.render(
-        name=name, verdict=verdict, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
+        name=name, verdict=verdict, floor=floor, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
         sets=sets_in_words(verdict["ambiguity_set"]),
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),

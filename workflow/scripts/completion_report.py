@@ -4,7 +4,7 @@ import sys
 
 from vibroimpact.completion.store import read_kept, read_values
 from vibroimpact.completion.study import study_of
-from vibroimpact.discrepancy_page import discrepancy_page
+from vibroimpact.discrepancy_page import NOISE, discrepancy_page
 from vibroimpact.figures.completion import saved_sheets
 from vibroimpact.records import read_table, write_text
 
@@ -13,4 +13,4 @@ files = snakemake.input
 prepared, linear, completed, verdict = (read_values(path) for path in (files.study, files.linear, files.completed, files.verdict))
 tables = read_table(files.mounting), read_table(files.prediction)
 shown = saved_sheets(snakemake.output.figures, read_kept(files.campaign), study_of("", prepared), linear, completed, verdict, *tables)
-write_text(discrepancy_page(snakemake.params.name, verdict, shown), snakemake.output.page)
+write_text(discrepancy_page(snakemake.params.name, verdict, shown, NOISE), snakemake.output.page)
