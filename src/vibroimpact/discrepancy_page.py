@@ -35,7 +35,7 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS):
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
         figures=embedded(figures),
-        ranking=[{"ids": in_words(row["ids"]), "score": digits(row["heldout_score"]),
+        ranking=[{"ids": in_words(row["ids"]), "location": ", ".join((row.get("location") or "").split("+")), "score": digits(row["heldout_score"]),
                   "closed": percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
         checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=digits(verdict["seconds"]),
         provenance=[*_flat(verdict["provenance"])])
@@ -82,7 +82,7 @@ def _with_parameters(effect):
     """Return an effect in words with its parameters: dry friction at both plates (mu 0.149, between 0.128 and 0.171)."""
     values = ", ".join(f"{name.replace('_', ' ')} {digits(value['value'])}{_unit(value['unit'])}, between {digits(value['low'])} and "
                        f"{digits(value['high'])}"
-                       for name, value in effect["parameters"].items())
+                       for name, value in ((name, _for_reading(row)) for name, row in effect["parameters"].items()))
     place = f" at {effect['location']}" if effect.get("location") not in (None, "", "all") else ""
     return f"{in_words([effect['id']])}{place}" + (f" ({values})" if values else "")
 
@@ -91,7 +91,7 @@ def _effect_rows(verdict):
     for effect in verdict["effects"]:
         known = EFFECTS.get(effect["id"])
         head = {"effect": in_words([effect["id"]]), "explanation": known.explanation if known else "", "location": effect.get("location") or "all"}
-        for name, value in effect["parameters"].items() or [("", None)]:
+        for name, value in [(name, _for_reading(row)) for name, row in effect["parameters"].items()] or [("", None)]:
             cells = {key: digits(value[key]) if value else "" for key in ("value", "low", "high")}
             yield {**head, "parameter": name.replace("_", " "), **cells, "unit": _unit(value["unit"]).strip() or "-" if value else ""}
             head = {"effect": "", "explanation": "", "location": ""}
@@ -123,8 +123,15 @@ def _unit(unit):
 
 
 def digits(value):
-    """Return a number with 3 digits, - where there is none."""
-    return "-" if value is None or value != value else f"{value:.3g}" if abs(value) < 1e5 else f"{value:.3e}"
+    """Return a number with 3 digits, whole up to 100000, - where there is none."""
+    return "-" if value is None or value != value else f"{value:.0f}" if 1e3 <= abs(value) < 1e5 else f"{value:.3g}"
+
+
+def _for_reading(row):
+    """Return {value, low, high, unit} of a parameter in the unit that is read in a workshop: small lengths in mm."""
+    if row["unit"] == "m" and abs(row["value"]) < 0.1:
+        return {"unit": "mm", **{key: None if row[key] is None else 1e3 * row[key] for key in ("value", "low", "high")}}
+    return row
 
 
 def percent(fraction):
