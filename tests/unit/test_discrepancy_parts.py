@@ -224,7 +224,7 @@ def test_clusters_end_where_the_difference_halves():
 def test_what_other_damping_changes_is_no_evidence():
     """A difference along a free direction costs its prior, however large; across it nothing is forgiven."""
     covariance = np.eye(40)[None]
-    null = Null(np.array([1]), np.zeros((1, 4, 40)), np.zeros((1, 40)), covariance, covariance, np.zeros(40, int))
+    null = Null(np.array([1]), np.zeros((1, 4, 40)), np.zeros((1, 40)), covariance, covariance, np.zeros(40, int), np.full(40, 10.0))
     silent = np.where(np.arange(40) < 20, 8.0, 0.0)
     freed = null.freed(silent[None, None])
     along, across = log_likelihood(silent, freed.covariance[0])[1], log_likelihood(silent[::-1], freed.covariance[0])[1]
@@ -235,3 +235,12 @@ def test_what_other_damping_changes_is_no_evidence():
 
 def test_where_no_band_counts_nothing_is_closed():
     assert closed_fraction(0.0, 0.0, 0.0) is None
+
+
+def test_scatter_of_a_models_own_seeds_counts_where_it_is_clearly_larger():
+    rng = np.random.default_rng(8)
+    null = Null(np.array([1]), rng.standard_normal((1, 16, 3)), np.zeros((1, 3)), np.eye(3)[None], np.eye(3)[None], np.zeros(3, int), np.full(3, 1.0e6))
+    seeds = rng.standard_normal((1, 8, 3)) * [1.0, 1.0, 10.0]
+    wider = null.scattered(seeds).covariance[0]
+    assert np.diag(wider)[:2].tolist() == [1.0, 1.0]
+    assert wider[2, 2] == pytest.approx(1.0 + seeds[0, :, 2].var(ddof=1) - null.features[0, :, 2].var(ddof=1))

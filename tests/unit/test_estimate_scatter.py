@@ -26,7 +26,7 @@ def widened(monkeypatch):
         monkeypatch.setattr(estimate_scatter, "fit_mask", lambda *_: None)
         candidate = SimpleNamespace(periodic=())
         found = Finalist(candidate, np.array([0.5]), np.array([[0.49, 0.51]]), None, 0.0, np.zeros((1, len(estimates), 1)), path_at(*points), [], np.zeros((0, 1, 1)))
-        return estimate_scatter.with_scatter(None, SimpleNamespace(freed=lambda free: None), None, found).interval[0]
+        return estimate_scatter.with_scatter(None, SimpleNamespace(freed=lambda free: SimpleNamespace(scattered=lambda features: None)), None, found).interval[0]
 
     return run
 

@@ -26,7 +26,7 @@ def with_scatter(bench, null, measured, found):
     below, above = (np.hypot(side * (found.interval[:, end] - found.unit), scatter) for end, side in ((0, -1.0), (1, 1.0)))
     interval = np.clip(np.stack([found.unit - below, found.unit + above], axis=1), 0.0, 1.0)
     single = len(interval) == 1 and not candidate.periodic
-    return replace(found, interval=_within_simulated(path, scores_along(bench, own, measured, path, fit), found.unit, interval) if single else interval)
+    return replace(found, interval=_within_simulated(path, scores_along(bench, own, measured, candidate, path, fit), found.unit, interval) if single else interval)
 
 
 def _within_simulated(path, scores, unit, interval):

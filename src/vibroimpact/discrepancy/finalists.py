@@ -8,13 +8,14 @@ from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import other_places
 from vibroimpact.discrepancy.null import free_at
-from vibroimpact.discrepancy.screening import Path, calibrate, direct_scores, linear_score, null_scores, simulate_path
+from vibroimpact.discrepancy.screening import LAW_TURNS, Path, calibrate, direct_scores, linear_score, null_scores, path_emulator, simulate_path
 
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
 ENOUGH = 2  # this close is close enough where no parameter is known better
 ROUNDS = 4  # at most
 START_STEP, STARTS, NEW = 0.12, 3, 0.003
 TRIED = 2  # points that are tried at other places
+JUDGED_BATCHES = 2  # of seeds that tell what other damping changes where a finalist is judged
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
 NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
@@ -42,8 +43,8 @@ class Finalist:
         return self.features.mean(axis=1)
 
     def own(self, null):
-        """Return the Null with what the damping of unseen modes changes of this finalist left free."""
-        return null.freed(self.free)
+        """Return the Null with what the damping of unseen modes changes of this finalist left free, and its own seeds' scatter."""
+        return null.freed(self.free).scattered(self.features)
 
 
 def started(bench, null, candidate, unit, scales, first_seed=2000):
@@ -53,7 +54,7 @@ def started(bench, null, candidate, unit, scales, first_seed=2000):
 
 def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=2000):
     """Return the Path of a candidate at the points of a Path that was moved here, from another campaign or shorter records, that look best, and at unit."""
-    order = np.argsort(scores_along(bench, null, measured, path, fit))[::-1][:STARTS]
+    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:STARTS]
     points = path.parameters[order]
     if not any(np.allclose(unit, point, atol=NEW) for point in points):
         points = np.vstack([unit, points[: STARTS - 1]])
@@ -62,11 +63,11 @@ def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=20
 
 def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):
     """Return (candidate, its Path) at the place where the best points of its Path come nearest to what was measured."""
-    scores = scores_along(bench, null, measured, path, fit)
+    scores = _scores(bench, null, measured, path, fit)
     order, best, kept = np.argsort(scores)[::-1][:TRIED], scores.max(), (candidate, path)
     for other in other_places(candidate, bench.values):
         there = simulate_path(bench, other, path.parameters[order], scales, null.records, first_seed=first_seed)
-        found = -np.inf if there is None else scores_along(bench, null, measured, there, fit).max()
+        found = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
         if found > best:
             best, kept = found, (other, there)
     return kept
@@ -78,7 +79,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     fit (record,) bool: the records its parameters are fitted to; least: gain of log likelihood below which a closer look is
     not worth its runs.
     """
-    level, centre, at = 0, _best_simulated(bench, null, measured, path, fit), None
+    level, centre, at = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None
     for number in range(rounds):
         points = _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
@@ -86,21 +87,24 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         path = path if fresh is None else path.joined(fresh)
         if at is None or _apart(centre, at, candidate.periodic).max() > MOVED:
             at = path.parameters[_nearest(path, centre, candidate.periodic)]
-            free = _free(bench, null, candidate, path, at, scales, first_seed + 400 + 50 * number)
+            free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
             own = null.freed(free)
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
-        scores = scores_along(bench, own, measured, path, fit)
+        scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY
         stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level])
         if stayed or number and not better:
             level += 1  # it stayed within what was looked at, or led nowhere: look closer
-        centre = found.unit if stayed or better or not number else _best_simulated(bench, own, measured, path, fit)
+        centre = found.unit if stayed or better or not number else path.parameters[np.argmax(scores)]
         losing = gains_of(bench, null, measured, path, own).max() < least
         if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
     found = _with_whole_interval(bench, own, measured, candidate, path, fit, found)
+    if not losing:
+        free = _free(bench, null, candidate, found.unit, scales, first_seed + 4000, JUDGED_BATCHES)
+        own = null.freed(free)
     judgements = []
-    simulated = _best_simulated(bench, own, measured, path, fit)
+    simulated = path.parameters[np.argmax(scores)]
     for unit in [simulated] if losing else _to_judge(candidate, found.unit, simulated, scales):
         try:
             judgements.append(judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000))
@@ -108,9 +112,9 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
             continue  # between points that can be simulated lies one that can not
     if not judgements:
         return None
-    best = max(judgements, key=lambda row: row.scores[fit].sum() + row.low)
-    clearly = best.scores[fit].sum() + best.low > judgements[0].scores[fit].sum() + judgements[0].low + CLEARLY
-    return best if clearly else judgements[0]
+    law = law_at(bench, own, candidate, path, judgements[0].unit)
+    alike = [direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low for row in judgements]
+    return judgements[int(np.argmax(alike))] if max(alike) > alike[0] + CLEARLY else judgements[0]
 
 
 def _nearest(path, unit, periodic):
@@ -118,13 +122,12 @@ def _nearest(path, unit, periodic):
     return int(np.argmin([np.sum(_apart(unit, other, periodic) ** 2) for other in path.parameters]))
 
 
-def _free(bench, null, candidate, path, unit, scales, first_seed):
-    """Return null.free_at of a point of a path, nothing where it can not be simulated."""
-    mean = path.features[_nearest(path, unit, candidate.periodic)]
+def _free(bench, null, candidate, unit, scales, first_seed, batches=1):
+    """Return null.free_at of a point, nothing where it can not be simulated."""
     try:
-        return free_at(bench, candidate, unit, mean, scales, null.records, first_seed)
+        return free_at(bench, candidate, unit, scales, null.records, first_seed, batches)
     except IntegrationError:
-        return np.zeros((0, *mean.shape))
+        return np.zeros((0, *null.mean.shape))
 
 
 def _unknown(points, path, periodic):
@@ -132,26 +135,44 @@ def _unknown(points, path, periodic):
     return np.array([unit for unit in points if not any(np.all(_apart(unit, other, periodic) < NEW) for other in path.parameters)])
 
 
-def scores_along(bench, null, measured, path, fit):
-    """Return (point,) the log likelihood of what was measured at the points of a path."""
-    return np.array([direct_scores(bench, null, measured, mean)[fit].sum() + linear_score(bench, reading)
+def law_at(bench, null, candidate, path, unit):
+    """Return (record, compressed feature) what a candidate changes at unit (parameter,), emulated: free of the scatter of any point's few seeds."""
+    return path_emulator(bench, null, path, candidate)(unit)[0].reshape(null.mean.shape)
+
+
+def scores_along(bench, null, measured, candidate, path, fit):
+    """Return (point,) the log likelihood of what was measured at the points of a candidate's path, to compare them with each other.
+
+    What two laws may differ by is the same for all, that of the best: with its own, a stronger effect, or a point whose few seeds lie far off, would forgive
+    itself more, and a clearance of 1.24 nominal was read as 1.44.
+    """
+    emulator, scores = path_emulator(bench, null, path, candidate), _scores(bench, null, measured, path, fit)
+    for _ in range(LAW_TURNS):
+        law = emulator(path.parameters[np.argmax(scores)])[0].reshape(null.mean.shape)
+        scores = _scores(bench, null, measured, path, fit, law)
+    return scores
+
+
+def _scores(bench, null, measured, path, fit, law=None):
+    """Return (point,) the log likelihood of what was measured at the points of a path; law: see screening.direct_scores."""
+    return np.array([direct_scores(bench, null, measured, mean, law)[fit].sum() + linear_score(bench, reading)
                      for mean, reading in zip(path.features, path.readings, strict=True)])  # fmt: skip
 
 
 def gains_of(bench, null, measured, path, own=None):
     """Return (point,) the gain of log likelihood over the null, of all records, at the points of a path; own: the Null of the path's candidate."""
     start = null_scores(bench, null, measured).sum() + linear_score(bench, None)
-    return scores_along(bench, null if own is None else own, measured, path, np.ones(len(measured), bool)) - start
+    return _scores(bench, null if own is None else own, measured, path, np.ones(len(measured), bool)) - start
 
 
-def _best_simulated(bench, null, measured, path, fit):
+def _best_simulated(bench, null, measured, candidate, path, fit):
     """Return (parameter,) the point of a path that comes nearest to what was measured."""
-    return path.parameters[np.argmax(scores_along(bench, null, measured, path, fit))]
+    return path.parameters[np.argmax(scores_along(bench, null, measured, candidate, path, fit))]
 
 
 def _calibrated_near(bench, null, measured, candidate, path, fit):
     """Return the Calibrated of the points near the best simulated one, and not far beyond them: what an effect changes elsewhere tells little."""
-    best = _best_simulated(bench, null, measured, path, fit)
+    best = _best_simulated(bench, null, measured, candidate, path, fit)
     found = calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit)
     inside = np.clip(found.unit, best - NEAR, best + NEAR)
     return found if candidate.periodic or np.allclose(found.unit, inside) else replace(found, unit=inside)
@@ -164,7 +185,7 @@ def near(path, unit, periodic):
 
 def _with_whole_interval(bench, null, measured, candidate, path, fit, found):
     """Return the Calibrated with the intervals of the whole path where those of the near points reach as far as the points."""
-    best = _best_simulated(bench, null, measured, path, fit)
+    best = _best_simulated(bench, null, measured, candidate, path, fit)
     wide = np.abs(found.interval - best[:, None]).max(axis=1) > NEAR - STEPS[-1]
     if not wide.any():
         return found
@@ -190,7 +211,7 @@ def judged(bench, null, measured, candidate, unit, path, found, free, scales, se
     model = bench.model(bench.variant(candidate, physical))
     runs = bench.runs(null.records, seeds, first_seed)
     features = bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1)
-    scores = direct_scores(bench, null, measured, features.mean(axis=1))
+    scores = direct_scores(bench, null.scattered(features), measured, features.mean(axis=1))
     nearest = int(np.argmin(np.sum((path.parameters - unit) ** 2, axis=1)))
     interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)
     return Finalist(candidate, unit, interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile, free)

@@ -11,12 +11,14 @@ from vibroimpact.discrepancy.linearised import same_modes
 
 
 UNSEEN = (priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)  # times the damping of modes that the lowest record does not show
+SCATTERED = 4.0  # times the variance of the null's seeds: 8 seeds of the same law exceed it in one of a hundred features
 
 
 @dataclass(frozen=True)
 class Null:
     """records (record,) of the campaign; features (record, seed, feature); mean (record, feature); covariance (record, feature, feature) of one
-    record about the mean, with what two codes differ by, and apart (record, feature, feature) the same without what other damping of unseen modes changes; groups (feature,): channels that the force drives, or does not."""
+    record about the mean, with what two codes differ by, and apart (record, feature, feature) the same without what other damping of unseen modes changes; groups (feature,): channels that the force drives, or does not;
+    blend (feature,): see features.compressed."""
 
     records: np.ndarray
     features: np.ndarray
@@ -24,6 +26,7 @@ class Null:
     covariance: np.ndarray
     apart: np.ndarray
     groups: np.ndarray
+    blend: np.ndarray
 
     @property
     def seed_variance(self):
@@ -38,6 +41,15 @@ class Null:
     def freed(self, directions):
         """Return the Null with directions (direction, record, compressed feature) left free, one sigma each, in place of its own; itself where there are none."""
         return replace(self, covariance=self.apart + np.einsum("drf,drg->rfg", directions, directions)) if len(directions) else self
+
+    def scattered(self, features):
+        """Return the Null with the scatter of a model's own seeds, features (record, seed, feature), where that is clearly larger than without it.
+
+        Near the onset of motion across the force some seeds hold it and others do not, though none, or all, of the bare model's do.
+        """
+        here, there = (compressed(rows - rows.mean(axis=1, keepdims=True), self).var(axis=1, ddof=1) for rows in (features, self.features))
+        more = np.where(here > SCATTERED * there, here - there, 0.0)
+        return replace(self, covariance=self.covariance + more[:, :, None] * np.eye(more.shape[1]))
 
 
 def unseen_damping(bench, values, factor):
@@ -61,7 +73,7 @@ def null_of(bench, records, features, *others):
         apart.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + np.diag((burst * bench.layout.blend) ** 2) + common.T @ common)
     means, apart = np.array(means), np.array(apart)
     directions = np.array([compressed(other.mean(axis=1) - means, bench.layout) for other in others])
-    return Null(np.asarray(records), features, means, apart, apart, driven[bench.layout.channel].astype(int)).freed(directions)
+    return Null(np.asarray(records), features, means, apart, apart, driven[bench.layout.channel].astype(int), bench.layout.blend).freed(directions)
 
 
 def bursting(bench, records, driven):
@@ -81,17 +93,15 @@ def driven_channels(bench):
     return size > 1.0e-3 * size.max()
 
 
-def free_at(bench, candidate, unit, mean, scales, records, first_seed):
+def free_at(bench, candidate, unit, scales, records, first_seed, batches=1):
     """Return (2, record, compressed feature): what less and more damping of unseen modes changes of a candidate at normalised parameters (parameter,).
 
-    mean (record, feature) there. Whether motion across the force breaks out in a record, and when, hangs on that damping near the onset, and the onset
+    batches of seeds. All by runs of its own: against a point of the candidate's path, the scatter of that point's few seeds would be free as well, and it alone would
+    look right. Whether motion across the force breaks out in a record, and when, hangs on that damping near the onset, and the onset
     moves with the candidate: at a clearance 1.72 times the nominal one 10 N are at it, at the nominal one far beyond.
     """
-    physical, seeds = candidate.physical(unit, scales), bench.seeds_of_a_batch(records)
+    physical, seeds = candidate.physical(unit, scales), batches * bench.seeds_of_a_batch(records)
     values, measuring = bench.variant(candidate, physical), candidate.measuring(physical, bench.signals.names)
-    out = []
-    for number, factor in enumerate(UNSEEN):
-        runs = bench.runs(records, seeds, first_seed + 20 * number)
-        features = bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1)
-        out.append(compressed(features.mean(axis=1) - mean, bench.layout))
-    return np.array(out)
+    runs = bench.runs(records, seeds, first_seed)
+    mean, *others = (bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1).mean(axis=1) for factor in (1.0, *UNSEEN))
+    return np.array([compressed(other - mean, bench.layout) for other in others])

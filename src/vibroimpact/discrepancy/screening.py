@@ -15,6 +15,7 @@ from vibroimpact.discrepancy.likelihood import log_likelihood
 
 LEAST_LOW = 300.0  # log likelihood of the lowest record below the best: farther off tells nothing more
 SMOOTHING = 1.0e-3  # points that were simulated twice differ by the seeds
+LAW_TURNS = 2  # until the law of the best is that of the best
 GRID = {1: 41, 2: 13}  # points per parameter on which the emulator is searched first, by the number of parameters
 SCAN = 21  # points along one parameter, where a grid over all would be too large
 FINEST = 0.004  # of the searched range
@@ -81,9 +82,12 @@ def null_scores(bench, null, measured):
     return np.array([log_likelihood(*row)[0] for row in zip(residual, null.covariance, strict=True)])
 
 
-def direct_scores(bench, null, measured, mean):
-    """Return (record,) log likelihood of measured features (record, feature) under simulated means (record, feature)."""
-    residual, change = compressed(measured - mean, bench.layout), compressed(mean - null.mean, bench.layout)
+def direct_scores(bench, null, measured, mean, law=None):
+    """Return (record,) log likelihood of measured features (record, feature) under simulated means (record, feature).
+
+    law (record, compressed feature): the change of which two laws may differ by a share; that of the means themselves where None.
+    """
+    residual, change = compressed(measured - mean, bench.layout), compressed(mean - null.mean, bench.layout) if law is None else law
     return np.array([log_likelihood(residual[record], null.covariance[record], change[record], null.groups)[0] for record in range(len(measured))])
 
 
@@ -126,11 +130,11 @@ def calibrate(bench, null, measured, candidate, path, fit):
     def fit_score(unit, law=None):
         return at(unit, np.flatnonzero(fit), law)[0].sum() + low_at(unit)
 
-    start = path.parameters[np.argmax([fit_score(unit) for unit in path.parameters])]
-    unit = _best(fit_score, start)
+    unit = path.parameters[np.argmax([fit_score(unit) for unit in path.parameters])]
     # what two laws may differ by grows with the effect: held at its best while the parameters are estimated, or more would always be forgiven
-    law = at(unit, [])[1]
-    unit = _best(lambda point: fit_score(point, law), unit)
+    for _ in range(LAW_TURNS):
+        law = at(unit, [])[1]
+        unit = _best(lambda point, law=law: fit_score(point, law), unit)
     profile = _profile(lambda point: fit_score(point, law), unit)
     records, deviation = at(unit, np.arange(len(measured)))
     interval = np.array([_above(values, score) for values, score in profile])
