@@ -32,12 +32,17 @@ def widened(monkeypatch):
 
 
 def test_an_estimate_that_its_own_seeds_scatter_is_no_better_known(widened):
-    low, high = widened([0.45, 0.55, 0.45, 0.55], [0.0, 10.0, 0.0, 0.0])
+    low, high = widened([0.45, 0.55, 0.45, 0.55], [0.0, 100.0, 0.0, 0.0])
     assert (0.5 - low, high - 0.5) == pytest.approx((np.hypot(0.01, 1.645 * 0.05),) * 2)
 
 
 def test_seeds_that_agree_leave_the_interval(widened):
-    assert widened([0.5, 0.5], [0.0, 10.0, 0.0, 0.0]) == pytest.approx([0.49, 0.51])
+    assert widened([0.5, 0.5], [0.0, 100.0, 0.0, 0.0]) == pytest.approx([0.49, 0.51])
+
+
+def test_points_that_are_not_clearly_worse_belong_to_the_interval(widened):
+    assert widened([0.5, 0.5], [0.0, 100.0, 60.0, 90.0]) == pytest.approx([0.49, 0.8])
+    assert widened([0.5, 0.5], [0.0, 100.0, 10.0, 90.0]) == pytest.approx([0.49, 0.51])  # beyond one that is
 
 
 def test_an_interval_ends_where_what_was_simulated_is_clearly_worse(widened):

@@ -9,7 +9,7 @@ from vibroimpact.discrepancy.finalists import near, offset, scores_along
 from vibroimpact.discrepancy.naming import fit_mask
 from vibroimpact.discrepancy.screening import calibrate
 
-EXCLUDED = 50.0  # of log likelihood: more than the scatter of two seeds
+EXCLUDED = 80.0  # of log likelihood: more than the scatter of two seeds, by which neighbours differ by 50
 
 
 def with_scatter(bench, null, measured, found):
@@ -25,13 +25,16 @@ def with_scatter(bench, null, measured, found):
     scatter = priors.NINETY_SD * np.sqrt(np.mean(np.square(moved), axis=0))
     below, above = (np.hypot(side * (found.interval[:, end] - found.unit), scatter) for end, side in ((0, -1.0), (1, 1.0)))
     interval = np.clip(np.stack([found.unit - below, found.unit + above], axis=1), 0.0, 1.0)
-    single = len(interval) == 1 and not candidate.periodic
-    return replace(found, interval=_within_simulated(path, scores_along(bench, own, measured, candidate, path, fit), found.unit, interval) if single else interval)
+    return replace(found, interval=_as_simulated(path, scores_along(bench, own, measured, candidate, path, fit), found.unit, interval, candidate.periodic))
 
 
-def _within_simulated(path, scores, unit, interval):
-    """Return the interval (1, 2) of a single parameter no wider than to where what was simulated, of scores (point,), is clearly worse: an emulator forgives
-    what it does not know."""
-    points = path.parameters[:, 0]
-    worse = points[scores < scores.max() - EXCLUDED]
-    return np.clip(interval, worse[worse < unit[0]].max(initial=0.0), worse[worse > unit[0]].min(initial=1.0))
+def _as_simulated(path, scores, unit, interval, periodic):
+    """Return the interval (parameter, 2) with what was simulated, of scores (point,), and is not clearly worse; that of a single parameter no wider than to
+    where it is: an emulator forgives what it does not know."""
+    worse = scores < scores.max() - EXCLUDED
+    if len(unit) == 1 and not periodic:
+        points = path.parameters[:, 0]
+        low, high = points[worse & (points < unit[0])].max(initial=0.0), points[worse & (points > unit[0])].min(initial=1.0)
+        interval, worse = np.clip(interval, low, high), worse | (points < low) | (points > high)
+    reach = unit + np.array([offset(point, unit, periodic) for point in path.parameters[~worse]])
+    return np.clip(np.stack([np.minimum(interval[:, 0], reach.min(axis=0)), np.maximum(interval[:, 1], reach.max(axis=0))], axis=1), 0.0, 1.0)
