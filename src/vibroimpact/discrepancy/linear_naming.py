@@ -11,6 +11,7 @@ from vibroimpact.config import check_config
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.linearised import linearised, same_modes
+from vibroimpact.discrepancy.screening import NINETY
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
 NUISANCES = ("mode_frequency_error", "modal_damping")  # logarithms of readings are straight in their normalised parameters
@@ -108,11 +109,14 @@ def calibrate(bench, candidate, scales, table=None):
     losses = np.array([loss(unit) for unit in starts])
     found = optimize.minimize(loss, starts[np.argmin(losses)], method="Nelder-Mead", options={"xatol": 1.0e-4, "fatol": 1.0e-3, "maxiter": 200,
                               "initial_simplex": starts[np.argmin(losses)] + 0.05 * np.vstack([np.zeros(count), np.eye(count)])})  # fmt: skip
-    return LinearResult(candidate, np.clip(found.x, 0.0, 1.0), -float(found.fun), interval_of(loss, found.x, found.fun))
+    unit = np.clip(found.x, 0.0, 1.0)
+    chi_square = linear.likelihood(measured, reading_under(bench, candidate, unit, scales, table), fit.covariance)[1]
+    left = max(1.0, chi_square / (2 * len(fit.modes) + fit.participation.size))  # what the effect does not explain widens its interval
+    return LinearResult(candidate, unit, -float(found.fun), interval_of(loss, found.x, found.fun, NINETY * left))
 
 
-def interval_of(loss, best, least, rise=1.353):
-    """Return (parameter, 2): where the loss has risen by `rise` (90 %) along each parameter, the others held; a bound where it never does."""
+def interval_of(loss, best, least, rise):
+    """Return (parameter, 2): where the loss has risen by `rise` along each parameter, the others held; a bound where it never does."""
     out = np.zeros((len(best), 2))
     for number in range(len(best)):
         for side, end in ((0, 0.0), (1, 1.0)):
