@@ -75,6 +75,8 @@ def conclude(run, screening, final_files, provenance, quick=False):
         p_after = mapping.global_p(bench, null if decision.chosen is None else decision.chosen.own(null), measured, after.compared[null.records])
     chosen_cells = misfit.counted(whole)
     splits = {"fit": whole.signals.fit(), "holdout": whole.signals.holdout()}
+    if prepared.adopted is not None:  # the null holds what was adopted; the model as given does not
+        p_before = mapping.global_p(bench, null, measured, before.compared[null.records], law=False)
     gaps = {name: misfit.misfit_of(whole, records, chosen_cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
             {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
     difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)

@@ -94,13 +94,15 @@ def _true(value):
 
 
 def profiles_figure(candidates, effects):
-    """Return [Sheet] of score against parameter value for the named effects, else for the best candidate.
+    """Return [Sheet] of score against parameter value for the named effects, for the best candidate where none is named; effects that the lowest record told have none.
 
     candidates: contents of candidates/*.json, {ids, profile: [{parameter, unit, values, score}]}, best first; effects: those of verdict.json.
     """
     chosen = [candidate for effect in effects for candidate in candidates if candidate["ids"] == [effect["id"]]]
     whole = [candidate for candidate in candidates if sorted(candidate["ids"]) == sorted(effect["id"] for effect in effects)]
-    curves = [curve for candidate in (whole or chosen or candidates[:1]) for curve in candidate.get("profile", [])][:MOST_PROFILES]
+    part = [candidate for candidate in candidates if set(candidate["ids"]) <= {effect["id"] for effect in effects}][:1]
+    shown = whole or chosen or (part if effects else candidates[:1])
+    curves = [curve for candidate in shown for curve in candidate.get("profile", [])][:MOST_PROFILES]
     caption = ("Score against each parameter, the others re-fitted, where they were scanned. Line: value of the verdict; shaded: its 90 % interval. "
                "A curve that is flat, or highest at an end, tells nothing about its parameter.")
     if not curves:
