@@ -107,7 +107,8 @@ def profiles_figure(candidates, effects):
                "A curve that is flat, or highest at an end, tells nothing about its parameter.")
     if not curves:
         sheet = Sheet("discrepancy_profiles", "How well the parameters are known", caption)
-        sheet.note(sheet.axes["main"], "no parameter was scanned", "parameter", "score")
+        why = "no parameter was scanned" + ": what is named was read off the lowest record" * bool(effects)
+        sheet.note(sheet.axes["main"], why, "parameter", "score")
         return [sheet]
     across = min(3, len(curves))
     keys = [f"{index} {curve['parameter']}" for index, curve in enumerate(curves)]
