@@ -37,12 +37,13 @@ class DeadLoad(Section):
 class Forces(Section):
     """Where the force of the case acts: factor times the force at the point, and what is listed under `also` and `distributed`.
 
-    turn_deg: angle about z by which the force at the point acts away from its stated direction.
+    turn_deg: angle by which the force at the point acts away from its stated direction, right-handed about turn_about: z, or the tangent of the tube there.
     """
 
     point: Name
     direction: Vector
     turn_deg: Phase_deg = 0.0
+    turn_about: Literal["z", "tube"] = "z"
     factor: Number = 1.0
     also: tuple[ForcePoint, ...] = ()
     distributed: tuple[Distributed, ...] = ()

@@ -1,8 +1,10 @@
 """Where the forces of a configuration act: rows over the degrees of freedom, and the mode that carries a moving base."""
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from vibroimpact.centreline import unit_vector
+from vibroimpact.centreline import build_centreline, unit_vector
+from vibroimpact.config_name_checks import TUBES
 
 GAUSS = ((-0.8611363115940526, 0.3478548451374538), (-0.3399810435848563, 0.6521451548625461),
          (0.3399810435848563, 0.6521451548625461), (0.8611363115940526, 0.3478548451374538))  # fmt: skip
@@ -10,16 +12,16 @@ GAUSS = ((-0.8611363115940526, 0.3478548451374538), (-0.3399810435848563, 0.6521
 BASE_SCALE = 1.0e-7
 
 
-def force_row(structure, place, excitation):
+def force_row(structure, place, excitation, axis=(0.0, 0.0, 1.0)):
     """Return (dof,) the force on each degree of freedom per newton of the case's force (per m/s² for base motion; zeros for none).
 
-    place: function name -> (3, dof) displacement rows of a named point.
+    place: function name -> (3, dof) displacement rows of a named point; axis: see turn_axis.
     """
     if excitation.kind == "none":
         return np.zeros(structure.dofs)
     if excitation.kind == "base_motion":
         return -unit_vector(excitation.direction) @ structure.inertia
-    row = excitation.factor * (turned(excitation.direction, excitation.turn_deg) @ place(excitation.point))
+    row = excitation.factor * (turned(excitation.direction, excitation.turn_deg, axis) @ place(excitation.point))
     for force in excitation.also:
         row = row + force.factor * (unit_vector(force.direction) @ place(force.point))
     for load in excitation.distributed:
@@ -27,13 +29,25 @@ def force_row(structure, place, excitation):
     return row
 
 
-def turned(direction, angle_deg):
-    """Return the unit vector (3,) along a direction turned about z by an angle in degrees; the same bits where the angle is 0."""
-    x, y, z = unit_vector(direction)
+def turn_axis(config, position):
+    """Return the unit vector (3,) about which the force of a configuration at a position (3,) in m is turned: z, or the tube's tangent there.
+
+    Raises ValueError for the tangent of a structure that is no tube, or off it.
+    """
+    if getattr(config.excitation, "turn_about", "z") == "z" or config.excitation.turn_deg == 0.0:
+        return np.array([0.0, 0.0, 1.0])
+    if config.structure.kind not in TUBES:
+        raise ValueError("excitation.turn_about: tube needs a tube (structure.kind u_tube or path): use z")
+    centreline = build_centreline(config.structure)
+    return centreline.direction(centreline.locate(position, "the force"))
+
+
+def turned(direction, angle_deg, axis=(0.0, 0.0, 1.0)):
+    """Return the unit vector (3,) along a direction turned about an axis (unit vector) by an angle in degrees, right-handed; the same bits where the angle is 0."""
+    vector = unit_vector(direction)
     if angle_deg == 0.0:
-        return np.array([x, y, z])
-    cosine, sine = np.cos(np.deg2rad(angle_deg)), np.sin(np.deg2rad(angle_deg))
-    return np.array([cosine * x - sine * y, sine * x + cosine * y, z])
+        return vector
+    return Rotation.from_rotvec(np.deg2rad(angle_deg) * np.asarray(axis, float)).apply(vector)
 
 
 def line_load(structure, load):

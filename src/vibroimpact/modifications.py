@@ -18,15 +18,17 @@ def with_masses(structure, masses, place):
 
 
 def with_factors(omega, factors):
-    """Return omega (mode,) rad/s with its first entries multiplied by `factors`: free modes measured at other frequencies than computed.
+    """Return (omega (mode,) rad/s ascending, order (mode,)): free modes measured at other frequencies than computed.
 
-    Raises ValueError when there are more factors than modes, or they change the order of the modes.
+    factors: measured over computed frequency of the first modes as they were computed; order: the number that each mode had then, for a mode may pass its
+    neighbours. Raises ValueError when there are more factors than modes.
     """
     if len(factors) > len(omega):
         raise ValueError(f"mode_frequency_factors has {len(factors)} values for {len(omega)} modes")
     out = omega.copy()
     out[: len(factors)] *= factors
-    return np.maximum.accumulate(out)  # neighbours that swap places stay side by side
+    order = np.argsort(out, kind="stable")
+    return out[order], order
 
 
 def with_plates(fields, supports):

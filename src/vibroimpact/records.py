@@ -266,3 +266,16 @@ def _number(text):
         except ValueError:
             continue
     return text
+
+
+def plain(value):
+    """Return nested values as JSON and YAML know them: without numpy types, None for what is not finite."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -4,8 +4,9 @@ import numpy as np
 from scipy import linalg, sparse
 
 from vibroimpact.centreline import SAME_PLACE_M
+from vibroimpact.config_name_checks import TUBES
 from vibroimpact.kept import Kept, content_key
-from vibroimpact.loads import dead_load, force_row, with_base_mode
+from vibroimpact.loads import dead_load, force_row, turn_axis, with_base_mode
 from vibroimpact.local_elements import element_laws, element_rows, split_damping
 from vibroimpact.model import ModalModel
 from vibroimpact.modifications import with_factors, with_masses, with_plates
@@ -16,7 +17,6 @@ from vibroimpact.supports import contact_laws
 
 BASES = Kept()
 AXES = dict(zip("xyz", np.eye(3), strict=True))
-TUBES = ("u_tube", "path")
 SMALL = 400  # degrees of freedom up to which a structure that is no tube keeps all its modes
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency: below it a mode is rigid-body motion
 REPORT_STIFFNESS = (*(10.0**power for power in range(7)), 4.0e6, 1.0e7, 1.0e8, 1.0e9)  # N/m per support
@@ -44,7 +44,8 @@ def build_model(config, motion_only=False):
     structure = with_masses(structure, config.masses, place)
     local_rows = np.vstack([element_rows(config.elements, place, structure.dofs), *(row[None] for row, _ in ([] if tube else structure.dampers))])
     omega, shapes, full = _modes(structure, local_rows, config.basis)
-    omega = with_factors(omega, config.mode_frequency_factors)
+    omega, order = with_factors(omega, config.mode_frequency_factors)
+    shapes = shapes[:, order]
     damping, damper_shapes, coefficients = modal_damping(omega, config.damping), np.zeros((len(omega), 0)), []
     if not tube:
         own, damper_shapes, coefficients = split_damping(shapes.T @ structure.damping @ shapes)
@@ -59,7 +60,7 @@ def build_model(config, motion_only=False):
         "support_names": tuple(support.name for support in config.supports), "contact_stiffness": contact.stiffness,
         "gap_factor": contact.gap_factor, "centre_offset": contact.centre_offset, "contact_position": contact.position,
         "contact_laws": contact_laws(config.supports, contact), "full_mode_frequencies": full,
-        "drive_shapes": (force_row(structure, place, config.excitation) @ shapes)[:, None],
+        "drive_shapes": (force_row(structure, place, config.excitation, _axis(config)) @ shapes)[:, None],
         "element_shapes": np.hstack([(local_rows @ shapes).T, damper_shapes]), "element_names": names, "local_laws": laws,
         "constant_force": dead_load(structure, place, config.excitation) @ shapes,
         "initial_displacement": _initial(structure, shapes, config.initial, "displacement_m"),
@@ -70,6 +71,11 @@ def build_model(config, motion_only=False):
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
     return ModalModel(**with_plates(fields, config.supports))
+
+
+def _axis(config):
+    """Return the axis about which the force is turned, where it is."""
+    return turn_axis(config, config.points[config.excitation.point]) if getattr(config.excitation, "turn_deg", 0.0) else (0.0, 0.0, 1.0)
 
 
 def _places(structure, config):

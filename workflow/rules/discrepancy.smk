@@ -2,9 +2,7 @@
 # bank=FOLDER takes the candidates' simulations from another campaign of the same model, loads and gaps.
 
 BANK = REQUEST.get("bank", "")
-CANDIDATES = local_names(MODEL.model_dump(mode="json"))
 NULLS = [f"{DISCREPANCY}/null/{part}.npz" for part in range(NULL_PARTS)]
-PATHS = [f"{BANK or DISCREPANCY}/paths/{name}.npz" for name in CANDIDATES]
 BANK_NULLS = [f"{BANK}/null/{part}.npz" for part in range(NULL_PARTS)] if BANK else []
 
 
@@ -14,7 +12,7 @@ wildcard_constraints:
     pair=r"[a-z_]+@[A-Za-z0-9_.-]+(@alone)?(\+[a-z_]+@[A-Za-z0-9_.-]+)?",
 
 
-rule discrepancy_prepare:
+checkpoint discrepancy_prepare:
     input:
         library=library("discrepancy_prepare"),
         campaign=requested("campaign", "FILE"),
@@ -89,13 +87,12 @@ checkpoint discrepancy_screening:
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
-        paths=PATHS,
+        paths=path_files,
         bank_null=BANK_NULLS,
     output:
         screening=f"{DISCREPANCY}/screening.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/screening.log",
     benchmark:
@@ -116,14 +113,13 @@ rule discrepancy_finalist:
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
-        paths=PATHS,
+        paths=path_files,
         bank_null=BANK_NULLS,
         screening=f"{DISCREPANCY}/screening.json",
     output:
         finalist=f"{DISCREPANCY}/finalists/{{candidate}}.npz",
     params:
         config=MODEL.model_dump(mode="json"),
-        candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/finalist_{{candidate}}.log",
     benchmark:
@@ -144,7 +140,7 @@ checkpoint discrepancy_pairs:
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
-        paths=PATHS,
+        paths=path_files,
         bank_null=BANK_NULLS,
         screening=f"{DISCREPANCY}/screening.json",
         finalists=finalist_files,
@@ -152,7 +148,6 @@ checkpoint discrepancy_pairs:
         pairs=f"{DISCREPANCY}/pairs.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/pairs.log",
     benchmark:
@@ -173,14 +168,13 @@ rule discrepancy_pair:
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
-        paths=PATHS,
+        paths=path_files,
         bank_null=BANK_NULLS,
         pairs=f"{DISCREPANCY}/pairs.json",
     output:
         pair=f"{DISCREPANCY}/pairs/{{pair}}.npz",
     params:
         config=MODEL.model_dump(mode="json"),
-        candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/pair_{{pair}}.log",
     benchmark:
@@ -201,7 +195,7 @@ rule discrepancy_verdict:
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
-        paths=PATHS,
+        paths=path_files,
         bank_null=BANK_NULLS,
         screening=f"{DISCREPANCY}/screening.json",
         finalists=finalist_files,
@@ -215,7 +209,6 @@ rule discrepancy_verdict:
         model=f"{DISCREPANCY}/model_updated.yaml",
     params:
         config=MODEL.model_dump(mode="json"),
-        candidates=CANDIDATES,
     log:
         f"{DISCREPANCY}/logs/verdict.log",
     benchmark:

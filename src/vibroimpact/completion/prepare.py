@@ -13,9 +13,10 @@ from vibroimpact.completion.mounting import mounting_table
 from vibroimpact.completion.own_records import Unusable, drive_channel, own_records
 from vibroimpact.completion.own_study import LAWS_TRIED, SECOND_LAWS, check_names, default_band, own_study
 from vibroimpact.completion.places import ranked_places, tried_places
-from vibroimpact.completion.store import modes_of, plain
+from vibroimpact.completion.store import modes_of
 from vibroimpact.identify.modal_fit import identify_modes
 from vibroimpact.multisine import line_power
+from vibroimpact.records import plain
 
 MISSED = 0.5  # of the response of the lowest level: a linear model that misses more is none
 SIMPLE = 1.15  # times the least error: a model with fewer residual modes within it is taken

@@ -9,6 +9,7 @@ import numpy as np
 from vibroimpact.campaign import read_campaign, write_campaign
 from vibroimpact.completion.trial import Term, Trial
 from vibroimpact.identified import IdentifiedModes
+from vibroimpact.records import plain
 
 
 def modes_values(modes):
@@ -54,20 +55,3 @@ def write_kept(campaign, path):
 def read_kept(path):
     """Return the usable records of a campaign, None where there are none."""
     return read_campaign(path) if Path(path).stat().st_size else None
-
-
-def plain(value):
-    """Return a value in dicts, lists, numbers, texts and None."""
-    if isinstance(value, dict):
-        return {str(key): plain(each) for key, each in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [plain(each) for each in value]
-    if isinstance(value, (bool, np.bool_)):
-        return bool(value)
-    if isinstance(value, (int, np.integer)):
-        return int(value)
-    if isinstance(value, (float, np.floating)):
-        return float(value) if np.isfinite(value) else None
-    return value

@@ -7,9 +7,10 @@ import numpy as np
 import yaml
 
 from vibroimpact.completion.local_laws import LAWS
-from vibroimpact.completion.store import plain, trial_of
+from vibroimpact.completion.store import trial_of
 from vibroimpact.completion.study import ELSEWHERE
 from vibroimpact.local_elements import COLUMNS
+from vibroimpact.records import plain
 
 AXIS, DIRECTION = "x", [1.0, 0.0, 0.0]  # shapes hold one direction per channel; which way it points in space is the sensor's affair
 STEPS_PER_CYCLE = 200  # of the highest mode or of the band's end: what the ordinary study asks for

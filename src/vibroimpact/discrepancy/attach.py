@@ -7,6 +7,7 @@ import numpy as np
 
 from vibroimpact.campaign import CampaignError, support_ratios
 from vibroimpact.config_schema import Sensors
+from vibroimpact.loads import turn_axis, turned
 from vibroimpact.reduction import build_model
 
 NEAR_M = 5.0e-3  # farther from the structure is no place on it
@@ -30,7 +31,11 @@ def attach(config, campaign):
     except ValueError as error:
         raise CampaignError(_sentence(str(error), names)) from None
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
-    shapes = np.einsum("mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), along)
+    acting = along.copy()  # a force may act beside its stated direction, a sensor's direction is what it is
+    angle = getattr(config.excitation, "turn_deg", 0.0)
+    for number in range(campaign.sizes["channel"], len(places)) if angle else ():
+        acting[number] = turned(along[number], angle, turn_axis(config, places[number]))
+    shapes = np.einsum("mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), acting)
     channels = campaign.sizes["channel"]
     return replace(
         model, gap_factor=model.gap_factor * _ratio_of_points(campaign, model),

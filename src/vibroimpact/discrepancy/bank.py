@@ -66,7 +66,7 @@ class Source:
         if not self.bench.linear_stage or reading is None and model is self.bench.bare:
             return None
         if reading is None:
-            return linear.reading_of_model(model, self.bench.measured_fit.modes)
+            return linear.gained(linear.reading_of_model(model, self.bench.measured_fit.modes), self.bench.measuring)
         bench, modes = self.bench, self.bench.measured_fit.modes
         common = np.intersect1d(modes, reading.modes)
         here, there = np.searchsorted(modes, common), [list(reading.modes).index(mode) for mode in common]
@@ -75,7 +75,7 @@ class Source:
         for name in ("log_frequency", "log_damping"):
             getattr(now, name)[here] += getattr(reading, name)[there] - getattr(was, name)
         now.participation[:, here] += reading.participation[self.channels][:, there] - was.participation
-        return replace(now, residual=reading.residual[self.channels])
+        return linear.gained(replace(now, residual=reading.residual[self.channels]), self.bench.measuring)
 
 
 def known_paths(files, source=None, prepared=None):

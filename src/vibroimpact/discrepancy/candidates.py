@@ -100,6 +100,21 @@ class Candidate:
         """Return the numbers of the parameters that are angles over a whole period."""
         return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.name == "angle" and self.ids == ["foliate_obstacle"])
 
+    def parts(self, unit):
+        """Return [(candidate, its parameters)] of unit (parameter,), as a Pair has two."""
+        return [(self, np.asarray(unit))]
+
+    def renumbered(self, index_of):
+        """Return the candidate for a model that numbers its modes otherwise; index_of(index of a mode, from 0) gives the index there."""
+        if self.effect_id != "mode_frequency_error":
+            return self
+        return replace(self, location=f"mode_{index_of(self.mode) + 1}")
+
+    @property
+    def mode(self):
+        """Return the index, from 0, of the mode in a location mode_<number>."""
+        return int(self.location.removeprefix("mode_")) - 1
+
     def variant(self, values, parameters):
         """Return the configuration in plain values with the effect; unchanged for a fault of the measuring chain."""
         return values if self.effect.measured else self.effect.apply(values, parameters, self.location)
@@ -111,7 +126,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class PairEffect:
-    """What two effects together have of an effect."""
+    """What two effects together have of an effect; measured: one of them is of the measuring chain."""
 
     parameters: tuple
     linear: bool = False
@@ -150,7 +165,8 @@ class Pair:
     @property
     def effect(self):
         """Return both effects as one."""
-        return PairEffect(self.first.effect.parameters + self.second.effect.parameters)
+        both = self.first.effect, self.second.effect
+        return PairEffect(both[0].parameters + both[1].parameters, all(effect.linear for effect in both), measured=any(effect.measured for effect in both))
 
     @property
     def split(self):
@@ -174,13 +190,17 @@ class Pair:
         """Return [{name: value in SI}] of both."""
         return [candidate.physical(part, scales) for candidate, part in self.parts(unit)]
 
+    def renumbered(self, index_of):
+        """Return the pair for a model that numbers its modes otherwise."""
+        return Pair(self.first.renumbered(index_of), self.second.renumbered(index_of))
+
     def variant(self, values, parameters):
         """Return the configuration in plain values with both effects."""
         return self.second.variant(self.first.variant(values, parameters[0]), parameters[1])
 
     def measuring(self, parameters, names):
-        """Return None: no pair is of the measuring chain."""
-        return None
+        """Return the Measuring of the one of the two that is a fault of the measuring chain, None where neither is."""
+        return next((candidate.measuring(own, names) for candidate, own in zip((self.first, self.second), parameters, strict=True) if candidate.effect.measured), None)
 
 
 def candidate_named(name):
@@ -200,9 +220,9 @@ def elsewhere(candidate, values):
 
 
 def other_places(candidate, values):
-    """Return the candidate at every other place of its kind, where it was at one of several; linear effects were tried everywhere."""
+    """Return the candidate at every other place of its kind, where a few of many were screened."""
     locations = candidate.effect.locations(values)
-    return [] if "all" in locations or candidate.effect.linear else [replace(candidate, location=place) for place in locations if place != candidate.location]
+    return [] if "all" in locations or candidate.effect_id not in SCREENED else [replace(candidate, location=place) for place in locations if place != candidate.location]
 
 
 def linear_candidates(values, names, held, modes):
@@ -220,26 +240,31 @@ def linear_candidates(values, names, held, modes):
     return found
 
 
-def local_candidates(values, held):
-    """Return the candidates that only simulation tells of, those to screen first: one place each, or the first few."""
+def local_candidates(values, held, modes=None):
+    """Return the candidates that only simulation tells of, those to screen first: one place each, or the first few.
+
+    modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear structure, and linear effects are tried as the others are.
+    """
     found = []
     for effect in EFFECTS.values():
-        if not effect.linear and set(effect.needs) <= set(held):
+        if set(effect.needs) <= set(held) and not effect.measured:
             locations = effect.locations(values)
             if locations and locations[0] == "all":
                 locations = locations[:1]
+            if effect.id == "mode_frequency_error":
+                locations = locations[:UNSEEN_MODES]
             found += [Candidate(effect.id, location) for location in locations[: SCREENED.get(effect.id, len(locations))]]
-    return found + UNSEEN_LINEAR
+    return [candidate for candidate in found if modes is None or not _told(candidate, modes)]
 
 
-UNSEEN_MODES = 6  # the first so many modes of the structure: those that the lowest record does not show are tried
-# linear, but the motion that a low level shows may hold nothing of them
-UNSEEN_LINEAR = [Candidate("lateral_stinger", "along_x"), *(Candidate("mode_frequency_error", f"mode_{mode + 1}") for mode in range(UNSEEN_MODES))]
+UNSEEN_MODES = 6  # the first so many modes of the structure: the frequencies of those that the lowest record does not show are tried
 
 
-def seen(candidate, modes):
-    """Return whether a candidate is the frequency of a mode that the lowest record shows; modes: those, from 0."""
-    return candidate.effect_id == "mode_frequency_error" and int(candidate.location.removeprefix("mode_")) - 1 in modes
+def _told(candidate, modes):
+    """Return whether the lowest record tells of a candidate where it shows modes (mode,): of linear effects, but for what acts across its motion."""
+    if candidate.effect_id == "mode_frequency_error":
+        return candidate.mode in modes
+    return candidate.effect.linear and candidate != Candidate("lateral_stinger", "along_x")
 
 
 def not_testable(held):

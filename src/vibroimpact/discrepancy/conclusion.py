@@ -6,17 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-import yaml
 
 from vibroimpact.discrepancy import jobs, mapping, misfit, power_balance, priors, verdict
 from vibroimpact.discrepancy.by_level import by_level
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
+from vibroimpact.discrepancy.completed_model import updated_model
 from vibroimpact.discrepancy.estimate_scatter import with_scatter
 from vibroimpact.discrepancy.invariances import broken_invariances
 from vibroimpact.discrepancy.next_measurement import next_measurement
-from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.discrepancy.prepared import workbench
-from vibroimpact.records import read_text, write_record, write_table, write_text
+from vibroimpact.records import plain, read_text, write_record, write_table, write_text
 
 FRESH = 20000  # first seed of the verification: none of the calibration's
 FRESH_RUNS, LEAST_FRESH = 32, 4  # runs of whole records in all, seeds of each at least
@@ -147,13 +146,12 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
     for row in found:
         ids = [*([] if row.candidate.alone else prefix), *row.candidate.ids]
         gain, on_fit, held_out = totals[row.candidate.name]
-        location = "+".join(part.split("@")[1] for part in row.candidate.name.split("+"))
-        rows.append({"ids": "+".join(ids), "location": location, "fit_score": on_fit, "heldout_score": held_out,
+        rows.append({"ids": "+".join(ids), "location": where(row.candidate.name), "fit_score": on_fit, "heldout_score": held_out,
                      "closed_fraction": float(verdict.closure(bench, null, row, measured)), "threshold": screening["threshold"], "tested": True,
                      "gain": np.inf if row is decision.chosen else gain})  # fmt: skip
         seen.add(row.candidate.name)
     if prefix:
-        only = {"ids": prefix[0], "location": prepared.adopted["name"].split("@")[1], "fit_score": 0.0, "heldout_score": 0.0,  # all others are scored against it
+        only = {"ids": "+".join(prefix), "location": where(prepared.adopted["name"]), "fit_score": 0.0, "heldout_score": 0.0,  # all others are scored against it
                 "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True, "gain": screening["threshold"]}  # fmt: skip
         rows.append(only)
     rows.sort(key=lambda row: -row["gain"])
@@ -165,9 +163,14 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
                          "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
     for row in prepared.linear[:SHOWN]:
         if prepared.adopted is None or row["name"] != prepared.adopted["name"]:
-            rows.append({"ids": row["name"].split("@")[0], "location": row["name"].split("@")[1], "fit_score": row["gain"], "heldout_score": None,
+            rows.append({"ids": "+".join(candidate_named(row["name"]).ids), "location": where(row["name"]), "fit_score": row["gain"], "heldout_score": None,
                          "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True})  # fmt: skip
     return [{key: row[key] for key in COLUMNS} for row in rows]
+
+
+def where(name):
+    """Return the location in a candidate's name, both of a pair's joined with a plus."""
+    return "+".join(part.split("@")[1] for part in name.split("+"))
 
 
 def bounds(decision, prepared):
@@ -202,50 +205,9 @@ def write_candidates(found, prepared, totals, folder, levels):
         write_text(json.dumps(plain(content), indent=1), folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json")
 
 
-def updated_model(bench, decision, prepared):
-    """Return the text of the completed configuration: effects, corrected modes; gains of channels as a comment, for they are not of the model."""
-    values = bench.values
-    if decision.chosen is not None:
-        values = bench.variant(decision.chosen.candidate, decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales))
-    if bench.nuisance is not None:
-        values = with_nuisance(values, bench.nuisance, bench.bare)
-    lines = ["# The model with what the campaign showed to be missing. Corrections of modes are in mode_frequency_factors and damping."]
-    if bench.nuisance is not None:
-        gains = ", ".join(f"{name} {gain:.4f}" for name, gain in zip(bench.signals.names, bench.nuisance.gain, strict=True))
-        lines.append(f"# Gains of the channels, measured over true: {gains}")
-    values = values | {"study": f"{values['study']}_updated"}
-    return "\n".join([*lines, yaml.safe_dump(plain(values), sort_keys=False, width=140)])
-
-
-def with_nuisance(values, nuisance: Nuisance, model):
-    """Return the configuration in plain values with the corrected frequencies and damping ratios of its first modes."""
-    count = int(nuisance.modes.max(initial=-1)) + 1
-    factors = [*values["mode_frequency_factors"], *[1.0] * max(0, count - len(values["mode_frequency_factors"]))]
-    damping = dict(values["damping"])
-    for mode, factor in zip(nuisance.modes, nuisance.frequency, strict=True):
-        factors[mode] *= float(factor)
-    if damping["kind"] == "modal":
-        ratios = [*damping["first_ratios"], *[damping["other_ratio"]] * max(0, count - len(damping["first_ratios"]))]
-        for mode, factor in zip(nuisance.modes, nuisance.damping, strict=True):
-            ratios[mode] *= float(factor)
-        damping["first_ratios"] = ratios
-    return values | {"mode_frequency_factors": factors, "damping": damping}
-
-
 def simulations(null, paths, found, before, after):
     """Return how many records were simulated."""
     records = len(null.mean)
     count = records * (null.seeds + 2 * jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (1 if after is before else 2)
     count += sum(int(path.seeds.sum()) * records for path in paths.values())
     return count + sum(int(row.path.seeds.sum()) * records + row.features.shape[1] * records for row in found)
-
-
-def plain(value):
-    """Return nested values without numpy types and without NaN."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    return None if isinstance(value, float) and not np.isfinite(value) else value

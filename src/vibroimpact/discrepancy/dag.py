@@ -4,15 +4,13 @@ import hashlib
 import json
 from pathlib import Path
 
-from vibroimpact.discrepancy.candidates import local_candidates
-
 QUICK_S = 10.0  # records are cut to it where the run must be quick
 NULL_PARTS = 4  # jobs; each runs its share of the seeds with and without the damping of unseen modes
 
 
-def local_names(values):
-    """Return the names of the candidates that are screened by simulation, for a configuration in plain values."""
-    return [candidate.name for candidate in local_candidates(values, ())]
+def screened_names(path):
+    """Return the names of the candidates that the first job (its file) left to be screened by simulation."""
+    return json.loads(Path(path).read_text(encoding="utf-8"))["screened"]
 
 
 def finalist_names(path):

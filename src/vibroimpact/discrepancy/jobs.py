@@ -7,7 +7,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
-from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere, in_place_of_adopted, seen
+from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import ROUNDS, gains_of, own, placed, refine, started
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
@@ -41,9 +41,6 @@ def null_part(run, part, path):
 def candidate_path(run, candidate, path, quick=False):
     """Simulate a candidate at the points of its design."""
     bench, arrays = run.screening_bench, {}
-    if bench.linear_stage and seen(candidate, bench.measured_fit.modes):
-        store.save_empty(path)
-        return
     for alone in (False, True) if in_place_of_adopted(run.prepared, candidate) else (False,):
         found = simulate_path(bench, replace(candidate, alone=alone), candidate.design(quick), run.prepared.scales, contact_records(bench))
         if found is not None:

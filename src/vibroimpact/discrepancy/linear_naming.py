@@ -7,17 +7,13 @@ import numpy as np
 from scipy import optimize
 from scipy.interpolate import RegularGridInterpolator
 
-from vibroimpact.config import check_config
 from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.linearised import linearised, same_modes
+from vibroimpact.discrepancy.linear_fit import LinearChanges, LinearResult
 from vibroimpact.discrepancy.screening import NINETY
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
 NUISANCES = ("mode_frequency_error", "modal_damping")  # logarithms of readings are straight in their normalised parameters
 STRAIGHT = 3
-COARSE_MESH = {"elements_per_span": 8, "elements_per_bend": 32}
-REACH = 6.0  # the reduced basis for readings reaches to so many times the excited band
 
 
 @dataclass(frozen=True)
@@ -44,53 +40,22 @@ class LinearTable:
         return linear.Reading(self.modes, row[:count], row[count : 2 * count], row[2 * count :].reshape(-1, count), None)
 
 
-def table_of(bench, candidate, scales):
-    """Return the LinearTable of a linear effect of the model, modes as the measured fit has them."""
-    config = coarse(bench.config, REACH * bench.signals.band_Hz[1])
-    bare, modes = attach(config, bench.campaign), bench.measured_fit.modes
-    reduced, values = same_modes(bare, modes, bench.bare), config.model_dump(mode="json")
-    reference = linear.reading_of_model(bare, reduced)
-    full = linear.reading_of_model(bench.bare, modes)
+def table_of(bench, candidate, scales, changes):
+    """Return the LinearTable of a linear effect of the model, modes as the measured fit has them; changes: LinearChanges of the Workbench."""
     count = STRAIGHT if candidate.effect_id in NUISANCES else POINTS[len(candidate.effect.parameters)]
     axes = tuple(np.linspace(0.0, 1.0, count) for _ in candidate.effect.parameters)
     rows = []
     for unit in np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=-1):
-        variant = candidate.variant(values, candidate.physical(unit, scales))
-        model = linearised(attach(check_config(variant, "variant of the model"), bench.campaign))
-        found = linear.reading_of_model(model, same_modes(model, reduced, bare))
-        # the reduced basis serves the change alone
-        rows.append(np.concatenate([full.log_frequency + found.log_frequency - reference.log_frequency,
-                                    full.log_damping + found.log_damping - reference.log_damping,
-                                    (full.participation + found.participation - reference.participation).ravel()]))  # fmt: skip
-    return LinearTable(axes, np.array(rows).reshape(*[count] * len(axes), -1), modes, tuple(bench.signals.names))
-
-
-def coarse(config, highest_Hz):
-    """Return the configuration with a coarse mesh and free modes alone, to a frequency in Hz: for changes of modes, not for modes."""
-    basis = config.basis.model_copy(update={"free_modes_to_Hz": highest_Hz, "constrained_modes_to_Hz": 1.0, "attachment_shapes": False})
-    structure = config.structure
-    if hasattr(structure, "mesh"):
-        structure = structure.model_copy(update={"mesh": structure.mesh.model_copy(update=COARSE_MESH)})
-    return config.model_copy(update={"basis": basis, "structure": structure})
+        found = changes.reading(candidate, candidate.physical(unit, scales))
+        rows.append(np.concatenate([found.log_frequency, found.log_damping, found.participation.ravel()]))
+    return LinearTable(axes, np.array(rows).reshape(*[count] * len(axes), -1), changes.modes, tuple(bench.signals.names))
 
 
 def reading_under(bench, candidate, unit, scales, table):
     """Return the Reading under a linear candidate at normalised parameters."""
     if not candidate.effect.measured:
         return replace(table.reading(unit), residual=np.ones(len(bench.signals.names)))
-    bare = linear.reading_of_model(bench.bare, bench.measured_fit.modes)
-    measuring = candidate.measuring(candidate.physical(unit, scales), bench.signals.names)
-    return replace(bare, participation=bare.participation * (measuring.gain / measuring.force_gain)[:, None])
-
-
-@dataclass(frozen=True)
-class LinearResult:
-    """The best of a candidate: unit (parameter,) normalised; gain of log likelihood over the bare model; interval (parameter, 2) of 90 %, normalised."""
-
-    candidate: object
-    unit: np.ndarray
-    gain: float
-    interval: np.ndarray
+    return linear.gained(linear.reading_of_model(bench.bare, bench.measured_fit.modes), candidate.measuring(candidate.physical(unit, scales), bench.signals.names))
 
 
 def calibrate(bench, candidate, scales, table=None):

@@ -19,7 +19,8 @@ VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S, LONGEST_LAG_S = 2.0e-5, 0.02
-DEAF = 0.7  # share of a channel that no mode explains: above it the channel has nothing to tell
+SILENT = 1.0e-4  # of a mode's largest displacement among the channels: below it a channel does not see the mode
+DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
 SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
 
@@ -45,16 +46,17 @@ class ModalFit:
     share: np.ndarray
 
 
-def fit_modes(record, responses, model, kinds, noise_rms, visible=None):
+def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=True):
     """Return the ModalFit of responses (channel, sample) to the force of a LinearRecord.
 
     model: ModalModel attached to the campaign; kinds (channel,), all of one kind; noise_rms (channel,) in the band. visible: the modes to fit, as another fit had
-    them; chosen by their predicted share where it is None. Returns None where no mode is visible.
+    them; chosen by their predicted share where it is None; search: where the model's frequencies lead nowhere, look for resonances without it. Returns None
+    where no mode is visible.
     """
     found = _fit(record, responses, model, kinds, noise_rms, visible)
-    if found is None or visible is not None or _left(found, model) < LOST:
+    if found is None or visible is not None or not search or left(found, model) < LOST:
         return found
-    return min(found, _fit(record, responses, model, kinds, noise_rms, visible, True), key=lambda fit: _left(fit, model))
+    return min(found, _fit(record, responses, model, kinds, noise_rms, visible, True), key=lambda fit: left(fit, model))
 
 
 def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
@@ -77,13 +79,13 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     delay, lag, start = np.zeros(len(measured)), None, np.zeros(len(visible)) if fixed else None
     for _ in range(3):  # modes that the model does not excite, and delays, are seen once the rest is taken out
         drive = model.drive_shapes[visible].copy()
-        drive[np.abs(drive).max(axis=1) < 1.0e-6 * np.abs(model.drive_shapes).max(), 0] = 1.0
+        drive[~_driven(model, visible), 0] = 1.0
         turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         rest = _rest(record, model, visible, kind)
         if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
             start = _elsewhere(record, turned - rest, weights, model, visible, kind) if elsewhere else None
             free = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start, True)
-            lag, start = _lags(free, model) if _left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
+            lag, start = _lags(free, model) if left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
             delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
             turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         found = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
@@ -102,7 +104,7 @@ def _elsewhere(record, measured, weights, model, visible, kind):
     return assigned(*pursued(record, measured, weights, len(visible), zeta, kind), model, visible)
 
 
-def _left(found, model):
+def left(found, model):
     """Return the largest residual over noise of a ModalFit among the channels that the force drives in the model."""
     driven = np.abs(model.sensor_shapes[found.modes].T) @ np.abs(model.drive_shapes[found.modes]).max(axis=1)
     return found.residual[driven > 1.0e-3 * driven.max()].max()
@@ -122,11 +124,12 @@ def _lags(found, model):
     """
     frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
     lags = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
+    driven = _driven(model, found.modes)
     out = np.zeros(len(found.participation))
     for channel, (shape, own) in enumerate(zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)):
-        weight = np.where(np.abs(own) > 0.05 * np.abs(own).max(), 1.0, 0.0)
-        if found.share[channel] > DEAF or not np.any(own):
-            continue  # a channel of noise
+        weight = np.where(driven & (np.abs(own) > 0.05 * np.abs(own).max()), 1.0, 0.0)
+        if found.share[channel] > DEAF or not weight.any():
+            continue  # a channel of noise, or of motion of which the model does not tell the sense
         unit = weight * shape * np.sign(own) / np.maximum(np.abs(shape), 1.0e-300)
         match = np.real(np.exp(2j * np.pi * np.outer(lags, frequency)) @ unit)
         best = lags[np.argmax(match - 1.0e-3 * np.abs(lags) / LONGEST_LAG_S)]
@@ -135,6 +138,11 @@ def _lags(found, model):
             best -= np.sum(frequency * turned.imag) / max(2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300)
         out[channel] = best
     return out
+
+
+def _driven(model, modes):
+    """Return (mode,) bool: whether a force drives these modes of a model."""
+    return np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()
 
 
 def _unexpected(record, measured, found, weights, drive, model, near, kind):
@@ -191,10 +199,15 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
         w = (omega * np.exp(values[:count]))[chosen]
         return record.responses(w, 2.0 * (zeta * np.exp(values[count:]))[chosen] * w, drive[chosen], kind)
 
+    own = np.abs(model.sensor_shapes[visible].T)  # a pair of modes along and across would be ill told apart where a channel sees but one of them
+    seen = own > SILENT * own.max(axis=0)
+
     def solve(basis):
-        if phases:
-            return np.array([linalg.lstsq((weights[c] * basis).T, weights[c] * measured[c])[0] for c in range(len(measured))])
-        return np.array([linalg.lstsq(_real(weights[c] * basis).T, _real(weights[c] * measured[c]))[0] for c in range(len(measured))])
+        shapes = np.zeros(seen.shape, complex if phases else float)
+        for c in np.flatnonzero(seen.any(axis=1)):
+            rows, target = (weights[c] * basis[seen[c]]).T, weights[c] * measured[c]
+            shapes[c, seen[c]] = linalg.lstsq(rows, target)[0] if phases else linalg.lstsq(_real(rows.T).T, _real(target))[0]
+        return shapes
 
     best, best_cost, damp = None, np.inf, 1.0e-3
     for _ in range(ITERATIONS):
@@ -211,15 +224,15 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
             damp *= 20.0
             if damp > 1.0e3:
                 break
-        jacobian = _jacobian(record, weights, columns, best)
+        jacobian = _jacobian(weights, columns, best, seen)
         normal = jacobian.T @ jacobian
         step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]).ravel(), assume_a="pos")
         logs = best[0] + step * min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
         logs[count:] = np.clip(logs[count:], -3.0, 3.0)
-    return _result(best, weights, visible, drive, noise, record, columns, measured, delay)
+    return _result(best, weights, visible, drive, noise, columns, measured, delay, seen)
 
 
-def _jacobian(record, weights, columns, best):
+def _jacobian(weights, columns, best, seen):
     """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm, without what the participations would take up.
 
     The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of the basis, channel by channel.
@@ -235,16 +248,17 @@ def _jacobian(record, weights, columns, best):
         change = (columns(moved, [mode])[0] - basis[mode]) / step
         jacobian[:, :, number] = _real(weights * np.outer(shapes[:, mode], change))
     for channel in range(channels):
-        columns_of = [_real(weights[channel] * basis)] + [_real(1j * weights[channel] * basis)] * np.iscomplexobj(shapes)
+        known = weights[channel] * basis[seen[channel]]
+        columns_of = [_real(known)] + [_real(1j * known)] * np.iscomplexobj(shapes)
         span, _ = np.linalg.qr(np.vstack(columns_of).T)
         jacobian[channel] -= span @ (span.T @ jacobian[channel])
     return jacobian.reshape(-1, 2 * count)
 
 
-def _result(best, weights, visible, drive, noise, record, columns, measured, delay):
+def _result(best, weights, visible, drive, noise, columns, measured, delay, seen):
     logs, shapes, _, residual = best
     count = len(visible)
-    jacobian = _jacobian(record, weights, columns, best)
+    jacobian = _jacobian(weights, columns, best, seen)
     covariance = linalg.pinvh(jacobian.T @ jacobian) * max(1.0, np.mean(np.abs(residual) ** 2))
     power = np.sqrt(np.sum(np.abs(residual / weights) ** 2, axis=-1))
     total = np.sqrt(np.sum(np.abs(measured) ** 2, axis=-1))

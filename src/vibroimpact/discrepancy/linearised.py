@@ -3,10 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy import optimize
 
 from vibroimpact.laws import LocalLaws
 
 MODE_ARRAYS = ("contact_shapes", "drive_shapes", "sensor_shapes", "line_shapes", "stress_shapes", "element_shapes")
+FREQUENCY_REACH, SHAPE_REACH = 0.2, 0.3  # of ln frequency, and of 1 - MAC: as bad a match as each other
 
 
 def linearised(model):
@@ -33,3 +35,12 @@ def same_modes(model, modes, reference):
         score[out] = -1.0
         out.append(int(np.argmax(score)))
     return np.array(out)
+
+
+def matched(model, logs, shapes):
+    """Return (mode,) indices of the modes of a ModalModel, each once, that are most like modes of ln rad/s logs (mode,) and shapes (channel, mode)."""
+    own = model.sensor_shapes
+    alike = (own @ shapes) ** 2 / np.maximum(np.outer(np.sum(own**2, axis=1), np.sum(shapes**2, axis=0)), 1.0e-300)
+    distance = np.log(np.maximum(model.omega, 1.0e-3))[:, None] - logs
+    rows, columns = optimize.linear_sum_assignment((distance / FREQUENCY_REACH) ** 2 + (1.0 - alike) / SHAPE_REACH)
+    return rows[np.argsort(columns)]

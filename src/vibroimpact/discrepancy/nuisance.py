@@ -50,6 +50,11 @@ def reading_of_model(model, modes):
     return Reading(modes, np.log(omega), np.log(model.damping[modes] / (2.0 * omega)), participation, np.ones(participation.shape[0]))
 
 
+def gained(reading, measuring):
+    """Return a Reading as a measuring chain (Measuring, None for a perfect one) shows it."""
+    return reading if measuring is None else replace(reading, participation=reading.participation * (measuring.gain / measuring.force_gain)[:, None])
+
+
 def difference(measured, simulated, error):
     """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus simulated Reading.
 
@@ -105,4 +110,6 @@ def corrected(model, nuisance, bare=None):
     modes = nuisance.modes if bare is None else same_modes(model, nuisance.modes, bare)
     omega[modes] *= nuisance.frequency
     damping[modes] *= nuisance.damping * nuisance.frequency
-    return replace(model, omega=np.maximum.accumulate(omega), damping=damping)
+    seen = np.isin(np.arange(len(omega)), modes)  # a mode that was seen is where it was seen, its neighbours make room
+    lower, upper = np.maximum.accumulate(np.where(seen, omega, 0.0)), np.minimum.accumulate(np.where(seen, omega, np.inf)[::-1])[::-1]
+    return replace(model, omega=np.maximum.accumulate(np.where(seen, omega, np.clip(omega, lower, upper))), damping=damping)

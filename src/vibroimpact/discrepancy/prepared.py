@@ -1,7 +1,7 @@
-"""The first job of a discrepancy run: checks, the linear stage, the linear effect that is adopted before contact is looked at."""
+"""The first job of a discrepancy run: checks, the linear stage, the linear effects that are adopted before contact is looked at."""
 
 import json
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
@@ -10,10 +10,13 @@ from vibroimpact.campaign_checks import check_file, refused, usable_signals
 from vibroimpact.campaign_model_checks import compare_with_model
 from vibroimpact.campaign_signals import measured_signals, transfer
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named, linear_candidates, not_testable
-from vibroimpact.discrepancy.linear_stage import ModalFit
-from vibroimpact.discrepancy.linear_naming import calibrate, reading_under, table_of
+from vibroimpact.discrepancy.candidates import candidate_named, linear_candidates, local_candidates, not_testable
+from vibroimpact.discrepancy.linear_fit import LinearChanges, fitted
+from vibroimpact.discrepancy.linear_stage import LOST, ModalFit, left
+from vibroimpact.discrepancy.linear_naming import calibrate, table_of
+from vibroimpact.discrepancy.linear_pairs import best_pairs
 from vibroimpact.discrepancy.measuring import Measuring
+from vibroimpact.discrepancy.nearest_model import fit_from_nearest, translated
 from vibroimpact.discrepancy.null import driven_channels
 from vibroimpact.discrepancy.scales import scales
 from vibroimpact.discrepancy.windows import compared_s, screened_s
@@ -26,8 +29,8 @@ class Prepared:
     """What the first job hands on, in plain values.
 
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
-    {name, unit, gain, interval} of the linear effect that belongs to the model from here on; linear: the same of every linear candidate, best
-    first; linear_stage; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
+    {name, unit, gain, interval} of the linear effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every linear candidate,
+    best first; screened: names of the candidates that only simulation tells of; linear_stage: whether the lowest record tells of the linear structure; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
     noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them, see windows; fit: the ModalFit of the lowest record on
     the model with what was adopted.
     """
@@ -37,6 +40,7 @@ class Prepared:
     scales: dict = field(default_factory=dict)
     adopted: dict | None = None
     linear: list = field(default_factory=list)
+    screened: list = field(default_factory=list)
     linear_stage: bool = False
     nonlinear_low: bool = False
     chi_square: float = 0.0
@@ -81,11 +85,12 @@ def usable_campaign(path, checks):
 
 
 def workbench(config, campaign_path, prepared, seconds):
-    """Return the Workbench of a campaign, each record cut to so many seconds, as the first job left it: nuisances corrected, the linear effect adopted."""
+    """Return the Workbench of a campaign, each record cut to so many seconds, as the first job left it: nuisances corrected, the linear effects adopted."""
     campaign, refusal = usable_campaign(campaign_path, prepared.checks)
     if refusal:
         raise CampaignError(refusal)
     bench = Workbench(config, campaign, seconds)
+    bench.linear_stage = prepared.linear_stage
     if prepared.delays:
         delay = np.array([prepared.delays.get(name, 0.0) for name in bench.signals.names])
         bench.late = Measuring(np.ones(len(delay)), delay, 1.0)
@@ -99,20 +104,16 @@ def workbench(config, campaign_path, prepared, seconds):
 
 
 def adopt(bench, prepared):
-    """Put the adopted linear effect into a Workbench: the model or the measuring chain has it from here on, nuisances are those beside it."""
+    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from here on, nuisances are those beside it."""
     candidate = candidate_named(prepared.adopted["name"])
     physical = candidate.physical(prepared.adopted["unit"], prepared.scales)
-    if not candidate.effect.measured:
-        bench.rebase(candidate.variant(bench.values, physical))
+    values = candidate.variant(bench.values, physical)
+    if values is not bench.values:
+        bench.rebase(values)
     if prepared.fit is not None:
         bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
-    if candidate.effect.measured:
-        bench.measuring = candidate.measuring(physical, bench.signals.names)
-        fit = bench.measured_fit
-        reading = reading_under(bench, candidate, prepared.adopted["unit"], prepared.scales, None) if fit is not None else None
-        bench.nuisance = corrected_nuisance(bench, reading)[0]
-    else:
-        bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
+    bench.measuring = candidate.measuring(physical, bench.signals.names)
+    bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
 def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None):
@@ -144,15 +145,32 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
     out.scales = {name: float(value) for name, value in scales(bench.bare, bench.signals, {"displacement": reach, "speed": reach * 2.0 * np.pi * first}).items()}
     out.linear_stage = bool(bench.linear_stage)
-    if not out.linear_stage:
-        return out
+    if out.linear_stage:
+        read_lowest(bench, lambda: Workbench(config, campaign, seconds), out, {} if tables is None else tables, without)
+    modes = (out.fit["modes"] if out.fit else bench.measured_fit.modes) if out.linear_stage else None
+    candidates = local_candidates(config.model_dump(mode="json"), held(campaign), modes)
+    out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids)]
+    return out
+
+
+def read_lowest(bench, fresh, out, tables, without):
+    """Read the lowest record: linear stage, delays, linear effects, what is adopted; Prepared out and tables are changed.
+
+    bench: Workbench; fresh() gives another one; tables, without: see prepare.
+    """
+    driven = driven_channels(bench)
+    if left(bench.measured_fit, bench.bare) >= LOST:  # modes that moved too far to be followed: begin from the effects that come nearest
+        bench.measured_fit, tables = fit_from_nearest(bench, LinearChanges(bench), out.scales, held(bench.campaign), without), {}
+        bench.__dict__.pop("measured_reading", None)
     fit = bench.measured_fit
+    if np.median(fit.share[driven]) > UNREAD:
+        out.linear_stage = False
+        out.checks.append({"check": "lowest level", "level": "warn", "record": None, "channel": None, "message": UNREAD_MESSAGE})
+        return
     _, _, out.chi_square, _ = corrected_nuisance(bench)
     out.residual = fit.residual.tolist()
-    driven = driven_channels(bench)
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
     out.delays = {name: float(lag) for name, lag in zip(bench.signals.names, fit.delay, strict=True) if lag != 0.0}
-    tables = {} if tables is None else tables
     out.linear = linear_rows(bench, out.scales, tables, without)
     for name, lag in out.delays.items():
         out.checks.append({"check": "delay", "level": "warn", "record": None, "channel": name,
@@ -163,45 +181,61 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
         # modes that moved far are fitted well only from the model that moved them: what is left there tells whether the structure is linear
         if bench.linear_stage and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL:
             out.nonlinear_low = False
-            bench = read_again(bench, Workbench(config, campaign, seconds), fit.modes, out, tables, without)
+            bench = read_again(bench, fresh(), out, tables, without)
         if out.nonlinear_low:
-            out.adopted = None
-            bench = Workbench(config, campaign, seconds)
+            out.adopted, bench = None, fresh()
+            bench.measured_fit = fit
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
-    return out
+
+
+UNREAD = 0.5  # of the responses that the force drives: where the modes explain less, they tell nothing of the linear structure
+UNREAD_MESSAGE = ("No modes explain the lowest record: it touches already, or the structure is another one. Linear effects are tried by simulation, beside the others. "
+                  "A record at a lower load would tell them by itself.")  # fmt: skip
 
 
 def linear_rows(bench, sizes, tables, without):
-    """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a Workbench, best first; tables are extended."""
-    found = []
+    """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a Workbench, best first; before them two of them at once where
+    one does not suffice. tables are extended."""
+    found, changes = [], LinearChanges(bench)
     for candidate in linear_candidates(bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes):
         if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
             continue
         known = tables.get(candidate.name)
         if not candidate.effect.measured and not (known and known.serves(bench)):
-            tables[candidate.name] = table_of(bench, candidate, sizes)  # a table is of what a record shows
-        result = calibrate(bench, candidate, sizes, tables.get(candidate.name))
-        found.append({"name": candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()})
-    return sorted(found, key=lambda row: -row["gain"])
+            tables[candidate.name] = table_of(bench, candidate, sizes, changes)  # a table is of what a record shows
+        found.append(calibrate(bench, candidate, sizes, tables.get(candidate.name)))
+    found.sort(key=lambda row: -row.gain)
+    found[:FITTED] = [row if row.candidate.effect.measured else fitted(bench, changes, row.candidate, row.unit, sizes) or row for row in found[:FITTED]]
+    rows = sorted(map(plain_row, found), key=lambda row: -row["gain"])
+    single = rows[0]
+    if nameable(single, sizes):
+        for row in map(plain_row, best_pairs(bench, changes, rows, sizes, tables)):
+            if nameable(row, sizes) and row["gain"] > single["gain"] + priors.LINEAR_SECOND + priors.PARAMETER_COST * (len(row["unit"]) - len(single["unit"]) - 1):
+                rows.append(row)
+    return sorted(rows, key=lambda row: -row["gain"])
+
+
+FITTED = 3  # of the best effects are fitted with the model itself: between the points of a table a stinger was read 8 % off
+
+
+def plain_row(result):
+    """Return {name, unit, gain, interval} of a LinearResult, in plain values."""
+    return {"name": result.candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()}
 
 
 def nameable(row, sizes):
-    """Return whether a linear effect (a row of linear_rows) explains enough, beyond what its prior allows."""
+    """Return whether a linear effect, or two, (a row of linear_rows) explain enough, beyond what their priors allow."""
     return row["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(row["unit"]) - 1) and beyond_prior(row, sizes)
 
 
-def read_again(moved, bare, modes, out, tables, without):
+def read_again(moved, bare, out, tables, without):
     """Return the Workbench with what the lowest record tells once its modes are fitted from the model that moved them; Prepared out is changed.
 
-    moved: Workbench with an effect adopted; bare: a fresh one; modes: those of the first fit, which may have been percents off where a mode moved far: half a
-    kilogram was read as 3 % more.
+    moved: Workbench with effects adopted; bare: a fresh one, whose own fit may have been percents off where a mode moved far: half a kilogram was read as 3 % more.
     """
-    fit, known, there = moved.measured_fit, bare.bare, moved.bare
-    if len(fit.modes) != len(modes) or candidate_named(out.adopted["name"]).effect.measured:
+    if moved.values is bare.values:
         return moved
-    log_frequency = fit.log_frequency + np.log(there.omega[fit.modes] / known.omega[modes])
-    log_damping = fit.log_damping + np.log(there.damping[fit.modes] / there.omega[fit.modes]) - np.log(known.damping[modes] / known.omega[modes])
-    bare.measured_fit = replace(fit, modes=modes, log_frequency=log_frequency, log_damping=log_damping)
+    bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
     rows = linear_rows(bare, out.scales, tables, without)
     if not nameable(rows[0], out.scales):
         return moved
@@ -229,14 +263,20 @@ CONTRADICTED = ("swapped channels", "directions")  # of the rows of mixed_up: th
 
 
 def beyond_prior(row, sizes):
-    """Return whether an effect that is also a nuisance lies, with its whole interval, outside what its prior allows."""
-    candidate = candidate_named(row["name"])
+    """Return whether effects that are also nuisances lie, with their whole interval, outside what their priors allow."""
+    candidate, interval = candidate_named(row["name"]), np.atleast_2d(row["interval"])
+    sides = zip(candidate.parts(interval[:, 0]), candidate.parts(interval[:, 1]), strict=True)
+    return all(_beyond(part, (low, high), sizes) for (part, low), (_, high) in sides)
+
+
+def _beyond(candidate, ends, sizes):
+    """Return whether a Candidate between two ends (parameter,) is no nuisance or lies outside what its prior allows."""
     sd = {"mode_frequency_error": priors.FREQUENCY_SD, "modal_damping": priors.DAMPING_SD, "sensor_gain": priors.GAIN_SD}.get(candidate.effect_id)
     if sd is None:
         return True
     (parameter,) = candidate.effect.parameters
-    ends = [np.log(candidate.physical([end], sizes)[parameter.name]) for end in np.atleast_2d(row["interval"])[0]]
-    return ends[0] > priors.NAMED_BEYOND * sd or ends[1] < -priors.NAMED_BEYOND * sd
+    logs = [np.log(candidate.physical(end, sizes)[parameter.name]) for end in ends]
+    return logs[0] > priors.NAMED_BEYOND * sd or logs[1] < -priors.NAMED_BEYOND * sd
 
 
 def held(campaign):

@@ -27,6 +27,7 @@ FINALISTS = 4
 
 LINEAR_RESIDUAL = 2.0  # of the lowest record's residual over noise, in a driven channel: above it the structure is not linear there
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
+LINEAR_SECOND = 8.0  # the same of two over the better of them
 GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside the threshold from null seeds
 PARAMETER_COST = 3.0  # of log likelihood per parameter beyond the first
 AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart

@@ -12,13 +12,12 @@ from vibroimpact.discrepancy.prepared import Prepared, workbench
 
 @dataclass(frozen=True)
 class Run:
-    """config: checked Config; campaign: file; folder of the results; prepared; candidates, paths: names and files; nulls, bank_nulls: files."""
+    """config: checked Config; campaign: file; folder of the results; prepared; path_files: of the candidates that it leaves to be screened; nulls, bank_nulls: files."""
 
     config: object
     campaign: str
     folder: Path
     prepared: Prepared
-    candidates: tuple
     path_files: tuple
     nulls: tuple
     bank_nulls: tuple
@@ -28,7 +27,7 @@ class Run:
         """Return the Run of a job's input and params, by their names in the rules."""
         prepared = Path(job.input.prepared)
         return cls(check_config(job.params.config, "model"), str(job.input.campaign), prepared.parent, Prepared.read(prepared),
-                   tuple(job.params.get("candidates", ())), *(tuple(job.input.get(name, ())) for name in ("paths", "null", "bank_null")))  # fmt: skip
+                   *(tuple(job.input.get(name, ())) for name in ("paths", "null", "bank_null")))  # fmt: skip
 
     @property
     def refused(self):
@@ -87,4 +86,4 @@ class Run:
         """Return {Candidate: Path}, brought from the screened seconds, of a bank where there is one, to a Workbench and its Null."""
         here = not self.bank_nulls and null is self.screening_null
         source = None if here else Source(bench, null, self.bank_nulls or self.nulls, "screened_", bool(self.bank_nulls))
-        return known_paths(dict(zip(self.candidates, self.path_files, strict=True)), source, self.prepared)
+        return known_paths(dict(zip(self.prepared.screened, self.path_files, strict=True)), source, self.prepared)

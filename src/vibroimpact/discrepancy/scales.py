@@ -17,7 +17,8 @@ def scales(model, signals, null):
     points = max(np.bincount(model.support_of_point).max(), 1) if len(model.support_of_point) else 1
     displacement, speed = max(null["displacement"], 1.0e-12), max(null["speed"], 1.0e-12)
     damping = model.damping[first] * mass
-    length = max(float(np.ptp(model.sensor_positions, axis=0).max()), 1.0e-3) * 3.0
+    known = np.vstack([model.sensor_positions, np.reshape(model.contact_position, (-1, 3))])  # sensors may all sit in one place
+    length = max(float(np.ptp(known, axis=0).max()), 1.0e-3) * 3.0
     at_contact = model.contact_shapes.reshape(model.modes, -1)
     held = np.sum(at_contact[elastic] ** 2 / model.omega[elastic][:, None] ** 2, axis=0).max() if at_contact.size else flexibility
     return {

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import optimize
 from scipy.interpolate import RBFInterpolator
 
+from vibroimpact.config import ConfigError
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import priors
@@ -57,8 +58,8 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
         try:
             model = bench.model(values)
             responses = bench.respond(model, runs + bench.runs([bench.signals.lowest], 1) * low, candidate.measuring(physical, bench.signals.names))
-        except IntegrationError:
-            continue  # an effect this strong throws the structure off: no measurement comes from there
+        except (IntegrationError, ConfigError):
+            continue  # an effect this strong throws the structure off, or is none that a model may have: no measurement comes from there
         kept.append(unit)
         means.append(bench.noisy_features(runs, responses[: len(runs)]).reshape(len(records), seeds, -1).mean(axis=1))
         readings.append(bench.low_reading(responses[-1] / bench.gains[:, None]) if low else None)
@@ -70,8 +71,7 @@ def linear_score(bench, reading):
     if not bench.linear_stage:
         return 0.0
     fit = bench.measured_fit
-    simulated = linear.reading_of_model(bench.bare, fit.modes) if reading is None else reading
-    score, chi_square, _ = linear.likelihood(bench.measured_reading, simulated, fit.covariance)
+    score, chi_square, _ = linear.likelihood(bench.measured_reading, bench.bare_reading if reading is None else reading, fit.covariance)
     size = 2 * len(fit.modes) + fit.participation.size
     return score + 0.5 * chi_square - 0.5 * (priors.TAIL + size) * np.log1p(chi_square / priors.TAIL)
 

@@ -75,16 +75,16 @@ def idle(found, sizes):
 
 
 def linear_sets(prepared):
-    """Return [[id]] of the adopted linear effect and those that the lowest record can not tell from it."""
+    """Return [[ids]] of the adopted linear effect, or two, and those that the lowest record can not tell from them."""
     if prepared.adopted is None:
         return []
     best = candidate_named(prepared.adopted["name"])
-    out = [[best.effect_id]]
+    out = [sorted(best.ids)]
     for row in prepared.linear:
         other = candidate_named(row["name"])
         alias = other.effect_id in best.effect.aliases or best.effect_id in other.effect.aliases
-        if row["gain"] > prepared.adopted["gain"] - (priors.LINEAR_ALIAS if alias else priors.LINEAR_AMBIGUOUS) and [other.effect_id] not in out:
-            out.append([other.effect_id])
+        if row["gain"] > prepared.adopted["gain"] - (priors.LINEAR_ALIAS if alias else priors.LINEAR_AMBIGUOUS) and sorted(other.ids) not in out:
+            out.append(sorted(other.ids))
     return out
 
 
@@ -116,17 +116,15 @@ def vetoed(total, share):
 
 def effects_of(prepared, decision, sizes):
     """Return the rows of `effects` of verdict.json."""
-    rows = []
+    found, rows = [], []
     if prepared.adopted is not None and not (decision.chosen is not None and decision.chosen.candidate.alone):
-        rows.append(_effect(candidate_named(prepared.adopted["name"]), np.array(prepared.adopted["unit"]), np.atleast_2d(prepared.adopted["interval"]), sizes))
+        found.append((candidate_named(prepared.adopted["name"]), np.array(prepared.adopted["unit"]), np.atleast_2d(prepared.adopted["interval"])))
     if decision.chosen is not None:
-        chosen = decision.chosen
-        if isinstance(chosen.candidate, Pair):
-            cut = chosen.candidate.split
-            parts = [(chosen.candidate.first, slice(0, cut)), (chosen.candidate.second, slice(cut, None))]
-            rows += [_effect(candidate, chosen.unit[part], chosen.interval[part], sizes) for candidate, part in parts]
-        else:
-            rows.append(_effect(chosen.candidate, chosen.unit, chosen.interval, sizes))
+        found.append((decision.chosen.candidate, decision.chosen.unit, decision.chosen.interval))
+    for whole, unit, interval in found:
+        ends = zip(whole.parts(interval[:, 0]), whole.parts(interval[:, 1]), strict=True)
+        for (candidate, own), ((_, low), (_, high)) in zip(whole.parts(unit), ends, strict=True):
+            rows.append(_effect(candidate, own, np.stack([low, high], axis=1), sizes))
     return rows
 
 

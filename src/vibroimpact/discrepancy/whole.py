@@ -10,7 +10,7 @@ from vibroimpact.discrepancy import jobs
 from vibroimpact.discrepancy.bank import lacking
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.conclusion import conclude
-from vibroimpact.discrepancy.dag import NULL_PARTS, local_names
+from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.prepared import Prepared, prepare
 from vibroimpact.discrepancy.run import Run
 
@@ -25,19 +25,19 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
         prepare(config, campaign, longest_s, tables, without).write(prepared_file)
-    prepared, names = Prepared.read(prepared_file), [name for name in local_names(values) if not without & set(candidate_named(name).ids)]
+    prepared = Prepared.read(prepared_file)
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
-    run = Run(config, str(campaign), folder, prepared, tuple(names), (), tuple(nulls), ())
+    run = Run(config, str(campaign), folder, prepared, (), tuple(nulls), ())
     if run.refused:
         conclude(run, None, [], provenance)
         return
     bank_nulls = [Path(bank) / "null" / file.name for file in nulls] if bank else []
     if bank_nulls and lacking(run.bench, jobs.contact_records(run.bench), bank_nulls[0]):
         bank, bank_nulls = None, []
-    paths = [Path(bank or folder) / "paths" / f"{name}.npz" for name in names]
+    paths = [Path(bank or folder) / "paths" / f"{name}.npz" for name in prepared.screened]
     run = replace(run, path_files=tuple(paths), bank_nulls=tuple(bank_nulls))
     _make(workers, {file: partial(jobs.null_part, run, part) for part, file in enumerate(nulls)})
-    _make(workers, {file: partial(_path, run, name, quick) for name, file in zip(names, paths, strict=True)})
+    _make(workers, {file: partial(_path, run, name, quick) for name, file in zip(prepared.screened, paths, strict=True)})
     screened = _kept(folder / "screening.json", lambda file: jobs.screening(run, file, quick))
     files = []
     for kind in ("finalists", "pairs"):

@@ -42,7 +42,7 @@ class Workbench:
         """Take another configuration, in plain values, for the bare model: an effect that was found belongs to it from here on."""
         self.values = values
         self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
-        for name in ("measured_fit", "measured_reading", "low_response"):
+        for name in ("measured_fit", "measured_reading", "low_response", "linear_stage"):
             self.__dict__.pop(name, None)
 
     def variant(self, candidate, physical):
@@ -69,18 +69,23 @@ class Workbench:
     def linear_record(self):
         """Return the LinearRecord of the lowest record."""
         record = self.signals.lowest
-        return LinearRecord(self._valid(self.signals.force[record]), self.signals.rate, self.signals.band_Hz, self.signals.from_rest)
+        return LinearRecord(self.valid(self.signals.force[record]), self.signals.rate, self.signals.band_Hz, self.signals.from_rest)
 
     @cached_property
     def measured_fit(self):
         """Return the ModalFit of the lowest measured record, None where no mode is seen."""
-        response = self._valid(self.signals.response[self.signals.lowest])
+        response = self.valid(self.signals.response[self.signals.lowest])
         return fit_modes(self.linear_record, response, self.bare, self.signals.kinds, self.signals.noise_in_band)
 
     @cached_property
     def measured_reading(self):
         """Return the Reading of the lowest measured record."""
         return linear.reading_of_fit(self.measured_fit, self.bare)
+
+    @property
+    def bare_reading(self):
+        """Return the Reading that the bare model gives of the modes of the lowest record, as the measuring chain shows it."""
+        return linear.gained(linear.reading_of_model(self.bare, self.measured_fit.modes), self.measuring)
 
     @cached_property
     def measured_features(self):
@@ -154,14 +159,16 @@ class Workbench:
 
     @cached_property
     def low_response(self):
-        """Return (channel, sample): the simulated lowest record of the corrected bare model, without gains."""
-        return simulate_records(self.model(), self.schedule, self.forces, self.runs([self.signals.lowest], 1), self.signals.kinds)[0]
+        """Return (channel, sample): the simulated lowest record of the corrected bare model, without the gains of the nuisance."""
+        return self.respond(self.model(), self.runs([self.signals.lowest], 1))[0] / self.gains[:, None]
 
     def low_reading(self, response):
         """Return the Reading, nuisances taken out, of a variant's lowest record (channel, sample), None where it answers as the bare model does."""
         change = np.sqrt(np.mean((response - self.low_response) ** 2)) / np.sqrt(np.mean(self.low_response**2))
         if not change > SAME:
             return None
+        if self.late is not None:  # the fit of the measured record took the delays out
+            response = replace(self.late, delay=-self.late.delay).delayed(response, self.signals.rate)
         keep = np.isfinite(self.signals.force[self.signals.lowest][0])
         start = linear.corrected(self.bare, self.nuisance)
         fit = fit_modes(self.linear_record, response[:, keep], start, self.signals.kinds, self.signals.noise_in_band, self.measured_fit.modes)
@@ -172,7 +179,7 @@ class Workbench:
         return max(1, LANES // max(1, len(records)))
 
     @staticmethod
-    def _valid(values):
+    def valid(values):
         """Return the samples of (..., sample) at which all are finite."""
         return values[..., np.isfinite(values).all(axis=tuple(range(values.ndim - 1)))]
 
@@ -182,6 +189,5 @@ def corrected_nuisance(bench, reading=None):
     fit = bench.measured_fit
     if fit is None:
         return None, 0.0, 0.0, np.zeros(0)
-    simulated = linear.reading_of_model(bench.bare, fit.modes) if reading is None else reading
-    score, chi_square, pulls = linear.likelihood(bench.measured_reading, simulated, fit.covariance)
+    score, chi_square, pulls = linear.likelihood(bench.measured_reading, bench.bare_reading if reading is None else reading, fit.covariance)
     return linear.nuisance_of(pulls, fit.modes, len(bench.signals.names)), score, chi_square, pulls

@@ -2,13 +2,14 @@
 
 import math
 
+from vibroimpact.effects import places
 from vibroimpact.effects.effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with the force turned about z by an angle."""
+    """Return the configuration with the force turned by an angle, about_z or about_tube: the tangent where it acts."""
     turned = values["excitation"].get("turn_deg", 0.0) + math.degrees(parameters["angle"])
-    return values | {"excitation": values["excitation"] | {"turn_deg": turned}}
+    return values | {"excitation": values["excitation"] | {"turn_deg": turned, "turn_about": location.removeprefix("about_")}}
 
 
 EFFECT = Effect(
@@ -21,5 +22,5 @@ EFFECT = Effect(
     apply=apply,
     linear=True,
     broken=("T1", "T4"),
-    locations=lambda values: ["force"],
+    locations=lambda values: ["about_z", "about_tube"] if values["structure"]["kind"] in places.TUBES else ["about_z"],
 )

@@ -1,0 +1,122 @@
+"""Linear effects fitted to the lowest record with the model itself: what a change of the configuration does to its modes, and the best parameters."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import linalg, optimize
+
+from vibroimpact.config import ConfigError, check_config
+from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.attach import attach
+from vibroimpact.discrepancy.linearised import linearised, matched, same_modes
+
+COARSE_MESH = {"elements_per_span": 8, "elements_per_bend": 32}
+REACH = 6.0  # the reduced basis for readings reaches to so many times the excited band
+STEP = 2.0e-3  # of the searched range: for the slopes of the readings
+TURNS = 8  # of Gauss-Newton
+FARTHEST = 0.15  # of the searched range in one of them
+SETTLED = 1.0e-3  # of the searched range: closer is not looked
+
+
+@dataclass(frozen=True)
+class LinearResult:
+    """The best of a candidate: unit (parameter,) normalised; gain of log likelihood over the bare model; interval (parameter, 2) of 90 %, normalised."""
+
+    candidate: object
+    unit: np.ndarray
+    gain: float
+    interval: np.ndarray
+
+
+class LinearChanges:
+    """What a change of the configuration does to the readings of the modes that a Workbench's lowest record shows, by a reduced basis."""
+
+    def __init__(self, bench):
+        config = coarse(bench.config, REACH * bench.signals.band_Hz[1])
+        self.campaign, self.modes, self.there = bench.campaign, bench.measured_fit.modes, bench.bare
+        self.bare, self.values = attach(config, bench.campaign), config.model_dump(mode="json")
+        self.measured = bench.measured_reading
+        self.reference = linear.reading_of_model(self.bare, same_modes(self.bare, self.modes, bench.bare))
+        self.full = linear.reading_of_model(bench.bare, self.modes)
+
+    def _here(self, mode):
+        """Return the index that a mode of the full model has in the reduced basis: near pairs may change places."""
+        return int(same_modes(self.bare, [mode], self.there)[0])
+
+    def model(self, candidate, physical):
+        """Return the linear ModalModel, of the reduced basis, with a Candidate or Pair at its parameters in SI."""
+        return linearised(attach(check_config(candidate.renumbered(self._here).variant(self.values, physical), "variant of the model"), self.campaign))
+
+    def reading(self, candidate, physical):
+        """Return the Reading of the model with a Candidate or Pair at its parameters in SI: of the modes most like those that were measured."""
+        model = self.model(candidate, physical)
+        found = linear.reading_of_model(model, matched(model, self.measured.log_frequency, self.measured.participation))
+        return moved(self.full, found, self.reference)  # the reduced basis serves the change alone
+
+
+def moved(reading, found, reference):
+    """Return a Reading changed by what another one differs from a reference."""
+    return replace(reading, log_frequency=reading.log_frequency + found.log_frequency - reference.log_frequency,
+                   log_damping=reading.log_damping + found.log_damping - reference.log_damping,
+                   participation=reading.participation + found.participation - reference.participation)  # fmt: skip
+
+
+def coarse(config, highest_Hz):
+    """Return the configuration with a coarse mesh and free modes alone, to a frequency in Hz: for changes of modes, not for modes."""
+    basis = config.basis.model_copy(update={"free_modes_to_Hz": highest_Hz, "constrained_modes_to_Hz": 1.0, "attachment_shapes": False})
+    structure = config.structure
+    if hasattr(structure, "mesh"):
+        structure = structure.model_copy(update={"mesh": structure.mesh.model_copy(update=COARSE_MESH)})
+    return config.model_copy(update={"basis": basis, "structure": structure})
+
+
+def fitted(bench, changes, candidate, unit, scales):
+    """Return the LinearResult of a Candidate or Pair from normalised parameters (parameter,) on, by Gauss-Newton with the model itself; None where it
+    can not be built. Intervals are of each parameter with the others free."""
+    measured, error = bench.measured_reading, bench.measured_fit.covariance
+    bare = linear.likelihood(measured, linear.reading_of_model(bench.bare, changes.modes), error)[0]
+
+    def reading(unit):
+        physical = candidate.physical(unit, scales)
+        return linear.gained(changes.reading(candidate, physical), candidate.measuring(physical, bench.signals.names))
+
+    def whitened(simulated):
+        values, covariance, sensitivity = linear.difference(measured, simulated, error)
+        return values, linalg.cholesky(covariance + sensitivity @ sensitivity.T, lower=True)
+
+    try:
+        unit, best = np.array(unit, float), None
+        shorter, new = 1.0, unit
+        for _ in range(TURNS):
+            simulated = reading(new)
+            score, chi_square, _ = linear.likelihood(measured, simulated, error)
+            if best is not None and score < best[0]:
+                shorter *= 0.4
+            else:
+                values, factor = whitened(simulated)
+                best, unit = (score, chi_square, len(values)), new
+                slopes = np.array([_slope(reading, unit, number, simulated, measured, error, factor) for number in range(len(unit))]).T
+                step = optimize.lsq_linear(slopes, -linalg.solve_triangular(factor, values, lower=True), (-unit - 1.0e-12, 1.0 - unit + 1.0e-12)).x
+                shorter = 1.0
+            taken = step * shorter * min(1.0, FARTHEST / max(np.abs(step).max(), 1.0e-12))
+            new = np.clip(unit + taken, 0.0, 1.0)
+            if np.abs(taken).max() < SETTLED:
+                break
+    except (ConfigError, linalg.LinAlgError):
+        return None
+    left = max(1.0, best[1] / best[2])  # what the effects do not explain widens their intervals
+    spread = priors.NINETY_SD * np.sqrt(left * np.diag(linalg.pinvh(slopes.T @ slopes)))
+    interval = np.stack([np.maximum(unit - spread, 0.0), np.minimum(unit + spread, 1.0)], axis=1)
+    return LinearResult(candidate, unit, float(best[0] - bare), interval)
+
+
+def _slope(reading, unit, number, simulated, measured, error, factor):
+    """Return (value,): the change of the whitened differences with one normalised parameter."""
+    side = STEP if unit[number] < 0.5 else -STEP
+    there = np.array(unit)
+    there[number] += side
+    one, other = (linear.difference(measured, row, error)[0] for row in (simulated, reading(there)))
+    if len(one) != len(other):  # a channel ceases to see a mode between the two
+        return np.zeros(len(factor))
+    return linalg.solve_triangular(factor, (other - one) / side, lower=True)
