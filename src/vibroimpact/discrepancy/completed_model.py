@@ -1,5 +1,6 @@
 """The completed model as a configuration that runs: effects, corrected frequencies and damping of its modes."""
 
+import numpy as np
 import yaml
 
 from vibroimpact.config import check_config

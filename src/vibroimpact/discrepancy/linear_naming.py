@@ -61,12 +61,13 @@ def reading_under(bench, candidate, unit, scales, table):
 def calibrate(bench, candidate, scales, table=None):
     """Return the LinearResult of a linear candidate on the lowest record."""
     fit, measured = bench.measured_fit, bench.measured_reading
-    bare = linear.likelihood(measured, linear.reading_of_model(bench.bare, fit.modes), fit.covariance)[0]
+    start = linear.reading_of_model(bench.bare, fit.modes)
+    bare = linear.likelihood(measured, start, fit.covariance)[0]
 
     def loss(unit):
         outside = np.sum(np.maximum(np.abs(np.asarray(unit) - 0.5) - 0.5, 0.0))
         reading = reading_under(bench, candidate, np.clip(unit, 0.0, 1.0), scales, table)
-        return bare - linear.likelihood(measured, reading, fit.covariance)[0] + 1.0e3 * outside
+        return bare - linear.likelihood(measured, reading, fit.covariance, start)[0] + 1.0e3 * outside
 
     count = len(candidate.effect.parameters)
     axis = np.linspace(0.0, 1.0, {1: 61, 2: 15, 3: 7}[count])
@@ -75,7 +76,7 @@ def calibrate(bench, candidate, scales, table=None):
     found = optimize.minimize(loss, starts[np.argmin(losses)], method="Nelder-Mead", options={"xatol": 1.0e-4, "fatol": 1.0e-3, "maxiter": 200,
                               "initial_simplex": starts[np.argmin(losses)] + 0.05 * np.vstack([np.zeros(count), np.eye(count)])})  # fmt: skip
     unit = np.clip(found.x, 0.0, 1.0)
-    chi_square = linear.likelihood(measured, reading_under(bench, candidate, unit, scales, table), fit.covariance)[1]
+    chi_square = linear.likelihood(measured, reading_under(bench, candidate, unit, scales, table), fit.covariance, start)[1]
     left = max(1.0, chi_square / (2 * len(fit.modes) + fit.participation.size))  # what the effect does not explain widens its interval
     return LinearResult(candidate, unit, -float(found.fun), interval_of(loss, found.x, found.fun, NINETY * left))
 

@@ -4,41 +4,52 @@ import numpy as np
 
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
-from vibroimpact.discrepancy.linear_fit import fitted, moved
+from vibroimpact.discrepancy.linear_fit import fitted
 from vibroimpact.discrepancy.linear_naming import reading_under
 
-FIRSTS = 6  # best single effects that are tried with every other one
 GRID = {1: 13, 2: 6, 3: 4}  # points along each parameter where a pair is proposed, by the number of parameters
-FITTED = 3  # proposals that are fitted with the model itself
+KEPT = 40  # of the second effects to a first one at a point of its grid
+FAR = 10.0  # sigma squared from which on an entry counts by its logarithm
+FITTED = 4  # proposals that are fitted with the model itself
 
 
-def best_pairs(bench, changes, rows, scales, tables):
+def best_pairs(bench, changes, rows, scales, tables, begun=()):
     """Return [LinearResult], best first, of two effects at once that explain the lowest record of a Workbench.
 
-    changes: LinearChanges of it; rows: [{name, unit, gain, ...}] of single effects, best first; tables {name: LinearTable} of those that change the model.
+    changes: LinearChanges of it; begun: [(Pair, unit)] to be fitted beside those that are proposed here; rows: [{name, unit, gain, ...}] of single effects, best first; tables {name: LinearTable} of those that change the model.
     """
-    found = [fitted(bench, changes, pair, unit, scales) for pair, unit in proposed(bench, rows, scales, tables)[:FITTED]]
-    return sorted((row for row in found if row is not None), key=lambda row: -row.gain)
+    found = [fitted(bench, changes, pair, unit, scales) for pair, unit in [*begun, *proposed(bench, rows, scales, tables)[:FITTED]]]
+    best = {}
+    for row in filter(None, found):
+        key = frozenset((row.candidate.first, row.candidate.second))
+        best[key] = max(row, best.get(key, row), key=lambda one: one.gain)
+    return sorted(best.values(), key=lambda row: -row.gain)
 
 
 def proposed(bench, rows, scales, tables):
-    """Return [(Pair, unit (parameter,))], best first: the best single effects as they were read alone, each with every other one where that adds most."""
-    bare, measured, error = linear.reading_of_model(bench.bare, bench.measured_fit.modes), bench.measured_reading, bench.measured_fit.covariance
-    grids = {}
+    """Return [(Pair, unit (parameter,))], best first: every two effects at the points of a grid each, what they change added.
+
+    Far from the measurement the likelihood knows but its worst entry: here an entry that is far off counts by the logarithm of how far.
+    """
+    measured, error = bench.measured_reading, bench.measured_fit.covariance
+    bare, seen = linear.reading_of_model(bench.bare, bench.measured_fit.modes), linear.seen_by(measured, measured)
+    target, covariance, sensitivity = linear.difference(measured, bare, error, seen)
+    sd = np.sqrt(np.diag(covariance) + np.sum(sensitivity**2, axis=1))
+    candidates, units, changes = [], [], []
     for row in rows:
         candidate = candidate_named(row["name"])
         axis = np.linspace(0.0, 1.0, GRID[len(candidate.effect.parameters)])
-        units = np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * len(candidate.effect.parameters), indexing="ij")], axis=-1)
-        units = np.vstack([row["unit"], units])
-        grids[candidate] = units, [reading_under(bench, candidate, unit, scales, tables.get(candidate.name)) for unit in units]
-    best = {}
-    for first in list(grids)[:FIRSTS]:
-        own, alone = grids[first][0][0], grids[first][1][0]
-        for second, (units, readings) in grids.items():
-            if second.effect_id == first.effect_id:
-                continue
-            scores = [linear.likelihood(measured, moved(alone, reading, bare), error)[0] for reading in readings]
-            top, key = int(np.argmax(scores)), frozenset((first, second))
-            if key not in best or scores[top] > best[key][0]:
-                best[key] = scores[top], Pair(first, second), np.concatenate([own, units[top]])
+        for unit in [np.array(row["unit"]), *np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * len(candidate.effect.parameters), indexing="ij")], axis=-1)]:
+            there = linear.difference(measured, reading_under(bench, candidate, unit, scales, tables.get(candidate.name)), error, seen)[0]
+            candidates.append(candidate)
+            units.append(unit)
+            changes.append((target - there) / sd)
+    changes, best = np.array(changes), {}
+    for first, change in enumerate(changes):
+        scores = -np.sum(np.log1p((target / sd - change - changes[first + 1 :]) ** 2 / FAR), axis=1)
+        for other in np.argsort(scores)[::-1][:KEPT]:
+            second = first + 1 + other
+            key = frozenset((candidates[first], candidates[second]))
+            if candidates[first].effect_id != candidates[second].effect_id and (key not in best or scores[other] > best[key][0]):
+                best[key] = scores[other], Pair(candidates[first], candidates[second]), np.concatenate([units[first], units[second]])
     return [(pair, unit) for _, pair, unit in sorted(best.values(), key=lambda row: -row[0])]

@@ -16,10 +16,12 @@ MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the w
 LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far above the band leave in every line
 RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
+LARGEST_LOG_DAMPING = 3.0
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S, LONGEST_LAG_S = 2.0e-5, 0.02
-SILENT = 1.0e-4  # of a mode's largest displacement among the channels: below it a channel does not see the mode
+SILENT = 1.0e-4  # of a mode's largest displacement among the channels: below it a channel does not see the mode in the model
+BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
 DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
 SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
@@ -88,9 +90,16 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
             lag, start = _lags(free, model) if left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
             delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
             turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
-        found = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
+        # what breaks a symmetry lets a channel see modes that it does not in the model: looked at from the beginning, and once the modes are where they are
+        known = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
+        found = min((_gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, begun, strict=False)
+                     for begun in (start, (known.log_frequency, known.log_damping))), key=_implausible)  # fmt: skip
         if fixed:
             break
+        nothing = np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING  # modes that the model excites and the record does not hold
+        if nothing.any() and not nothing.all():
+            lag, start, visible = None, None, visible[~nothing]
+            continue
         extra = _unexpected(record, turned, found, weights, drive, model, near, kind)
         if not len(extra):
             break
@@ -140,6 +149,22 @@ def _lags(found, model):
     return out
 
 
+def _implausible(found):
+    """Return what a ModalFit leaves, and how far its damping is from the model's: a mode fitted to nothing ends at a limit."""
+    return np.sum(found.residual**2) + np.sum((found.log_damping / LARGEST_LOG_DAMPING) ** 2)
+
+
+def _seen(model, modes, strict):
+    """Return (channel, mode) bool: whether a channel may see a mode: where it does in the model; if not strict, also where no mode beside it is seen there.
+
+    Of two modes side by side, one along and one across, a channel would take any mixture.
+    """
+    own = np.abs(model.sensor_shapes[modes].T)
+    shown, logs = own > SILENT * own.max(axis=0), np.log(model.omega[modes])
+    beside = np.abs(logs[:, None] - logs) < BESIDE
+    return shown if strict else shown | ~(shown.astype(int) @ beside.astype(int) > 0)
+
+
 def _driven(model, modes):
     """Return (mode,) bool: whether a force drives these modes of a model."""
     return np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()
@@ -187,20 +212,22 @@ def _rest(record, model, visible, kind):
     return record.short_spectra(np.einsum("cfl,fl->cl", transfer, record.spectrum))
 
 
-def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise, delay, start=None, phases=False):
+def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise, delay, start=None, phases=False, strict=True):
     """Return the ModalFit (participations complex where `phases`), from the frequency at which each mode's own resonance fits best."""
     count = len(visible)
     omega, zeta = model.omega[visible], model.damping[visible] / (2.0 * model.omega[visible])
     logs = np.zeros(2 * count)
-    logs[:count] = start if start is not None else _start(record, measured, weights, visible, drive, omega, zeta, kind)
+    if isinstance(start, tuple):
+        logs = np.concatenate(start)
+    else:
+        logs[:count] = start if start is not None else _start(record, measured, weights, visible, drive, omega, zeta, kind)
     weighted = weights * measured
 
     def columns(values, chosen=slice(None)):
         w = (omega * np.exp(values[:count]))[chosen]
         return record.responses(w, 2.0 * (zeta * np.exp(values[count:]))[chosen] * w, drive[chosen], kind)
 
-    own = np.abs(model.sensor_shapes[visible].T)  # a pair of modes along and across would be ill told apart where a channel sees but one of them
-    seen = own > SILENT * own.max(axis=0)
+    seen = _seen(model, visible, strict)
 
     def solve(basis):
         shapes = np.zeros(seen.shape, complex if phases else float)
@@ -228,7 +255,7 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
         normal = jacobian.T @ jacobian
         step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]).ravel(), assume_a="pos")
         logs = best[0] + step * min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
-        logs[count:] = np.clip(logs[count:], -3.0, 3.0)
+        logs[count:] = np.clip(logs[count:], -LARGEST_LOG_DAMPING, LARGEST_LOG_DAMPING)
     return _result(best, weights, visible, drive, noise, columns, measured, delay, seen)
 
 

@@ -5,18 +5,20 @@ from itertools import islice
 
 import numpy as np
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import Pair, linear_candidates
-from vibroimpact.discrepancy.linear_stage import LOST, fit_modes, left
+from vibroimpact.discrepancy.linear_stage import fit_modes, left
 from vibroimpact.discrepancy.linearised import matched
 
 BANDS_PER_OCTAVE = 8
 FARTHEST_DB = 12.0  # a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however sharp both are
-GRID = {1: 7, 2: 5, 3: 4}  # points along each parameter, by the number of parameters
+GRID = ({1: 7, 2: 5, 3: 4}, {1: 5, 2: 3, 3: 3})  # points along each parameter, by the number of parameters: of one effect, of a second one
 BEGUN = 3  # models that the fit is begun from
 
 
 def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
-    """Return the ModalFit of the lowest record of a Workbench, relative to its bare model, begun from the linear effects whose spectra come nearest.
+    """Return (ModalFit, [(Pair, unit (parameter,))]) of the lowest record of a Workbench, relative to its bare model, begun from the linear effects whose
+    spectra come nearest, and those pairs among them.
 
     One effect, then two where one does not lead to a fit. changes: LinearChanges of the Workbench; scales: see Candidate.physical; held: names of what the
     campaign holds beyond force and response; without: ids of effects that are left out. The Workbench's own fit where nothing leads to a better one.
@@ -24,24 +26,26 @@ def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
     spectra = BandSpectra(bench)
     singles = [candidate for candidate in linear_candidates(bench.values, bench.signals.names, held, bench.measured_fit.modes)
                if not candidate.effect.measured and candidate.effect_id not in without]  # fmt: skip
+    pairs = []
     least, best, known = left(bench.measured_fit, bench.bare), bench.measured_fit, []
     for second in (False, True):
         tried = singles if not second else [Pair(known[0][1], other) for other in singles if other.effect_id != known[0][1].effect_id]
         ranked = []
         for candidate in tried:
-            for unit in _grid(candidate.second if second else candidate):
+            for unit in _grid(candidate.second if second else candidate, GRID[second]):
                 unit = np.concatenate([known[0][2], unit]) if second else unit
                 model = changes.model(candidate, candidate.physical(unit, scales))
                 ranked.append((spectra.distance(model), candidate, unit, model))
         ranked.sort(key=lambda row: row[0])
         known = known or ranked
-        for _, _, _, model in islice(_different(ranked), BEGUN):
+        for _, candidate, unit, model in islice(_different(ranked), BEGUN):
+            pairs += [(candidate, unit)] * second
             remains, found = begun_from(bench, model)
             if remains < least:
                 least, best = remains, found
-        if least < LOST:
+        if least < priors.LINEAR_RESIDUAL:
             break
-    return best
+    return best, pairs
 
 
 def begun_from(bench, model):
@@ -89,10 +93,10 @@ class BandSpectra:
         return np.add.reduceat(np.abs(lines) ** 2, self.starts, axis=-1)
 
 
-def _grid(candidate):
-    """Return (point, parameter): normalised parameters over the whole range of a Candidate."""
+def _grid(candidate, points):
+    """Return (point, parameter): normalised parameters over the whole range of a Candidate, points {number of parameters: along each}."""
     count = len(candidate.effect.parameters)
-    return np.stack([axis.ravel() for axis in np.meshgrid(*[np.linspace(0.0, 1.0, GRID[count])] * count, indexing="ij")], axis=-1)
+    return np.stack([axis.ravel() for axis in np.meshgrid(*[np.linspace(0.0, 1.0, points[count])] * count, indexing="ij")], axis=-1)
 
 
 def _different(ranked):

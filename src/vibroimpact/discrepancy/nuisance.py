@@ -55,20 +55,29 @@ def gained(reading, measuring):
     return reading if measuring is None else replace(reading, participation=reading.participation * (measuring.gain / measuring.force_gain)[:, None])
 
 
-def difference(measured, simulated, error):
+def seen_by(measured, simulated):
+    """Return (channel, mode) bool: whether a channel sees a mode, in one of two Readings at least."""
+    size = np.maximum(np.abs(simulated.participation), np.abs(measured.participation))
+    return size > SEEN * size.max(axis=0)
+
+
+def difference(measured, simulated, error, seen=None, bare=None):
     """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus simulated Reading.
 
     error: (2 mode, 2 mode) covariance of the fit's logarithms. Nuisances: mode frequencies, mode dampings, channel gains, each in units of its
-    prior's sigma; the covariance is of what is not nuisance.
+    prior's sigma; the covariance is of what is not nuisance. seen (channel, mode) bool: the participations that are compared, see seen_by; bare:
+    Reading without the effect, of whose change of the shapes two codes differ by a share.
     """
     count, channels = len(measured.log_frequency), len(measured.participation)
-    scale = np.maximum(np.abs(simulated.participation), np.abs(measured.participation)).max(axis=0)
-    seen = np.maximum(np.abs(simulated.participation), np.abs(measured.participation)) > SEEN * scale
+    scale = np.abs(measured.participation).max(axis=0)  # of the measured alone: a gain that inflates what is simulated must not shrink its errors
+    seen = seen_by(measured, simulated) if seen is None else seen
     ratio = (measured.participation - simulated.participation)[seen] / np.broadcast_to(scale, seen.shape)[seen]
     level = (simulated.participation / scale)[seen]
     residual = np.log(np.hypot(1.0, measured.residual)) - np.log(np.hypot(1.0, simulated.residual))
     values = np.concatenate([measured.log_frequency - simulated.log_frequency, measured.log_damping - simulated.log_damping, ratio, residual])
-    covariance = linalg.block_diag(error + np.diag([1.0e-10] * count + [1.0e-4] * count), np.eye(len(ratio)) * priors.SHAPE_SD**2,
+    change = 0.0 if bare is None else ((simulated.participation - bare.participation) / scale)[seen]
+    shape = np.eye(len(ratio)) * (priors.SHAPE_SD**2 + (priors.SHAPE_LAW_SD * change) ** 2)
+    covariance = linalg.block_diag(error + np.diag([1.0e-10] * count + [1.0e-4] * count), shape,
                                    np.eye(channels) * priors.RESIDUAL_SD**2)  # fmt: skip
     sensitivity = np.zeros((len(values), 2 * count + channels))
     sensitivity[:count, :count] = np.eye(count) * priors.FREQUENCY_SD
@@ -79,9 +88,9 @@ def difference(measured, simulated, error):
     return values, covariance, sensitivity
 
 
-def likelihood(measured, simulated, error):
-    """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances marginalised, pulls in sigma."""
-    values, covariance, sensitivity = difference(measured, simulated, error)
+def likelihood(measured, simulated, error, bare=None):
+    """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances marginalised, pulls in sigma. bare: see difference."""
+    values, covariance, sensitivity = difference(measured, simulated, error, bare=bare)
     total = covariance + sensitivity @ sensitivity.T
     factor = linalg.cho_factor(total, lower=True)
     solved = linalg.cho_solve(factor, values)

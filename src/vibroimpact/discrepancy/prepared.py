@@ -10,9 +10,9 @@ from vibroimpact.campaign_checks import check_file, refused, usable_signals
 from vibroimpact.campaign_model_checks import compare_with_model
 from vibroimpact.campaign_signals import measured_signals, transfer
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named, linear_candidates, local_candidates, not_testable
+from vibroimpact.discrepancy.candidates import Candidate, candidate_named, linear_candidates, local_candidates, not_testable
 from vibroimpact.discrepancy.linear_fit import LinearChanges, fitted
-from vibroimpact.discrepancy.linear_stage import LOST, ModalFit, left
+from vibroimpact.discrepancy.linear_stage import ModalFit, left
 from vibroimpact.discrepancy.linear_naming import calibrate, table_of
 from vibroimpact.discrepancy.linear_pairs import best_pairs
 from vibroimpact.discrepancy.measuring import Measuring
@@ -150,7 +150,19 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     modes = (out.fit["modes"] if out.fit else bench.measured_fit.modes) if out.linear_stage else None
     candidates = local_candidates(config.model_dump(mode="json"), held(campaign), modes)
     out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids)]
+    if out.linear_stage and out.nonlinear_low:  # a linear effect may be what makes it touch: those that come nearest are simulated as well
+        out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
+
+
+def nearest_linear(rows):
+    """Return the names of the best few of single effects of the model in rows (see linear_rows), one of each id."""
+    best = {}
+    for row in rows:
+        candidate = candidate_named(row["name"])
+        if isinstance(candidate, Candidate) and not candidate.effect.measured and row["gain"] > priors.LINEAR_GAIN:
+            best.setdefault(candidate.effect_id, row["name"])
+    return list(best.values())[:FITTED]
 
 
 def read_lowest(bench, fresh, out, tables, without):
@@ -158,9 +170,9 @@ def read_lowest(bench, fresh, out, tables, without):
 
     bench: Workbench; fresh() gives another one; tables, without: see prepare.
     """
-    driven = driven_channels(bench)
-    if left(bench.measured_fit, bench.bare) >= LOST:  # modes that moved too far to be followed: begin from the effects that come nearest
-        bench.measured_fit, tables = fit_from_nearest(bench, LinearChanges(bench), out.scales, held(bench.campaign), without), {}
+    driven, begun = driven_channels(bench), ()
+    if left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL:  # modes that moved too far to be followed: begin from the effects that come nearest
+        (bench.measured_fit, begun), tables = fit_from_nearest(bench, LinearChanges(bench), out.scales, held(bench.campaign), without), {}
         bench.__dict__.pop("measured_reading", None)
     fit = bench.measured_fit
     if np.median(fit.share[driven]) > UNREAD:
@@ -171,20 +183,25 @@ def read_lowest(bench, fresh, out, tables, without):
     out.residual = fit.residual.tolist()
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
     out.delays = {name: float(lag) for name, lag in zip(bench.signals.names, fit.delay, strict=True) if lag != 0.0}
-    out.linear = linear_rows(bench, out.scales, tables, without)
+    out.linear = linear_rows(bench, out.scales, tables, without, begun)
     for name, lag in out.delays.items():
         out.checks.append({"check": "delay", "level": "warn", "record": None, "channel": name,
                            "message": f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the force; what is simulated is made as late."})  # fmt: skip
-    if nameable(out.linear[0], out.scales):
-        out.adopted = out.linear[0]
+    singles = [row for row in out.linear if "+" not in row["name"]]
+    for row in (*singles[:1], *(row for row in out.linear[:1] if row not in singles)):
+        if not nameable(row, out.scales):
+            continue
+        out.adopted, bench = row, fresh()
+        bench.measured_fit = fit
         adopt(bench, out)
         # modes that moved far are fitted well only from the model that moved them: what is left there tells whether the structure is linear
         if bench.linear_stage and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL:
             out.nonlinear_low = False
-            bench = read_again(bench, fresh(), out, tables, without)
-        if out.nonlinear_low:
-            out.adopted, bench = None, fresh()
-            bench.measured_fit = fit
+            bench = read_again(bench, fresh, out, tables, without, begun)
+            break
+    if out.nonlinear_low:
+        out.adopted, bench = None, fresh()
+        bench.measured_fit = fit
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
 
 
@@ -193,9 +210,9 @@ UNREAD_MESSAGE = ("No modes explain the lowest record: it touches already, or th
                   "A record at a lower load would tell them by itself.")  # fmt: skip
 
 
-def linear_rows(bench, sizes, tables, without):
+def linear_rows(bench, sizes, tables, without, begun=()):
     """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a Workbench, best first; before them two of them at once where
-    one does not suffice. tables are extended."""
+    one does not suffice. tables are extended; begun: see best_pairs."""
     found, changes = [], LinearChanges(bench)
     for candidate in linear_candidates(bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes):
         if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
@@ -209,7 +226,7 @@ def linear_rows(bench, sizes, tables, without):
     rows = sorted(map(plain_row, found), key=lambda row: -row["gain"])
     single = rows[0]
     if nameable(single, sizes):
-        for row in map(plain_row, best_pairs(bench, changes, rows, sizes, tables)):
+        for row in map(plain_row, best_pairs(bench, changes, rows, sizes, tables, begun)):
             if nameable(row, sizes) and row["gain"] > single["gain"] + priors.LINEAR_SECOND + priors.PARAMETER_COST * (len(row["unit"]) - len(single["unit"]) - 1):
                 rows.append(row)
     return sorted(rows, key=lambda row: -row["gain"])
@@ -228,20 +245,30 @@ def nameable(row, sizes):
     return row["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(row["unit"]) - 1) and beyond_prior(row, sizes)
 
 
-def read_again(moved, bare, out, tables, without):
+def read_again(moved, fresh, out, tables, without, begun):
     """Return the Workbench with what the lowest record tells once its modes are fitted from the model that moved them; Prepared out is changed.
 
-    moved: Workbench with effects adopted; bare: a fresh one, whose own fit may have been percents off where a mode moved far: half a kilogram was read as 3 % more.
+    moved: Workbench with effects adopted; fresh() gives another one, whose own fit may be percents off where a mode moved far: half a kilogram was read as 3 %
+    more, and a second effect made of the difference. Where that tells of other effects, once more.
     """
-    if moved.values is bare.values:
-        return moved
-    bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
-    rows = linear_rows(bare, out.scales, tables, without)
-    if not nameable(rows[0], out.scales):
-        return moved
-    out.linear, out.adopted = rows, rows[0]
+    for _ in range(AGAIN):
+        if moved.values is fresh().values or moved.measured_fit is None:
+            return moved
+        bare, before = fresh(), out.adopted["name"]
+        bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
+        rows = linear_rows(bare, out.scales, tables, without, begun)
+        if not nameable(rows[0], out.scales):
+            return moved
+        out.linear, out.adopted = rows, rows[0]
+        if rows[0]["name"] == before:
+            break
+        moved = fresh()  # fitted anew from the model that holds what is adopted now
+        adopt(moved, out)
     adopt(bare, out)
     return bare
+
+
+AGAIN = 3  # times at most
 
 
 def mixed_up(bench):
