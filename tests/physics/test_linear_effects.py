@@ -86,11 +86,14 @@ def test_a_known_fault_of_the_chain_is_no_evidence_for_another_effect(study_conf
     prepared = prepare(study_config, path)
     assert prepared.adopted["name"] == "sensor_gain@apex_y"
     bench = workbench(study_config, path, prepared, prepared.compared_s)
-    slight = bench.variant(Candidate("cubic_stiffness", "apex_y"), {"coefficient": 1.0e3})
+    slight = bench.variant(Candidate("cubic_stiffness", "apex"), {"coefficient": 1.0e3})
     response = bench.respond(bench.model(slight), bench.runs([bench.signals.lowest], 1))[0] / bench.gains[:, None]
     assert bench.low_reading(response) is None  # it answers as the bare model does
     bench.low_response = 0.5 * bench.low_response  # what differs is read anew
-    assert linear_score(bench, bench.low_reading(response)) == pytest.approx(linear_score(bench, None), abs=1.0)
+    known = linear_score(bench, None)
+    assert linear_score(bench, bench.low_reading(response)) == pytest.approx(known, abs=10.0)  # by what a fit scatters
+    bench.measuring = None
+    assert linear_score(bench, None) < known - 30.0
 
 
 def test_a_pair_of_a_fault_and_an_effect_is_put_where_each_belongs(study_config, tmp_path):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
+from vibroimpact.discrepancy.lags import driven_modes, lags
 from vibroimpact.discrepancy.pursuit import assigned, pursued
 
 ITERATIONS = 12  # of Gauss-Newton at most
@@ -19,10 +20,9 @@ VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 LARGEST_LOG_DAMPING = 3.0
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
-LEAST_LAG_S, LONGEST_LAG_S = 2.0e-5, 0.02
+LEAST_LAG_S = 2.0e-5
 SILENT = 1.0e-4  # of a mode's largest displacement among the channels: below it a channel does not see the mode in the model
 BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
-DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
 SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
 
@@ -81,13 +81,13 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     delay, lag, start = np.zeros(len(measured)), None, np.zeros(len(visible)) if fixed else None
     for _ in range(3):  # modes that the model does not excite, and delays, are seen once the rest is taken out
         drive = model.drive_shapes[visible].copy()
-        drive[~_driven(model, visible), 0] = 1.0
+        drive[~driven_modes(model, visible), 0] = 1.0
         turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         rest = _rest(record, model, visible, kind)
         if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
             start = _elsewhere(record, turned - rest, weights, model, visible, kind) if elsewhere else None
             free = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start, True)
-            lag, start = _lags(free, model) if left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
+            lag, start = lags(free, model) if left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
             delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
             turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         # what breaks a symmetry lets a channel see modes that it does not in the model: looked at from the beginning, and once the modes are where they are
@@ -126,29 +126,6 @@ def _fitted(record, found, drive, model, kind):
     return found.participation @ record.responses(omega, 2.0 * zeta * omega, drive, kind)
 
 
-def _lags(found, model):
-    """Return (channel,) s: by how much each channel lags, from the phases of its participations in a fit that leaves them free.
-
-    Modes damped in proportion move in phase or against it, as the model says; what turns with the frequency is a delay, the same for all modes.
-    """
-    frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
-    lags = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
-    driven = _driven(model, found.modes)
-    out = np.zeros(len(found.participation))
-    for channel, (shape, own) in enumerate(zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)):
-        weight = np.where(driven & (np.abs(own) > 0.05 * np.abs(own).max()), 1.0, 0.0)
-        if found.share[channel] > DEAF or not weight.any():
-            continue  # a channel of noise, or of motion of which the model does not tell the sense
-        unit = weight * shape * np.sign(own) / np.maximum(np.abs(shape), 1.0e-300)
-        match = np.real(np.exp(2j * np.pi * np.outer(lags, frequency)) @ unit)
-        best = lags[np.argmax(match - 1.0e-3 * np.abs(lags) / LONGEST_LAG_S)]
-        for _ in range(5):
-            turned = unit * np.exp(2j * np.pi * frequency * best)
-            best -= np.sum(frequency * turned.imag) / max(2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300)
-        out[channel] = best
-    return out
-
-
 def _implausible(found):
     """Return what a ModalFit leaves, and how far its damping is from the model's: a mode fitted to nothing ends at a limit."""
     return np.sum(found.residual**2) + np.sum((found.log_damping / LARGEST_LOG_DAMPING) ** 2)
@@ -163,11 +140,6 @@ def _seen(model, modes, strict):
     shown, logs = own > SILENT * own.max(axis=0), np.log(model.omega[modes])
     beside = np.abs(logs[:, None] - logs) < BESIDE
     return shown if strict else shown | ~(shown.astype(int) @ beside.astype(int) > 0)
-
-
-def _driven(model, modes):
-    """Return (mode,) bool: whether a force drives these modes of a model."""
-    return np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()
 
 
 def _unexpected(record, measured, found, weights, drive, model, near, kind):

@@ -10,11 +10,10 @@ from vibroimpact.campaign_checks import check_file, refused, usable_signals
 from vibroimpact.campaign_model_checks import compare_with_model
 from vibroimpact.campaign_signals import measured_signals, transfer
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import Candidate, candidate_named, linear_candidates, local_candidates, not_testable
-from vibroimpact.discrepancy.linear_fit import LinearChanges, fitted
+from vibroimpact.discrepancy.candidates import candidate_named, local_candidates, not_testable
+from vibroimpact.discrepancy.linear_fit import LinearChanges
+from vibroimpact.discrepancy.linear_rows import held, linear_rows, nameable, nearest_linear
 from vibroimpact.discrepancy.linear_stage import ModalFit, left
-from vibroimpact.discrepancy.linear_naming import calibrate, table_of
-from vibroimpact.discrepancy.linear_pairs import best_pairs
 from vibroimpact.discrepancy.measuring import Measuring
 from vibroimpact.discrepancy.nearest_model import fit_from_nearest, translated
 from vibroimpact.discrepancy.null import driven_channels
@@ -155,16 +154,6 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     return out
 
 
-def nearest_linear(rows):
-    """Return the names of the best few of single effects of the model in rows (see linear_rows), one of each id."""
-    best = {}
-    for row in rows:
-        candidate = candidate_named(row["name"])
-        if isinstance(candidate, Candidate) and not candidate.effect.measured and row["gain"] > priors.LINEAR_GAIN:
-            best.setdefault(candidate.effect_id, row["name"])
-    return list(best.values())[:FITTED]
-
-
 def read_lowest(bench, fresh, out, tables, without):
     """Read the lowest record: linear stage, delays, linear effects, what is adopted; Prepared out and tables are changed.
 
@@ -210,41 +199,6 @@ UNREAD_MESSAGE = ("No modes explain the lowest record: it touches already, or th
                   "A record at a lower load would tell them by itself.")  # fmt: skip
 
 
-def linear_rows(bench, sizes, tables, without, begun=()):
-    """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a Workbench, best first; before them two of them at once where
-    one does not suffice. tables are extended; begun: see best_pairs."""
-    found, changes = [], LinearChanges(bench)
-    for candidate in linear_candidates(bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes):
-        if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
-            continue
-        known = tables.get(candidate.name)
-        if not candidate.effect.measured and not (known and known.serves(bench)):
-            tables[candidate.name] = table_of(bench, candidate, sizes, changes)  # a table is of what a record shows
-        found.append(calibrate(bench, candidate, sizes, tables.get(candidate.name)))
-    found.sort(key=lambda row: -row.gain)
-    found[:FITTED] = [row if row.candidate.effect.measured else fitted(bench, changes, row.candidate, row.unit, sizes) or row for row in found[:FITTED]]
-    rows = sorted(map(plain_row, found), key=lambda row: -row["gain"])
-    single = rows[0]
-    if nameable(single, sizes):
-        for row in map(plain_row, best_pairs(bench, changes, rows, sizes, tables, begun)):
-            if nameable(row, sizes) and row["gain"] > single["gain"] + priors.LINEAR_SECOND + priors.PARAMETER_COST * (len(row["unit"]) - len(single["unit"]) - 1):
-                rows.append(row)
-    return sorted(rows, key=lambda row: -row["gain"])
-
-
-FITTED = 3  # of the best effects are fitted with the model itself: between the points of a table a stinger was read 8 % off
-
-
-def plain_row(result):
-    """Return {name, unit, gain, interval} of a LinearResult, in plain values."""
-    return {"name": result.candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()}
-
-
-def nameable(row, sizes):
-    """Return whether a linear effect, or two, (a row of linear_rows) explain enough, beyond what their priors allow."""
-    return row["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(row["unit"]) - 1) and beyond_prior(row, sizes)
-
-
 def read_again(moved, fresh, out, tables, without, begun):
     """Return the Workbench with what the lowest record tells once its modes are fitted from the model that moved them; Prepared out is changed.
 
@@ -287,25 +241,3 @@ def mixed_up(bench):
 
 
 CONTRADICTED = ("swapped channels", "directions")  # of the rows of mixed_up: these channels are left out
-
-
-def beyond_prior(row, sizes):
-    """Return whether effects that are also nuisances lie, with their whole interval, outside what their priors allow."""
-    candidate, interval = candidate_named(row["name"]), np.atleast_2d(row["interval"])
-    sides = zip(candidate.parts(interval[:, 0]), candidate.parts(interval[:, 1]), strict=True)
-    return all(_beyond(part, (low, high), sizes) for (part, low), (_, high) in sides)
-
-
-def _beyond(candidate, ends, sizes):
-    """Return whether a Candidate between two ends (parameter,) is no nuisance or lies outside what its prior allows."""
-    sd = {"mode_frequency_error": priors.FREQUENCY_SD, "modal_damping": priors.DAMPING_SD, "sensor_gain": priors.GAIN_SD}.get(candidate.effect_id)
-    if sd is None:
-        return True
-    (parameter,) = candidate.effect.parameters
-    logs = [np.log(candidate.physical(end, sizes)[parameter.name]) for end in ends]
-    return logs[0] > priors.NAMED_BEYOND * sd or logs[1] < -priors.NAMED_BEYOND * sd
-
-
-def held(campaign):
-    """Return what a campaign holds beyond force and response."""
-    return [name for name in ("voltage",) if name in campaign]

@@ -1,0 +1,34 @@
+"""By how much channels lag, from the phases of the modes that they show."""
+
+import numpy as np
+
+LONGEST_LAG_S = 0.02
+DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
+
+
+def lags(found, model):
+    """Return (channel,) s: by how much each channel lags, from the phases of its participations in a fit that leaves them free.
+
+    Modes damped in proportion move in phase or against it, as the model says; what turns with the frequency is a delay, the same for all modes.
+    """
+    frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
+    tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
+    driven = driven_modes(model, found.modes)
+    out = np.zeros(len(found.participation))
+    for channel, (shape, own) in enumerate(zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)):
+        weight = np.where(driven & (np.abs(own) > 0.05 * np.abs(own).max()), 1.0, 0.0)
+        if found.share[channel] > DEAF or not weight.any():
+            continue  # a channel of noise, or of motion of which the model does not tell the sense
+        unit = weight * shape * np.sign(own) / np.maximum(np.abs(shape), 1.0e-300)
+        match = np.real(np.exp(2j * np.pi * np.outer(tried, frequency)) @ unit)
+        best = tried[np.argmax(match - 1.0e-3 * np.abs(tried) / LONGEST_LAG_S)]
+        for _ in range(5):
+            turned = unit * np.exp(2j * np.pi * frequency * best)
+            best -= np.sum(frequency * turned.imag) / max(2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300)
+        out[channel] = best
+    return out
+
+
+def driven_modes(model, modes):
+    """Return (mode,) bool: whether a force drives these modes of a model."""
+    return np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()
