@@ -95,6 +95,21 @@ def test_a_linear_effect_stands_beside_what_contact_adds(decided):
     assert both.ambiguity == [["added_mass", "dry_friction"]]
 
 
+def test_two_linear_effects_are_one_set(decided):
+    adopted = {"name": "added_mass@apex+sensor_gain@apex_y", "unit": [0.4, 0.6], "gain": 90.0, "interval": [[0.39, 0.41], [0.55, 0.65]]}
+    rows = [adopted, {"name": "added_mass@apex+modal_damping@all", "gain": 88.0}, {"name": "added_mass@apex", "gain": 40.0}]
+    alone = decided([], adopted=adopted, rest=EXPLAINED, linear=rows)
+    assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass", "sensor_gain"], ["added_mass", "modal_damping"]])
+    beside = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
+    assert beside.ambiguity == [["added_mass", "dry_friction", "sensor_gain"]]
+    prepared = SimpleNamespace(adopted=adopted)
+    told = verdict.effects_of(prepared, alone, SCALES | {"mass": 1.0})
+    assert [(row["id"], row["location"], list(row["parameters"])) for row in told] == [("added_mass", "apex", ["mass"]), ("sensor_gain", "apex_y", ["factor"])]
+    gain = told[1]["parameters"]["factor"]
+    assert gain["value"] == pytest.approx(0.25 * 16.0**0.6)
+    assert gain["low"] < gain["value"] < gain["high"]
+
+
 def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_the_linear_one(decided):
     adopted = {"name": "fluid_added_mass_damping@tube", "unit": [0.1, 0.2], "gain": 40.0}
     beside, alone = finalist("quadratic_drag@tube", 310.0), finalist("quadratic_drag@tube@alone", 304.0)

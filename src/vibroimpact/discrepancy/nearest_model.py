@@ -5,6 +5,7 @@ from itertools import islice
 
 import numpy as np
 
+from vibroimpact.config import ConfigError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import Pair, linear_candidates
 from vibroimpact.discrepancy.linear_stage import fit_modes, left
@@ -34,8 +35,13 @@ def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
         for candidate in tried:
             for unit in _grid(candidate.second if second else candidate, GRID[second]):
                 unit = np.concatenate([known[0][2], unit]) if second else unit
-                model = changes.model(candidate, candidate.physical(unit, scales))
+                try:
+                    model = changes.model(candidate, candidate.physical(unit, scales))
+                except ConfigError:
+                    continue  # no model may have so much of it
                 ranked.append((spectra.distance(model), candidate, unit, model))
+        if not ranked:
+            break
         ranked.sort(key=lambda row: row[0])
         known = known or ranked
         for _, candidate, unit, model in islice(_different(ranked), BEGUN):
