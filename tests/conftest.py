@@ -1,11 +1,15 @@
 """What several test files share: the study's configuration and its reduced model, built once."""
 
+import os
 from pathlib import Path
 
-import pytest
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # as the workflow's jobs have it: threads on small matrices cost more than they bring
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from vibroimpact.config import load_config
-from vibroimpact.reduction import build_model
+import pytest  # noqa: E402
+
+from vibroimpact.config import load_config  # noqa: E402
+from vibroimpact.reduction import build_model  # noqa: E402
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 
