@@ -15,7 +15,7 @@ from vibroimpact.completion.store import read_values
 from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.completion.study import STUDIES, study_of
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
-from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, pair_names, screened_names, shard_of
+from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, pair_names, screened_files, screened_names, shard_of
 from vibroimpact.discrepancy.suite_check import CHECKS
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
@@ -219,7 +219,7 @@ def completion_files(structure):
 def path_files(wildcards):
     """The candidates that the lowest record left to be screened."""
     names = screened_names(checkpoints.discrepancy_prepare.get().output.prepared)
-    return [f"{BANK or DISCREPANCY}/paths/{name}.npz" for name in names]
+    return [str(file) for file in screened_files(names, DISCREPANCY, BANK)]
 
 
 def finalist_files(wildcards):

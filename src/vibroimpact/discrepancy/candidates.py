@@ -203,6 +203,11 @@ class Pair:
         return next((candidate.measuring(own, names) for candidate, own in zip((self.first, self.second), parameters, strict=True) if candidate.effect.measured), None)
 
 
+def unit_grid(count, points):
+    """Return (points**count, count): normalised parameters, evenly from 0 to 1 along each of `count`."""
+    return np.stack([axis.ravel() for axis in np.meshgrid(*[np.linspace(0.0, 1.0, points)] * count, indexing="ij")], axis=-1)
+
+
 def candidate_named(name):
     """Return the Candidate or Pair of a name."""
     parts = [Candidate(*part.removesuffix(ALONE).split("@"), part.endswith(ALONE)) for part in name.split("+")]

@@ -13,6 +13,15 @@ def screened_names(path):
     return json.loads(Path(path).read_text(encoding="utf-8"))["screened"]
 
 
+def screened_files(names, folder, bank=""):
+    """Return the files of the screened candidates of a run in a folder; those of a bank (another run's folder) where one is given, as far as it holds them.
+
+    What a bank lacks is left out: simulated here it would be of another campaign than the rest.
+    """
+    files = [Path(bank or folder) / "paths" / f"{name}.npz" for name in names]
+    return [file for file in files if not bank or file.is_file()]
+
+
 def finalist_names(path):
     """Return the names of the finalists that a screening file names."""
     return list(json.loads(Path(path).read_text(encoding="utf-8"))["finalists"])

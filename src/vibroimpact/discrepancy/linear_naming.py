@@ -8,7 +8,8 @@ from scipy import optimize
 from scipy.interpolate import RegularGridInterpolator
 
 from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.linear_fit import LinearChanges, LinearResult
+from vibroimpact.discrepancy.candidates import unit_grid
+from vibroimpact.discrepancy.linear_fit import LinearResult
 from vibroimpact.discrepancy.screening import NINETY
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
@@ -43,9 +44,8 @@ class LinearTable:
 def table_of(bench, candidate, scales, changes):
     """Return the LinearTable of a linear effect of the model, modes as the measured fit has them; changes: LinearChanges of the Workbench."""
     count = STRAIGHT if candidate.effect_id in NUISANCES else POINTS[len(candidate.effect.parameters)]
-    axes = tuple(np.linspace(0.0, 1.0, count) for _ in candidate.effect.parameters)
-    rows = []
-    for unit in np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=-1):
+    axes, rows = (np.linspace(0.0, 1.0, count),) * len(candidate.effect.parameters), []
+    for unit in unit_grid(len(axes), count):
         found = changes.reading(candidate, candidate.physical(unit, scales))
         rows.append(np.concatenate([found.log_frequency, found.log_damping, found.participation.ravel()]))
     return LinearTable(axes, np.array(rows).reshape(*[count] * len(axes), -1), changes.modes, tuple(bench.signals.names))
@@ -70,8 +70,7 @@ def calibrate(bench, candidate, scales, table=None):
         return bare - linear.likelihood(measured, reading, fit.covariance, start)[0] + 1.0e3 * outside
 
     count = len(candidate.effect.parameters)
-    axis = np.linspace(0.0, 1.0, {1: 61, 2: 15, 3: 7}[count])
-    starts = np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * count, indexing="ij")], axis=-1)
+    starts = unit_grid(count, {1: 61, 2: 15, 3: 7}[count])
     losses = np.array([loss(unit) for unit in starts])
     found = optimize.minimize(loss, starts[np.argmin(losses)], method="Nelder-Mead", options={"xatol": 1.0e-4, "fatol": 1.0e-3, "maxiter": 200,
                               "initial_simplex": starts[np.argmin(losses)] + 0.05 * np.vstack([np.zeros(count), np.eye(count)])})  # fmt: skip

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.candidates import Pair, candidate_named
+from vibroimpact.discrepancy.candidates import Pair, candidate_named, unit_grid
 from vibroimpact.discrepancy.linear_fit import fitted
 from vibroimpact.discrepancy.linear_naming import reading_under
 
@@ -16,7 +16,8 @@ FITTED = 4  # proposals that are fitted with the model itself
 def best_pairs(bench, changes, rows, scales, tables, begun=()):
     """Return [LinearResult], best first, of two effects at once that explain the lowest record of a Workbench.
 
-    changes: LinearChanges of it; begun: [(Pair, unit)] to be fitted beside those that are proposed here; rows: [{name, unit, gain, ...}] of single effects, best first; tables {name: LinearTable} of those that change the model.
+    changes: LinearChanges of it; begun: [(Pair, unit)] to be fitted beside those that are proposed here; rows: [{name, unit, gain, ...}] of single effects,
+    best first; tables {name: LinearTable} of those that change the model.
     """
     found = [fitted(bench, changes, pair, unit, scales) for pair, unit in [*begun, *proposed(bench, rows, scales, tables)[:FITTED]]]
     best = {}
@@ -38,8 +39,8 @@ def proposed(bench, rows, scales, tables):
     candidates, units, changes = [], [], []
     for row in rows:
         candidate = candidate_named(row["name"])
-        axis = np.linspace(0.0, 1.0, GRID[len(candidate.effect.parameters)])
-        for unit in [np.array(row["unit"]), *np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * len(candidate.effect.parameters), indexing="ij")], axis=-1)]:
+        count = len(candidate.effect.parameters)
+        for unit in [np.array(row["unit"]), *unit_grid(count, GRID[count])]:
             there = linear.difference(measured, reading_under(bench, candidate, unit, scales, tables.get(candidate.name)), error, seen)[0]
             candidates.append(candidate)
             units.append(unit)

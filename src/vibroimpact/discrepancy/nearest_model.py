@@ -7,7 +7,7 @@ import numpy as np
 
 from vibroimpact.config import ConfigError
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import Pair, linear_candidates
+from vibroimpact.discrepancy.candidates import Pair, linear_candidates, unit_grid
 from vibroimpact.discrepancy.linear_stage import fit_modes, left
 from vibroimpact.discrepancy.linearised import matched
 
@@ -33,7 +33,8 @@ def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
         tried = singles if not second else [Pair(known[0][1], other) for other in singles if other.effect_id != known[0][1].effect_id]
         ranked = []
         for candidate in tried:
-            for unit in _grid(candidate.second if second else candidate, GRID[second]):
+            count = len((candidate.second if second else candidate).effect.parameters)
+            for unit in unit_grid(count, GRID[second][count]):
                 unit = np.concatenate([known[0][2], unit]) if second else unit
                 try:
                     model = changes.model(candidate, candidate.physical(unit, scales))
@@ -97,12 +98,6 @@ class BandSpectra:
 
     def _bands(self, lines):
         return np.add.reduceat(np.abs(lines) ** 2, self.starts, axis=-1)
-
-
-def _grid(candidate, points):
-    """Return (point, parameter): normalised parameters over the whole range of a Candidate, points {number of parameters: along each}."""
-    count = len(candidate.effect.parameters)
-    return np.stack([axis.ravel() for axis in np.meshgrid(*[np.linspace(0.0, 1.0, points[count])] * count, indexing="ij")], axis=-1)
 
 
 def _different(ranked):

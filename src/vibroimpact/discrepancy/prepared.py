@@ -164,7 +164,7 @@ def read_lowest(bench, fresh, out, tables, without):
         (bench.measured_fit, begun), tables = fit_from_nearest(bench, LinearChanges(bench), out.scales, held(bench.campaign), without), {}
         bench.__dict__.pop("measured_reading", None)
     fit = bench.measured_fit
-    if np.median(fit.share[driven]) > UNREAD:
+    if np.median(fit.share[driven]) > priors.UNREAD:
         out.linear_stage = False
         out.checks.append({"check": "lowest level", "level": "warn", "record": None, "channel": None, "message": UNREAD_MESSAGE})
         return
@@ -194,7 +194,6 @@ def read_lowest(bench, fresh, out, tables, without):
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
 
 
-UNREAD = 0.5  # of the responses that the force drives: where the modes explain less, they tell nothing of the linear structure
 UNREAD_MESSAGE = ("No modes explain the lowest record: it touches already, or the structure is another one. Linear effects are tried by simulation, beside the others. "
                   "A record at a lower load would tell them by itself.")  # fmt: skip
 
@@ -206,7 +205,7 @@ def read_again(moved, fresh, out, tables, without, begun):
     more, and a second effect made of the difference. Where that tells of other effects, once more.
     """
     for _ in range(AGAIN):
-        if moved.values is fresh().values or moved.measured_fit is None:
+        if moved.values is moved.given or moved.measured_fit is None:  # a fault of the chain moves no mode
             return moved
         bare, before = fresh(), out.adopted["name"]
         bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)

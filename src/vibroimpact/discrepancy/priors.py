@@ -27,6 +27,7 @@ FINAL_SEEDS = 8  # of the finalists and of the verification
 FINALISTS = 4
 
 LINEAR_RESIDUAL = 2.0  # of the lowest record's residual over noise, in a driven channel: above it the structure is not linear there
+UNREAD = 0.5  # of the responses that the force drives: where modes leave more, the lowest record tells nothing of the linear structure
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
 LINEAR_SECOND = 8.0  # the same of two over the better of them
 GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside the threshold from null seeds

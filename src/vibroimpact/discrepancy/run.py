@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.prepared import Prepared, workbench
 
 @dataclass(frozen=True)
 class Run:
-    """config: checked Config; campaign: file; folder of the results; prepared; path_files: of the candidates that it leaves to be screened; nulls, bank_nulls: files."""
+    """config: checked Config; campaign: file; folder of the results; prepared; path_files: <candidate>.npz of those that are screened; nulls, bank_nulls: files."""
 
     config: object
     campaign: str
@@ -86,4 +86,4 @@ class Run:
         """Return {Candidate: Path}, brought from the screened seconds, of a bank where there is one, to a Workbench and its Null."""
         here = not self.bank_nulls and null is self.screening_null
         source = None if here else Source(bench, null, self.bank_nulls or self.nulls, "screened_", bool(self.bank_nulls))
-        return known_paths(dict(zip(self.prepared.screened, self.path_files, strict=True)), source, self.prepared)
+        return known_paths({Path(file).stem: file for file in self.path_files}, source, self.prepared)

@@ -10,7 +10,7 @@ from vibroimpact.discrepancy import jobs
 from vibroimpact.discrepancy.bank import lacking
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.conclusion import conclude
-from vibroimpact.discrepancy.dag import NULL_PARTS
+from vibroimpact.discrepancy.dag import NULL_PARTS, screened_files
 from vibroimpact.discrepancy.prepared import Prepared, prepare
 from vibroimpact.discrepancy.run import Run
 
@@ -34,10 +34,10 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     bank_nulls = [Path(bank) / "null" / file.name for file in nulls] if bank else []
     if bank_nulls and lacking(run.bench, jobs.contact_records(run.bench), bank_nulls[0]):
         bank, bank_nulls = None, []
-    paths = [Path(bank or folder) / "paths" / f"{name}.npz" for name in prepared.screened]
+    paths = screened_files(prepared.screened, folder, bank)
     run = replace(run, path_files=tuple(paths), bank_nulls=tuple(bank_nulls))
     _make(workers, {file: partial(jobs.null_part, run, part) for part, file in enumerate(nulls)})
-    _make(workers, {file: partial(_path, run, name, quick) for name, file in zip(prepared.screened, paths, strict=True)})
+    _make(workers, {file: partial(_path, run, file.stem, quick) for file in paths})
     screened = _kept(folder / "screening.json", lambda file: jobs.screening(run, file, quick))
     files = []
     for kind in ("finalists", "pairs"):
