@@ -53,6 +53,15 @@ def test_an_effect_changes_the_attached_model(compared, name):
     assert differing(bare, variant), f"{name} at {location} changes nothing that is simulated"
 
 
+@pytest.mark.parametrize("location", EFFECTS["clearance"].locations({"points": {"shaker": (0, 0, 0), "apex": (1, 0, 0), "left_leg": (2, 0, 0)}, "excitation": {"point": "shaker"}}))
+def test_a_stop_acts_along_the_force_wherever_it_sits(compared, location):
+    """The axes of a section turn with the tube: at the apex the first is y, on a leg the second."""
+    values, campaign, _, _ = compared
+    model = attach(check_config(Candidate("clearance", location).variant(values, {"half_gap": 1.0e-4, "stiffness": 1.0e4}), "stop"), campaign)
+    normal, point = model.contact_laws.land_normal[-2:], model.contact_laws.land_point[-2:]
+    assert np.allclose(np.einsum("lp,lpc->lc", normal, model.contact_directions[point]), [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+
+
 def test_a_turned_force_drives_what_is_across(compared):
     values, campaign, bare, _ = compared
     model = attach(check_config(Candidate("force_misalignment", "about_z").variant(values, {"angle": 0.4}), "turned"), campaign)

@@ -8,7 +8,7 @@ from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.dag import shard_of
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import COARSE, FeatureLayout, compressed, record_features, uncompressed
-from vibroimpact.discrepancy.likelihood import log_likelihood, scatter_of
+from vibroimpact.discrepancy.likelihood import LawLikelihood, log_likelihood, scatter_of
 from vibroimpact.discrepancy.mapping import clusters
 from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
 from vibroimpact.discrepancy.next_measurement import next_measurement
@@ -127,13 +127,9 @@ def test_components_of_a_vector_are_also_tried_alone():
     assert len(Candidate("plate_flexibility", "all").design()) == 9
 
 
-def test_an_effect_that_may_be_nothing_is_seen():
+def test_where_an_effect_is_nothing_is_known_where_its_range_holds_it():
     scales = {"gap": 2.0e-4, "one": 1.0}
     offset, friction = Candidate("support_offset", "all"), Candidate("dry_friction", "all")
-    assert offset.may_be_neutral(np.array([[0.45, 0.55], [0.4, 0.52]]), scales)
-    assert not offset.may_be_neutral(np.array([[0.45, 0.55], [0.3, 0.4]]), scales)
-    assert friction.may_be_neutral(np.array([[0.0, 0.3]]), scales) and not friction.may_be_neutral(np.array([[0.3, 0.5]]), scales)
-    assert Candidate("gap", "all").may_be_neutral(np.array([[0.4, 0.6]]), scales)
     np.testing.assert_allclose(offset.physical(offset.neutral_unit(scales), scales)["offset_x"], 0.0, atol=1e-12)
     assert np.isnan(friction.neutral_unit(scales)).all()
 
@@ -244,3 +240,14 @@ def test_scatter_of_a_models_own_seeds_counts_where_it_is_clearly_larger():
     wider = null.scattered(seeds).covariance[0]
     assert np.diag(wider)[:2].tolist() == [1.0, 1.0]
     assert wider[2, 2] == pytest.approx(1.0 + seeds[0, :, 2].var(ddof=1) - null.features[0, :, 2].var(ddof=1))
+
+
+def test_a_likelihood_made_diagonal_once_is_the_same():
+    rng, size = np.random.default_rng(4), 40
+    root = rng.standard_normal((size, 2 * size))
+    covariance, change, groups, spread = root @ root.T, rng.standard_normal(size), np.arange(size) % 2, rng.uniform(0.0, 1.0, size) ** 4
+    spread[3] = 0.0
+    held = LawLikelihood(covariance, change, groups, spread)
+    for multiple in (0.0, 0.3, 40.0):
+        residual = 5.0 * rng.standard_normal(size)
+        assert held(residual, multiple) == pytest.approx(log_likelihood(residual, covariance, change, groups, multiple * spread)[0], abs=1.0e-6)

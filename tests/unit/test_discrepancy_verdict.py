@@ -13,13 +13,13 @@ THRESHOLD, EXPLAINED, LEFT = 15.0, np.array([0.3, -1.0]), np.array([0.3, -9.0])
 SCALES = {"gap": 2.0e-4, "one": 1.0, "contact_stiffness": 4.0e6, "hertz": 2.0e8}
 
 
-def finalist(name, gain, explained=EXPLAINED, held_out=10.0, interval=None):
-    """A Finalist of a name as the verdict sees it; interval (parameter, 2) away from neutral where None."""
+def finalist(name, gain, explained=EXPLAINED, held_out=10.0, part=0.0):
+    """A Finalist of a name as the verdict sees it; part: what the better of a pair's effects explains alone."""
     candidate = candidate_named(name)
     count = len(candidate.effect.parameters)
-    interval = np.tile([0.75, 0.85], (count, 1)) if interval is None else np.array(interval)
+    interval = np.tile([0.75, 0.85], (count, 1))
     return SimpleNamespace(candidate=candidate, mean=name, gain=gain, left=explained, held_out=held_out, interval=interval, unit=interval.mean(axis=1),
-                           own=lambda null: null)  # fmt: skip
+                           total=gain, parts=np.array([0.0, part]), own=lambda null: null)  # fmt: skip
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
     assert decided([finalist("gap@left", 300.0), pair]).ambiguity == [["gap"]]
     insufficient = decided([single, finalist("gap@left+dry_friction@all", 400.0, LEFT)])
     assert (insufficient.verdict, insufficient.ambiguity) == ("partly_explained", [["dry_friction", "gap"], ["gap"]])
-    idle = finalist("gap@left+dry_friction@all", 400.0, interval=[[0.75, 0.85], [0.0, 0.6]])
+    idle = finalist("gap@left+dry_friction@all", 400.0, part=390.0)
     assert decided([single, idle]).chosen is single
 
 

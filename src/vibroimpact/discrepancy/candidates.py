@@ -11,7 +11,6 @@ from vibroimpact.effects.registry import EFFECTS
 ALONE = "@alone"
 SCREENED = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
 ALONG = 0.2  # of a searched range
-LOWEST = 0.05  # of a range searched in its logarithm: as good as nothing
 
 QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number of parameters
 
@@ -77,12 +76,6 @@ class Candidate:
         with np.errstate(divide="ignore", invalid="ignore"):  # nothing is no value of a range that is searched in its logarithm
             unit = self.normalised({parameter.name: np.nan if parameter.neutral is None else parameter.neutral for parameter in self.effect.parameters}, scales)
             return np.where((unit >= 0.0) & (unit <= 1.0), unit, np.nan)
-
-    def may_be_neutral(self, interval, scales):
-        """Return whether an interval (parameter, 2), normalised, leaves room for the effect not to be there: neutral in all its parameters."""
-        ends = [self.physical(interval[:, side], scales) for side in (0, 1)]
-        return all(parameter.neutral is not None and (ends[0][parameter.name] <= parameter.neutral <= ends[1][parameter.name] or low < LOWEST and parameter.log)
-                   for parameter, (low, _) in zip(self.effect.parameters, interval, strict=True))  # fmt: skip
 
     def design(self, quick=False):
         """Return (point, parameter): the parameters to try first, all combinations of the effect's own design; fewer where it must be quick."""

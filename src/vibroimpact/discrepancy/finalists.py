@@ -1,6 +1,6 @@
 """Finalists: candidates refined by stars of runs round the best that was simulated, and judged by what is simulated there and nothing else."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,8 +14,8 @@ STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a r
 ENOUGH = 2  # this close is close enough where no parameter is known better
 ROUNDS = 4  # at most
 START_STEP, STARTS, NEW = 0.12, 3, 0.003
-TRIED = 2  # points that are tried at other places
-JUDGED_BATCHES = 2  # of seeds that tell what other damping changes where a finalist is judged
+PLACED_FROM = 0.5  # of the gain that makes a closer look worth its runs: from there on other places are tried
+FEW_SEEDS = 4  # of what is not worth a closer look, and of a pair's parts
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
 NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
@@ -25,7 +25,7 @@ NEAR = 0.2  # of the searched range: points farther from the best no longer help
 class Finalist:
     """A candidate after direct simulation: unit (parameter,) normalised; interval (parameter, 2); scores (record,) and low: log likelihoods by direct
     simulation; mean (record, feature) over `features` (record, seed, feature); path: all that was simulated; profile: see screening.Calibrated; free: see
-    null.free_at."""
+    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one."""
 
     candidate: object
     unit: np.ndarray
@@ -36,6 +36,12 @@ class Finalist:
     path: Path
     profile: list
     free: np.ndarray
+    parts: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def total(self):
+        """Return the log likelihood, the lowest record's included."""
+        return float(self.scores.sum() + self.low)
 
     @property
     def mean(self):
@@ -62,11 +68,11 @@ def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=20
 
 
 def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):
-    """Return (candidate, its Path) at the place where the best points of its Path come nearest to what was measured."""
+    """Return (candidate, its Path) at the place where the best point of its Path comes nearest to what was measured."""
     scores = _scores(bench, null, measured, path, fit)
-    order, best, kept = np.argsort(scores)[::-1][:TRIED], scores.max(), (candidate, path)
+    at, best, kept = path.parameters[np.argmax(scores)], scores.max(), (candidate, path)
     for other in other_places(candidate, bench.values):
-        there = simulate_path(bench, other, path.parameters[order], scales, null.records, first_seed=first_seed)
+        there = simulate_path(bench, other, at, scales, null.records, first_seed=first_seed)
         found = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
         if found > best:
             best, kept = found, (other, there)
@@ -79,16 +85,18 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     fit (record,) bool: the records its parameters are fitted to; least: gain of log likelihood below which a closer look is
     not worth its runs.
     """
-    level, centre, at = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None
+    level, centre, at, own = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, null
     for number in range(rounds):
         points = _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
         known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
-        if at is None or _apart(centre, at, candidate.periodic).max() > MOVED:
+        losing = gains_of(bench, null, measured, path, own).max() < least
+        if not losing and (at is None or _apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[_nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
             own = null.freed(free)
+            losing = gains_of(bench, null, measured, path, own).max() < least
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
         scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY
@@ -96,25 +104,39 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         if stayed or number and not better:
             level += 1  # it stayed within what was looked at, or led nowhere: look closer
         centre = found.unit if stayed or better or not number else path.parameters[np.argmax(scores)]
-        losing = gains_of(bench, null, measured, path, own).max() < least
         if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
     found = _with_whole_interval(bench, own, measured, candidate, path, fit, found)
-    if not losing:
-        free = _free(bench, null, candidate, found.unit, scales, first_seed + 4000, JUDGED_BATCHES)
-        own = null.freed(free)
-    judgements = []
     simulated = path.parameters[np.argmax(scores)]
-    for unit in [simulated] if losing else _to_judge(candidate, found.unit, simulated, scales):
+    if losing:
+        units, free, seeds = [simulated], np.zeros((0, *null.mean.shape)), min(seeds, FEW_SEEDS)
+    else:
+        units = _to_judge(candidate, found.unit, simulated, scales)
+        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
+        near_enough = len(free) and len(again) and _apart(found.unit, at, candidate.periodic).max() <= MOVED
+        free = 0.5 * (free + again) if near_enough else again
+    own = null.freed(free)
+    law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
+    for unit in units:
+        if judgement is not None and np.array_equal(unit, simulated) and best > scores.max():
+            continue  # it was the best by the scatter of its few seeds
         try:
-            judgements.append(judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000))
+            row = judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000)
         except IntegrationError:
             continue  # between points that can be simulated lies one that can not
-    if not judgements:
-        return None
-    law = law_at(bench, own, candidate, path, judgements[0].unit)
-    alike = [direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low for row in judgements]
-    return judgements[int(np.argmax(alike))] if max(alike) > alike[0] + CLEARLY else judgements[0]
+        score = direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low
+        if judgement is None or score > best + CLEARLY:
+            judgement, best = row, score
+    return judgement
+
+
+def with_parts(bench, null, measured, found, scales, first_seed=9000):
+    """Return the Finalist of a pair with what each of the two explains without the other, by runs of its own."""
+    own, parts = found.own(null), []
+    for part, unit in found.candidate.parts(found.unit):
+        alone = simulate_path(bench, part, unit, scales, null.records, FEW_SEEDS, first_seed)
+        parts.append(-np.inf if alone is None else float(direct_scores(bench, own, measured, alone.features[0]).sum() + linear_score(bench, alone.readings[0])))
+    return replace(found, parts=np.array(parts))
 
 
 def _nearest(path, unit, periodic):

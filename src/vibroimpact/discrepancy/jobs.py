@@ -7,9 +7,9 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
-from vibroimpact.discrepancy.candidates import Candidate, candidate_named, elsewhere, in_place_of_adopted
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import ROUNDS, gains_of, own, placed, refine, started
+from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gains_of, own, placed, refine, started, with_parts
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.records import read_text, write_text
@@ -26,10 +26,10 @@ def contact_records(bench):
 def null_part(run, part, path):
     """Simulate a part of the null's seeds and of those with other damping of unseen modes; the features of what is screened are of the same runs."""
     bench, records = run.bench, contact_records(run.bench)
-    each, unseen = priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS // NULL_PARTS
+    each, unseen = priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS * len(UNSEEN) // NULL_PARTS
     arrays = {}
-    models = [("features", bench.model(), each, each * part)]
-    models += [(name, unseen_damping(bench, bench.values, factor), unseen, 900 + unseen * part) for name, factor in zip(store.UNSEEN, UNSEEN, strict=True)]
+    which, turn = part % len(UNSEEN), part // len(UNSEEN)  # a part runs one of the other dampings: few runs would leave most lanes of a batch empty
+    models = [("features", bench.model(), each, each * part), (store.UNSEEN[which], unseen_damping(bench, bench.values, UNSEEN[which]), unseen, 900 + unseen * turn)]
     for name, model, seeds, first in models:
         runs = bench.runs(records, seeds, first)
         responses = bench.respond(model, runs)
@@ -56,7 +56,8 @@ def screening(run, path, quick=False):
     bench, null, paths = run.screening_bench, run.screening_null, run.screened_paths
     measured = bench.measured_features[null.records]
     ranked = naming.screen(bench, null, measured, paths)
-    chosen = naming.finalists(ranked, QUICK_FINALISTS if quick else priors.FINALISTS)
+    explained = naming.explained(bench, null, null.mean, measured, False)
+    chosen = naming.finalists(ranked, explained, QUICK_FINALISTS if quick else priors.FINALISTS)
     starts = {row.candidate.name: row.unit.tolist() for row in chosen}
     gains = naming.null_gains(bench, null, paths)
     write_text(json.dumps({"finalists": starts, "threshold": naming.threshold(gains), "null_gains": gains.tolist(),
@@ -94,7 +95,9 @@ def finalist(run, name, chosen, path, quick=False):
     seeds = QUICK_SEEDS if quick else priors.FINAL_SEEDS
     rounds = QUICK_ROUNDS if quick else ROUNDS if isinstance(candidate, Candidate) else PAIR_ROUNDS
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, least=least, seeds=seeds)
-    if found is not None and isinstance(candidate, Candidate) and not quick:
+    if found is not None and isinstance(candidate, Pair):
+        found = with_parts(bench, null, measured, found, sizes)
+    elif found is not None and not quick and gains_of(bench, null, measured, found.path, found.own(null)).max() > PLACED_FROM * least:
         other, there = placed(bench, null, measured, candidate, found.path, sizes, fit)
         if other is not candidate:
             found = refine(bench, null, measured, other, there, sizes, fit, rounds=rounds, least=least, seeds=seeds) or found

@@ -56,17 +56,44 @@ def log_likelihood(residual, covariance, change=None, groups=None, more_variance
     covariance (feature, feature): of seeds and of what two codes differ by; change (feature,): what the effect changes, of which LAW_SD is uncertain feature
     by feature and LAW_COMMON_SD in each group of features of groups (feature,); more_variance (feature,): of the mean.
     """
-    total, size = np.array(covariance), len(residual)
-    own = total.reshape(-1)[:: size + 1]  # the diagonal, as a view
-    if change is not None:
-        common = np.array([np.where(groups == group, priors.LAW_COMMON_SD * change, 0.0) for group in np.unique(groups)])
-        total += common.T @ common
-        own += (priors.LAW_SD * change) ** 2
+    total = np.array(covariance) if change is None else _with_law(covariance, change, groups)
     if more_variance is not None:
-        own += more_variance
-    factor, failed = lapack.dpotrf(total.T, lower=1, overwrite_a=1)  # called ten thousand times a run: without the wrapper's checks and copies
+        total.reshape(-1)[:: len(residual) + 1] += more_variance
+    factor, failed = lapack.dpotrf(total.T, lower=1, overwrite_a=1)  # called thousands of times a run: without the wrapper's checks and copies
     if failed:
         raise linalg.LinAlgError("the covariance of features is not positive definite")
     white = lapack.dtrtrs(factor, residual, lower=1)[0]
+    return _t_law(white, np.log(np.diag(factor)))
+
+
+class LawLikelihood:
+    """The log likelihood where an effect's change stays as it is and the variance of the mean is a multiple of `spread` (feature,): the covariance is made
+    diagonal once, and every residual costs a product with a matrix. Arguments as of `log_likelihood`."""
+
+    def __init__(self, covariance, change, groups, spread):
+        self.scale = np.sqrt(np.maximum(spread, LEAST_SPREAD * max(spread.mean(), LEAST_SPREAD)))
+        self.values, turn = linalg.eigh(_with_law(covariance, change, groups) / np.outer(self.scale, self.scale), check_finite=False)
+        self.turn = turn.T / self.scale
+        self.log_scale = float(np.sum(np.log(self.scale)))
+
+    def __call__(self, residual, multiple):
+        """Return the log likelihood of a compressed residual (feature,) where the mean's variance is `multiple` times the spread."""
+        sd = np.sqrt(self.values + multiple)
+        return _t_law(self.turn @ residual / sd, np.log(sd))[0] - self.log_scale
+
+
+LEAST_SPREAD = 1.0e-9  # of the mean over features
+
+
+def _with_law(covariance, change, groups):
+    """Return covariance (feature, feature) with what two laws of one effect differ by."""
+    common = np.array([np.where(groups == group, priors.LAW_COMMON_SD * change, 0.0) for group in np.unique(groups)])
+    total = covariance + common.T @ common
+    total.reshape(-1)[:: len(change) + 1] += (priors.LAW_SD * change) ** 2
+    return total
+
+
+def _t_law(white, log_sd):
+    """Return (log likelihood, chi-square) of a whitened residual (feature,) and the logarithms of what it was divided by."""
     chi_square = float(white @ white)
-    return -0.5 * (priors.TAIL + size) * np.log1p(chi_square / priors.TAIL) - float(np.sum(np.log(np.diag(factor)))), chi_square
+    return -0.5 * (priors.TAIL + len(white)) * np.log1p(chi_square / priors.TAIL) - float(np.sum(log_sd)), chi_square

@@ -66,11 +66,14 @@ def threshold(gains):
     return float(max(priors.GAIN, gains.mean() + priors.NULL_SIGMA * spread)) if len(gains) else priors.GAIN
 
 
-def finalists(screened, count=priors.FINALISTS):
-    """Return the candidates to simulate directly: the best of each effect, and the aliases of the first that came near."""
-    best = {}
+def finalists(screened, explained, count=priors.FINALISTS):
+    """Return the candidates to simulate directly: the best of each effect, and the aliases of the first that came near.
+
+    explained (record,): z of the bare model, see `explained`; where it leaves nothing, only those that a closer look may bring to a name.
+    """
+    best, least = {}, priors.GAIN / GROWN if np.min(explained) > priors.EXPLAINED_Z else 0.0
     for row in screened:
-        if row.score > 0.0:
+        if row.score > least:
             best.setdefault((row.candidate.effect_id, row.candidate.alone), row)
     chosen = list(best.values())
     chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
@@ -80,6 +83,7 @@ def finalists(screened, count=priors.FINALISTS):
     return chosen
 
 
+GROWN = 3.0  # times its screening score at most is the gain of a candidate that was looked at closely
 LEAST_FINALISTS, NEAR, FAR = 3, 0.5, 0.2  # shares of the best screening score: nearer ones are all simulated, aliases also when farther
 
 

@@ -12,7 +12,7 @@ from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import compressed, uncompressed
-from vibroimpact.discrepancy.likelihood import log_likelihood
+from vibroimpact.discrepancy.likelihood import LawLikelihood, log_likelihood
 
 LEAST_LOW = 300.0  # log likelihood of the lowest record below the best: farther off tells nothing more
 SMOOTHING = 1.0e-3  # points that were simulated twice differ by the seeds
@@ -118,24 +118,28 @@ def calibrate(bench, null, measured, candidate, path, fit):
     low_at = _lows(path.parameters, np.maximum(low_scores, low_scores.max() - LEAST_LOW))
     spread = emulator.deviations.var(axis=0).reshape(null.mean.shape)
 
-    def at(unit, records, law=None):
+    def at(unit, records, likelihoods=None):
         deviation, unknown = emulator(unit)
         deviation = deviation.reshape(null.mean.shape)
-        change = deviation if law is None else law
         residual = compressed(measured - null.mean - uncompressed(deviation, bench.layout), bench.layout)
-        scores = np.array([log_likelihood(residual[record], null.covariance[record], change[record], null.groups, unknown * spread[record])[0]
+        if likelihoods is not None:
+            return np.array([likelihoods[record](residual[record], unknown) for record in records]), deviation
+        scores = np.array([log_likelihood(residual[record], null.covariance[record], deviation[record], null.groups, unknown * spread[record])[0]
                            for record in records])  # fmt: skip
         return scores, deviation
 
-    def fit_score(unit, law=None):
-        return at(unit, np.flatnonzero(fit), law)[0].sum() + low_at(unit)
+    fitted = np.flatnonzero(fit)
+
+    def fit_score(unit, likelihoods=None):
+        return at(unit, fitted, likelihoods)[0].sum() + low_at(unit)
 
     unit = path.parameters[np.argmax([fit_score(unit) for unit in path.parameters])]
     # what two laws may differ by grows with the effect: held at its best while the parameters are estimated, or more would always be forgiven
     for _ in range(LAW_TURNS):
         law = at(unit, [])[1]
-        unit = _best(lambda point, law=law: fit_score(point, law), unit)
-    profile = _profile(lambda point: fit_score(point, law), unit)
+        held = {record: LawLikelihood(null.covariance[record], law[record], null.groups, spread[record]) for record in fitted}
+        unit = _best(lambda point, held=held: fit_score(point, held), unit)
+    profile = _profile(lambda point: fit_score(point, held), unit)
     records, deviation = at(unit, np.arange(len(measured)))
     interval = np.array([_above(values, score) for values, score in profile])
     return Calibrated(unit, records, low_at(unit), null.mean + uncompressed(deviation, bench.layout), interval, profile)

@@ -7,8 +7,9 @@ from vibroimpact.discrepancy.candidates import Pair
 from vibroimpact.discrepancy.features import compressed, uncompressed
 from vibroimpact.discrepancy.screening import direct_scores, linear_score, null_scores
 
-PAIRS = 4
+PAIRS, LEAST_PAIRS = 4, 2
 FIRSTS = 3
+NEAR = 0.5  # of what the best adds to a single effect: pairs beyond the first two that add less are not simulated
 
 
 def pairs(bench, null, measured, found, paths):
@@ -29,8 +30,9 @@ def pairs(bench, null, measured, found, paths):
                 key = frozenset((*first.candidate.ids, *candidate.ids))
                 if key not in best or gain > best[key][2]:
                     best[key] = (Pair(first.candidate, candidate), np.concatenate([first.unit, unit]), float(gain))
-    ordered = sorted(best.values(), key=lambda row: -row[2])
-    return ordered[:PAIRS]
+    ordered = sorted(best.values(), key=lambda row: -row[2])[:PAIRS]
+    single = max(direct_scores(bench, first.own(null), measured, first.mean).sum() + first.low for first in found[:FIRSTS]) - start - low
+    return [row for place, row in enumerate(ordered) if place < LEAST_PAIRS or row[2] - single > NEAR * (ordered[0][2] - single)]
 
 
 def needed(explained):

@@ -57,7 +57,7 @@ def finalist_arrays(finalist):
     """Return the arrays of a finalists.Finalist."""
     profile = json.dumps([[np.asarray(part).tolist() for part in row] for row in finalist.profile])
     return {"name": np.array(finalist.candidate.name), "unit": finalist.unit, "interval": finalist.interval, "scores": finalist.scores,
-            "low": np.array(finalist.low), "runs": finalist.features, "free": finalist.free, "profile": np.array(profile),
+            "low": np.array(finalist.low), "runs": finalist.features, "free": finalist.free, "parts": finalist.parts, "profile": np.array(profile),
             **{f"path_{name}": value for name, value in path_arrays(finalist.path).items()}}  # fmt: skip
 
 
@@ -65,7 +65,8 @@ def finalist_of(arrays):
     """Return the finalists.Finalist of arrays."""
     path = path_of({name.removeprefix("path_"): value for name, value in arrays.items() if name.startswith("path_")})
     profile = [tuple(np.array(part) for part in row) for row in json.loads(str(arrays["profile"]))]
-    return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile, arrays["free"])
+    return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile, arrays["free"],
+                    arrays["parts"])
 
 
 def null_from(bench, files, prefix=""):
@@ -74,6 +75,7 @@ def null_from(bench, files, prefix=""):
 
 
 def null_features(files, prefix="", names=("features", *UNSEEN)):
-    """Return [(record, seed, feature)] of the null and of that with less and more damping of unseen modes, of the files of its parts."""
+    """Return [(record, seed, feature)] of the null and of that with less and more damping of unseen modes, of the files of its parts; a part holds
+    some of them."""
     parts = [load(file) for file in files]
-    return [np.concatenate([part[prefix + name] for part in parts], axis=1) for name in names]
+    return [np.concatenate([part[prefix + name] for part in parts if prefix + name in part], axis=1) for name in names]

@@ -25,7 +25,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     totals = naming.totals(bench, null, measured, found)
     linear = linear_sets(prepared)
     singles = [row for row in found if isinstance(row.candidate, Candidate)]
-    doubles = [row for row in found if isinstance(row.candidate, Pair) and not idle(row, prepared.scales)]
+    doubles = [row for row in found if isinstance(row.candidate, Pair) and not idle(row, threshold)]
     best, rest = singles[0] if singles else None, naming.explained(bench, null, null.mean, measured, False)
     named = "named" if len(linear) == 1 else "ambiguous"
     if prepared.adopted is None:
@@ -68,10 +68,9 @@ def whole_sets(linear, sets):
     return [list(row) for row in dict.fromkeys(map(tuple, out))]
 
 
-def idle(found, sizes):
-    """Return whether one of the two effects of a Finalist of a Pair may as well be none."""
-    cut = found.candidate.split
-    return found.candidate.first.may_be_neutral(found.interval[:cut], sizes) or found.candidate.second.may_be_neutral(found.interval[cut:], sizes)
+def idle(found, threshold):
+    """Return whether one of the two effects of a Finalist of a Pair may as well be none: without it, the other explains nearly as much."""
+    return found.total - found.parts.max() < threshold
 
 
 def linear_sets(prepared):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.centreline import build_centreline
+from vibroimpact.centreline import build_centreline, transverse_directions
 from vibroimpact.config_structure import Path, UTube
 
 TUBES = {"u_tube": UTube, "path": Path}
@@ -49,9 +49,21 @@ def across(values, point):
     return values["excitation"]["direction"]
 
 
+def across_deg(values, point):
+    """Return the angle in degrees, in a tube's section at a point, of the direction of the force: see supports for the axes, which turn with the tube."""
+    line = _centreline(values)
+    first, second = transverse_directions(line.direction(line.locate(values["points"][point], point))) @ np.array(across(values, point))
+    return float(np.rad2deg(np.arctan2(second, first)))
+
+
 def stations(values, count):
     """Return ({name: place}, tributary length in m) of `count` points evenly spaced along a tube, ends excluded."""
-    structure = values["structure"]
-    line = build_centreline(TUBES[structure["kind"]].model_validate(structure))
+    line = _centreline(values)
     lengths = line.length * (np.arange(count) + 0.5) / count
     return {f"station_{number + 1}": [float(x) for x in line.position(at)] for number, at in enumerate(lengths)}, line.length / count
+
+
+def _centreline(values):
+    """Return the Centreline of a configuration of a tube."""
+    structure = values["structure"]
+    return build_centreline(TUBES[structure["kind"]].model_validate(structure))
