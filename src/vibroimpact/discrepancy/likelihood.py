@@ -82,7 +82,7 @@ class LawLikelihood:
         return _t_law(self.turn @ residual / sd, np.log(sd))[0] - self.log_scale
 
 
-LEAST_SPREAD = 1.0e-9  # of the mean over features
+LEAST_SPREAD = 1.0e-6  # of the mean over features
 
 
 def _with_law(covariance, change, groups):
