@@ -92,15 +92,13 @@ def finalist(run, name, chosen, path, quick=False):
     if known is None:
         store.save_empty(path)
         return
-    seeds = QUICK_SEEDS if quick else priors.FINAL_SEEDS
-    rounds = QUICK_ROUNDS if quick else ROUNDS if isinstance(candidate, Candidate) else PAIR_ROUNDS
+    single, seeds = isinstance(candidate, Candidate), QUICK_SEEDS if quick else priors.FINAL_SEEDS
+    if single and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
+        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit)
+    rounds = QUICK_ROUNDS if quick else ROUNDS if single else PAIR_ROUNDS
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, least=least, seeds=seeds)
-    if found is not None and isinstance(candidate, Pair):
+    if found is not None and not single:
         found = with_parts(bench, null, measured, found, sizes)
-    elif found is not None and not quick and gains_of(bench, null, measured, found.path, found.own(null)).max() > PLACED_FROM * least:
-        other, there = placed(bench, null, measured, candidate, found.path, sizes, fit)
-        if other is not candidate:
-            found = refine(bench, null, measured, other, there, sizes, fit, rounds=rounds, least=least, seeds=seeds) or found
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 

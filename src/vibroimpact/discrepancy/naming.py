@@ -78,8 +78,9 @@ def finalists(screened, explained, count=priors.FINALISTS):
     chosen = list(best.values())
     chosen = [row for place, row in enumerate(chosen) if place < LEAST_FINALISTS or row.score > NEAR * chosen[0].score][:count]
     if chosen:
-        first = chosen[0].candidate.effect
-        chosen += [row for row in screened if row.candidate.ids[0] in first.aliases and row not in chosen and row.score > FAR * chosen[0].score][:2]
+        first, known = chosen[0], {(row.candidate.effect_id, row.candidate.alone) for row in chosen}
+        # the best of each: where it sits is looked for anew
+        chosen += [row for key, row in best.items() if key not in known and row.candidate.ids[0] in first.candidate.effect.aliases and row.score > FAR * first.score][:2]
     return chosen
 
 
