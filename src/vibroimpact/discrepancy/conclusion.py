@@ -159,7 +159,7 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
         if row["name"] not in seen:
             candidate = candidate_named(row["name"])
             ids = [*([] if candidate.alone else prefix), *candidate.ids]
-            rows.append({"ids": "+".join(ids), "location": candidate.location, "fit_score": row["score"], "heldout_score": None,
+            rows.append({"ids": "+".join(ids), "location": where(row["name"]), "fit_score": row["score"], "heldout_score": None,
                          "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
     for row in prepared.linear[:SHOWN]:
         if prepared.adopted is None or row["name"] != prepared.adopted["name"]:
@@ -169,8 +169,12 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
 
 
 def where(name):
-    """Return the location in a candidate's name, both of a pair's joined with a plus."""
-    return "+".join(part.split("@")[1] for part in name.split("+"))
+    """Return the location in a candidate's name, both of a pair's joined with a plus; with its law where the catalogue has several of one effect."""
+    places = []
+    for part in name.split("+"):
+        candidate = candidate_named(part)
+        places.append(candidate.location + (f", {candidate.effect_id.replace('_', ' ')}" if candidate.effect.law_of else ""))
+    return "+".join(places)
 
 
 def bounds(decision, prepared):

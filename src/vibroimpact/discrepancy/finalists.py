@@ -15,6 +15,7 @@ ENOUGH = 2  # this close is close enough where no parameter is known better
 ROUNDS = 4  # at most
 START_STEP, STARTS, NEW = 0.12, 3, 0.003
 PLACED_FROM = 0.5  # of the gain that makes a closer look worth its runs: from there on other places are tried
+HOPELESS = 0.5  # of that gain: below it, nothing more is simulated round it
 FEW_SEEDS = 4  # of what is not worth a closer look, and of a pair's parts
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
@@ -86,12 +87,13 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     not worth its runs.
     """
     level, centre, at, own = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, null
+    losing = gains_of(bench, null, measured, path).max() < min(least, HOPELESS * least)
     for number in range(rounds):
-        points = _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
+        points = [] if losing else _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
         known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
-        losing = gains_of(bench, null, measured, path, own).max() < least
+        losing = losing or gains_of(bench, null, measured, path, own).max() < least
         if not losing and (at is None or _apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[_nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
@@ -144,10 +146,10 @@ def _nearest(path, unit, periodic):
     return int(np.argmin([np.sum(_apart(unit, other, periodic) ** 2) for other in path.parameters]))
 
 
-def _free(bench, null, candidate, unit, scales, first_seed, batches=1):
+def _free(bench, null, candidate, unit, scales, first_seed):
     """Return null.free_at of a point, nothing where it can not be simulated."""
     try:
-        return free_at(bench, candidate, unit, scales, null.records, first_seed, batches)
+        return free_at(bench, candidate, unit, scales, null.records, first_seed)
     except IntegrationError:
         return np.zeros((0, *null.mean.shape))
 

@@ -93,15 +93,15 @@ def driven_channels(bench):
     return size > 1.0e-3 * size.max()
 
 
-def free_at(bench, candidate, unit, scales, records, first_seed, batches=1):
+def free_at(bench, candidate, unit, scales, records, first_seed):
     """Return (1, record, compressed feature): half of what less and more damping of unseen modes differ by at normalised parameters (parameter,) of a candidate, times
     sqrt(2): the two directions that the null has apart, as one of their common size.
 
-    batches of seeds. By runs of its own: against a point of the candidate's path, the scatter of that point's few seeds would be free as well, and it alone would
+    By runs of its own: against a point of the candidate's path, the scatter of that point's few seeds would be free as well, and it alone would
     look right. Whether motion across the force breaks out in a record, and when, hangs on that damping near the onset, and the onset
     moves with the candidate: at a clearance 1.72 times the nominal one 10 N are at it, at the nominal one far beyond.
     """
-    physical, seeds = candidate.physical(unit, scales), batches * bench.seeds_of_a_batch(records)
+    physical, seeds = candidate.physical(unit, scales), bench.seeds_of_a_batch(records)
     values, measuring = bench.variant(candidate, physical), candidate.measuring(physical, bench.signals.names)
     runs = bench.runs(records, seeds, first_seed)
     less, more = (bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1).mean(axis=1) for factor in UNSEEN)
