@@ -36,11 +36,12 @@ class Workbench:
         self.forces = Forces(self.signals.force, self.schedule)
         self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
+        self.followed = False  # whether the model holds what moved its modes: no resonances are looked for without it then
         self.values = self.given = config.model_dump(mode="json")
 
     def rebase(self, values):
         """Take another configuration, in plain values, for the bare model: an effect that was found belongs to it from here on."""
-        self.values = values
+        self.values, self.followed = values, True
         self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
         for name in ("measured_fit", "measured_reading", "low_response", "linear_stage"):
             self.__dict__.pop(name, None)
@@ -75,7 +76,7 @@ class Workbench:
     def measured_fit(self):
         """Return the ModalFit of the lowest measured record, None where no mode is seen."""
         response = self.valid(self.signals.response[self.signals.lowest])
-        return fit_modes(self.linear_record, response, self.bare, self.signals.kinds, self.signals.noise_in_band)
+        return fit_modes(self.linear_record, response, self.bare, self.signals.kinds, self.signals.noise_in_band, search=not self.followed)
 
     @cached_property
     def measured_reading(self):
