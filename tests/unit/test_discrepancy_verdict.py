@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.discrepancy import by_level as levels
-from vibroimpact.discrepancy import verdict
+from vibroimpact.discrepancy import naming, verdict
 from vibroimpact.discrepancy.candidates import candidate_named
 
 THRESHOLD, EXPLAINED, LEFT = 15.0, np.array([0.3, -1.0]), np.array([0.3, -9.0])
@@ -153,3 +153,26 @@ def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
     assert decided(overfit, rest=EXPLAINED, p=0.4).verdict == "none"
     adopted = {"name": "sensor_gain@force", "gain": 52.0, "unit": [0.53]}
     assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [["sensor_gain"]]
+
+
+def screened(**scores):
+    """[Screened] best first of {effect at location: score}, locations after two underscores."""
+    rows = [naming.Screened(candidate_named(name.replace("__", "@")), score, np.zeros(1)) for name, score in scores.items()]
+    return sorted(rows, key=lambda row: -row.score)
+
+
+def names(rows):
+    return [row.candidate.name for row in rows]
+
+
+def test_an_effect_is_looked_at_closely_once_and_the_first_ones_aliases_also_from_afar():
+    rows = screened(clearance__apex=100.0, coulomb_friction__shaker=90.0, cubic_stiffness__apex=35.0, clearance__shaker=80.0, cubic_stiffness__shaker=30.0,
+                    hertz__all=70.0, preload__all=20.0)  # fmt: skip
+    assert names(naming.finalists(rows, LEFT)) == ["clearance@apex", "coulomb_friction@shaker", "hertz@all", "cubic_stiffness@apex"]
+
+
+def test_nothing_is_looked_at_closely_where_nothing_is_missing_and_no_gain_could_be_named():
+    rows = screened(hertz__all=4.0, gap__all=-3.0)
+    assert names(naming.finalists(rows, EXPLAINED)) == []
+    assert names(naming.finalists(rows, LEFT)) == ["hertz@all"]
+    assert names(naming.finalists(screened(hertz__all=6.0), EXPLAINED)) == ["hertz@all"]
