@@ -120,8 +120,6 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     own = null.freed(free)
     law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
     for unit in units:
-        if judgement is not None and np.array_equal(unit, simulated) and best > scores.max():
-            continue  # it was the best by the scatter of its few seeds
         try:
             row = judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000)
         except IntegrationError:
