@@ -193,11 +193,12 @@ def _best_simulated(bench, null, measured, candidate, path, fit):
 
 
 def _calibrated_near(bench, null, measured, candidate, path, fit):
-    """Return the Calibrated of the points near the best simulated one, and not far beyond them: what an effect changes elsewhere tells little."""
+    """Return the Calibrated of the points near the best simulated one, looked for near it: what an effect changes elsewhere tells little, and where nothing was
+    simulated an emulator forgives what it does not know."""
     best = _best_simulated(bench, null, measured, candidate, path, fit)
-    found = calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit)
-    inside = np.clip(found.unit, best - NEAR, best + NEAR)
-    return found if candidate.periodic or np.allclose(found.unit, inside) else replace(found, unit=inside)
+    box = np.clip(best[:, None] + NEAR * np.array([-1.0, 1.0]), 0.0, 1.0)
+    box[list(candidate.periodic)] = 0.0, 1.0
+    return calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit, box)
 
 
 def near(path, unit, periodic):

@@ -111,8 +111,12 @@ class Calibrated:
     profile: list
 
 
-def calibrate(bench, null, measured, candidate, path, fit):
-    """Return the Calibrated of a candidate's path; fit (record,) bool: the records that the parameters are fitted to, beside the lowest one."""
+def calibrate(bench, null, measured, candidate, path, fit, box=None):
+    """Return the Calibrated of a candidate's path.
+
+    fit (record,) bool: the records that the parameters are fitted to, beside the lowest one; box (parameter, 2): where they are looked for, everywhere
+    where it is None.
+    """
     emulator = path_emulator(bench, null, path, candidate)
     low_scores = np.array([linear_score(bench, reading) for reading in path.readings])
     low_at = _lows(path.parameters, np.maximum(low_scores, low_scores.max() - LEAST_LOW))
@@ -138,27 +142,30 @@ def calibrate(bench, null, measured, candidate, path, fit):
     for _ in range(LAW_TURNS):
         law = at(unit, [])[1]
         held = {record: LawLikelihood(null.covariance[record], law[record], null.groups, spread[record]) for record in fitted}
-        unit = _best(lambda point, held=held: fit_score(point, held), unit)
+        unit = _best(lambda point, held=held: fit_score(point, held), unit, box)
     profile = _profile(lambda point: fit_score(point, held), unit)
     records, deviation = at(unit, np.arange(len(measured)))
     interval = np.array([_above(values, score) for values, score in profile])
     return Calibrated(unit, records, low_at(unit), null.mean + uncompressed(deviation, bench.layout), interval, profile)
 
 
-def _best(score, start):
-    """Return unit (parameter,) of the best: the top of a grid over all parameters, or of lines through `start` where a grid would be too large, then uphill."""
-    count, best = len(start), np.array(start, float)
+def _best(score, start, box=None):
+    """Return unit (parameter,) of the best in a box (parameter, 2): the top of a grid over all parameters, or of lines through `start` where a grid would be too
+    large, then uphill."""
+    count = len(start)
+    low, high = np.tile([[0.0], [1.0]], count) if box is None else np.transpose(box)
+    best = np.clip(start, low, high)
     if count in GRID:
-        axis = np.linspace(0.0, 1.0, GRID[count])
-        best = _top(score, np.stack([axes.ravel() for axes in np.meshgrid(*[axis] * count, indexing="ij")], axis=-1))
+        axes = [np.linspace(*ends, GRID[count]) for ends in zip(low, high, strict=True)]
+        best = _top(score, np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=-1))
     else:
         for number in range(count):
             lines = np.repeat(best[None], SCAN, axis=0)
-            lines[:, number] = np.linspace(0.0, 1.0, SCAN)
+            lines[:, number] = np.linspace(low[number], high[number], SCAN)
             best = _top(score, lines)
-    reach = 1.0 / (GRID.get(count, SCAN) - 1)
-    simplex = best + reach * np.vstack([np.zeros(count), np.where(best > 0.5, -1.0, 1.0) * np.eye(count)])
-    found = optimize.minimize(lambda unit: -score(unit), best, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count,
+    reach = (high - low) / (GRID.get(count, SCAN) - 1)
+    simplex = best + np.vstack([np.zeros(count), np.diag(np.where(best > 0.5 * (low + high), -reach, reach))])
+    found = optimize.minimize(lambda unit: -score(unit), best, method="Nelder-Mead", bounds=list(zip(low, high, strict=True)),
                               options={"xatol": FINEST, "fatol": 0.05, "maxfev": 60 * count, "initial_simplex": simplex})  # fmt: skip
     return found.x
 
