@@ -10,8 +10,9 @@ def test_without_a_bank_every_candidate_is_a_file_of_the_run(tmp_path):
     assert [file.stem for file in files] == NAMES and {file.parent for file in files} == {tmp_path / "paths"}
 
 
-def test_what_a_bank_lacks_is_left_out_and_not_made_there(tmp_path):
+def test_what_a_bank_lacks_is_simulated_in_the_run_and_not_made_there(tmp_path):
     bank = tmp_path / "bank"
     (bank / "paths").mkdir(parents=True)
     (bank / "paths" / f"{NAMES[1]}.npz").touch()
-    assert screened_files(NAMES, tmp_path / "run", bank) == [bank / "paths" / f"{NAMES[1]}.npz"]
+    files = screened_files(NAMES, tmp_path / "run", bank)
+    assert [file.parents[1].name for file in files] == ["run", "bank", "run"] and [file.stem for file in files] == NAMES

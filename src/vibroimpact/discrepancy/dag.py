@@ -14,12 +14,9 @@ def screened_names(path):
 
 
 def screened_files(names, folder, bank=""):
-    """Return the files of the screened candidates of a run in a folder; those of a bank (another run's folder) where one is given, as far as it holds them.
-
-    What a bank lacks is left out: simulated here it would be of another campaign than the rest.
-    """
-    files = [Path(bank or folder) / "paths" / f"{name}.npz" for name in names]
-    return [file for file in files if not bank or file.is_file()]
+    """Return the files of the screened candidates of a run in a folder: those of a bank (another run's folder) where one is given and holds them, the run's own else."""
+    own, known = Path(folder) / "paths", Path(bank or folder) / "paths"
+    return [known / f"{name}.npz" if (known / f"{name}.npz").is_file() else own / f"{name}.npz" for name in names]
 
 
 def finalist_names(path):

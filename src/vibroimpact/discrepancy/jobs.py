@@ -86,7 +86,7 @@ def finalist(run, name, chosen, path, quick=False):
     fit, known = naming.fit_mask(bench, null), paths.get(candidate) if isinstance(candidate, Candidate) else None
     if known is None:
         known = started(bench, null, candidate, unit, sizes)
-    elif not run.simulated_here:
+    elif not run.simulated_here(candidate):
         known = own(bench, null, measured, candidate, known, unit, sizes, fit)
         least *= longer(bench, null, measured, known, next(row["score"] for row in chosen["ranked"] if row["name"] == name))
     if known is None:

@@ -1,6 +1,6 @@
 """A job's view of a discrepancy run: the model, the campaign, and what the jobs before it left."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.prepared import Prepared, workbench
 
 @dataclass(frozen=True)
 class Run:
-    """config: checked Config; campaign: file; folder of the results; prepared; path_files: <candidate>.npz of those that are screened; nulls, bank_nulls: files."""
+    """config: checked Config; campaign: file; folder of the results; prepared; path_files: <candidate>.npz of those that are screened, in this folder or a bank's; nulls, bank_nulls: files."""
 
     config: object
     campaign: str
@@ -64,10 +64,9 @@ class Run:
         """Return the Null of the seconds that are screened."""
         return self.null if self.screened_as_compared else store.null_from(self.screening_bench, self.nulls, "screened_")
 
-    @property
-    def simulated_here(self):
-        """Return whether what was screened are runs of this campaign over all that is compared, not moved here from elsewhere."""
-        return self.screened_as_compared and not self.bank_nulls
+    def simulated_here(self, candidate):
+        """Return whether what was screened of a Candidate are runs of this campaign over all that is compared, not moved here from elsewhere."""
+        return self.screened_as_compared and replace(candidate, alone=False).name in self._own
 
     @cached_property
     def screened_paths(self):
@@ -83,7 +82,12 @@ class Run:
         return workbench(self.config, self.campaign, self.prepared, seconds)
 
     def _paths(self, bench, null):
-        """Return {Candidate: Path}, brought from the screened seconds, of a bank where there is one, to a Workbench and its Null."""
-        here = not self.bank_nulls and null is self.screening_null
-        source = None if here else Source(bench, null, self.bank_nulls or self.nulls, "screened_", bool(self.bank_nulls))
-        return known_paths({Path(file).stem: file for file in self.path_files}, source, self.prepared)
+        """Return {Candidate: Path}, brought from the screened seconds, and from the bank what is of it, to a Workbench and its Null."""
+        files = {Path(file).stem: file for file in self.path_files if Path(file).stem not in self._own}
+        found = known_paths(files, Source(bench, null, self.bank_nulls, "screened_", True), self.prepared) if files else {}
+        return found | known_paths(self._own, None if null is self.screening_null else Source(bench, null, self.nulls, "screened_", False), self.prepared)
+
+    @cached_property
+    def _own(self):
+        """Return {candidate name: file} of what was screened by runs of this campaign."""
+        return {Path(file).stem: file for file in self.path_files if Path(file).parents[1] == self.folder}
