@@ -62,7 +62,8 @@ def test_two_that_are_near_are_a_set_and_a_gap_is_never_alone(decided):
 def test_an_alias_that_suffices_is_not_ruled_out(decided):
     both = decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 1000.0)])
     assert both.ambiguity == [["contact_damping"], ["hunt_crossley"]]
-    assert decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 1000.0, LEFT)]).ambiguity == [["contact_damping"]]
+    assert decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 800.0, LEFT)]).ambiguity == [["contact_damping"]]
+    assert decided([finalist("hertz@all", 1200.0), finalist("contact_stiffness@all", 950.0, LEFT)]).ambiguity == [["hertz"], ["contact_stiffness"]]
 
 
 def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):

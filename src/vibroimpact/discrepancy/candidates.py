@@ -126,6 +126,7 @@ class PairEffect:
     below_contact: bool = False
     measured: bool = False
     aliases: tuple = ()
+    quantity: str = ""
 
 
 @dataclass(frozen=True)

@@ -116,12 +116,14 @@ SPREAD = 1.25  # right models of the development campaigns: 205 to 300 for 270 f
 
 def not_told_apart(total, best, sufficient=frozenset()):
     """Return the names whose total gain is too near the best's: within AMBIGUOUS. An alias of the catalogue also within ALIAS_AMBIGUOUS, and wherever it
-    leaves nothing to be explained (sufficient: names of those that do not): two laws of one kind differ by less than two codes of one law."""
+    leaves nothing to be explained (sufficient: names of those that do not): two laws of one kind differ by less than two codes of one law. Laws of one quantity within
+    SAME_QUANTITY: which of them another code, with other contact points, comes nearer to is no property of the structure."""
     first, out = candidate_named(best), []
     for name, (gain, _, _) in total.items():
         other = candidate_named(name)
         alias = bool({*other.ids} & {*first.effect.aliases} or {*first.ids} & {*other.effect.aliases})
         near = gain > total[best][0] - (priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS) or alias and name in sufficient
-        if other.ids != first.ids and near:
+        same = first.effect.quantity and first.effect.quantity == other.effect.quantity and gain > priors.SAME_QUANTITY * total[best][0]
+        if other.ids != first.ids and (near or same):
             out.append(name)
     return out

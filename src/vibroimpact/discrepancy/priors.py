@@ -34,6 +34,7 @@ GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside 
 PARAMETER_COST = 3.0  # of log likelihood per parameter beyond the first
 AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart
 ALIAS_AMBIGUOUS = 40.0  # the same for effects that the catalogue lists as aliases of the best
+SAME_QUANTITY = 0.75  # of the best gain: other laws of the same quantity (of the contact's stiffness, of its damping) above it are not told apart
 NULL_SIGMA = 2.054  # of the best gains of null seeds above their mean: the 98th percentile of a normal law
 NO_EXCESS = 0.5  # floors: below it there is no gap to close
 EXPLAINED_Z = -3.4  # sigma by which a record's chi-square is too large: the model still misses something

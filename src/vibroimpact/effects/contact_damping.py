@@ -19,5 +19,6 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("hunt_crossley",),
+    quantity="contact damping",
     broken=("T5",),
 )

@@ -19,4 +19,5 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("hertz", "plate_flexibility"),
+    quantity="contact stiffness",
 )

@@ -19,5 +19,6 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("contact_stiffness",),
+    quantity="contact stiffness",
     broken=("T2",),
 )
