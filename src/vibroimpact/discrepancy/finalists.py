@@ -87,18 +87,20 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     not worth its runs.
     """
     level, centre, at, own = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, null
-    losing = gains_of(bench, null, measured, path).max() < min(least, HOPELESS * least)
+    gain = gains_of(bench, null, measured, path).max()
+    losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):
         points = [] if losing else _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
         known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
-        losing = losing or gains_of(bench, null, measured, path, own).max() < least
+        before, gain = gain, gains_of(bench, null, measured, path, own).max()
+        losing = losing or gain + (rounds - 1 - number) * max(0.0, gain - before) < least  # rounds to come may bring as much as the last
         if not losing and (at is None or _apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[_nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
             own = null.freed(free)
-            losing = gains_of(bench, null, measured, path, own).max() < least
+            gain = gains_of(bench, null, measured, path, own).max()
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
         scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY

@@ -64,7 +64,7 @@ def screening(run, path, quick=False):
                            "ranked": [{"name": row.candidate.name, "score": row.score, "unit": row.unit.tolist()} for row in ranked]}, indent=1), path)  # fmt: skip
 
 
-QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS, PAIR_ROUNDS = 3, 1, 4, 3
+QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS = 3, 1, 4
 
 
 def least_gain(name, chosen):
@@ -95,8 +95,7 @@ def finalist(run, name, chosen, path, quick=False):
     single, seeds = isinstance(candidate, Candidate), QUICK_SEEDS if quick else priors.FINAL_SEEDS
     if single and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
         candidate, known = placed(bench, null, measured, candidate, known, sizes, fit)
-    rounds = QUICK_ROUNDS if quick else ROUNDS if single else PAIR_ROUNDS
-    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=rounds, least=least, seeds=seeds)
+    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
     if found is not None and not single:
         found = with_parts(bench, null, measured, found, sizes)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
