@@ -62,6 +62,21 @@ def test_a_stop_acts_along_the_force_wherever_it_sits(compared, location):
     assert np.allclose(np.einsum("lp,lpc->lc", normal, model.contact_directions[point]), [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
 
 
+def test_a_stop_that_was_added_is_none_of_all_supports(compared):
+    """An effect of all supports leaves the stop as it is, whichever of the two comes first."""
+    values, _, _, sizes = compared
+    stop, everywhere = Candidate("clearance", "apex"), [Candidate(name, "all") for name in OF_THE_MODEL if "all" in EFFECTS[name].locations(values)]
+    assert len(everywhere) >= 10
+    for other in everywhere:
+        results = []
+        for order in ((stop, other), (other, stop)):
+            varied = values
+            for candidate in order:
+                varied = candidate.variant(varied, candidate.physical([0.6] * len(candidate.effect.parameters), sizes))
+            results.append(varied)
+        assert results[0] == results[1], other.name
+
+
 def test_a_turned_force_drives_what_is_across(compared):
     values, campaign, bare, _ = compared
     model = attach(check_config(Candidate("force_misalignment", "about_z").variant(values, {"angle": 0.4}), "turned"), campaign)

@@ -7,7 +7,7 @@ from vibroimpact.effects.effect import Effect, Parameter
 def apply(values, parameters, location):
     """Return the configuration with a pair of flat stops at a point, across the tube along the force."""
     along = places.across_deg(values, location)
-    support = {"name": "clearance", "at_m": list(values["points"][location]), "height_m": 0.002, "points": 1, "stiffness_N_per_m": parameters["stiffness"],
+    support = {"name": places.STOP, "at_m": list(values["points"][location]), "height_m": 0.002, "points": 1, "stiffness_N_per_m": parameters["stiffness"],
                "gap_m": parameters["half_gap"], "profile": {"kind": "planes", "normals_deg": [along, along - 180.0]}}  # fmt: skip
     return values | {"supports": [*values["supports"], support]}
 

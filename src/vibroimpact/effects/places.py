@@ -5,12 +5,13 @@ import numpy as np
 from vibroimpact.centreline import build_centreline, transverse_directions
 from vibroimpact.config_structure import Path, UTube
 
+STOP = "clearance_stop"  # name of the support that the effect clearance adds
 TUBES = {"u_tube": UTube, "path": Path}
 
 
 def supports(values):
     """Return the places of an effect of contact: all supports together, then each by itself."""
-    names = [support["name"] for support in values["supports"]]
+    names = [support["name"] for support in values["supports"] if support["name"] != STOP]
     return ["all", *names] if len(names) > 1 else ["all"]
 
 
@@ -32,8 +33,12 @@ def masses_and_springs(values):
 
 def with_supports(values, location, change):
     """Return the configuration with change(support) -> {key: value} merged into the supports of a location."""
-    chosen = [support | change(support) if location in ("all", support["name"]) else support for support in values["supports"]]
-    return values | {"supports": chosen}
+    return values | {"supports": [support | change(support) if sits_at(support, location) else support for support in values["supports"]]}
+
+
+def sits_at(support, location):
+    """Return whether a support is at a location: by its name, or at all, which the stop that an effect has added is not of."""
+    return location == support["name"] or location == "all" and support["name"] != STOP
 
 
 def with_element(values, name, point, direction, **laws):

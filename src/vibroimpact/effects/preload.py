@@ -1,11 +1,12 @@
 """A constant force that presses the tube towards one side."""
 
+from vibroimpact.effects import places
 from vibroimpact.effects.effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with a constant force along x and y at the middle of a support, or of each of them."""
-    chosen = [support for support in values["supports"] if support["at_m"] is not None and location in ("all", support["name"])]
+    chosen = [support for support in values["supports"] if support["at_m"] is not None and places.sits_at(support, location)]
     loads = [{"point": f"at_{support['name']}", "direction": direction, "force_N": parameters[name]} for support in chosen
              for name, direction in (("force_x", [1.0, 0.0, 0.0]), ("force_y", [0.0, 1.0, 0.0]))]  # fmt: skip
     excitation = values["excitation"] | {"constant": [*values["excitation"]["constant"], *loads]}
@@ -14,7 +15,7 @@ def apply(values, parameters, location):
 
 def locations(values):
     """Return all supports together, then one by one."""
-    names = [support["name"] for support in values["supports"] if support["at_m"] is not None]
+    names = [support["name"] for support in values["supports"] if support["at_m"] is not None and support["name"] != places.STOP]
     return ["all", *names] if len(names) > 1 else names
 
 
