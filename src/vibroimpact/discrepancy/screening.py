@@ -48,7 +48,7 @@ class Path:
 
 def simulate_path(bench, candidate, parameters, scales, records, seeds=None, first_seed=100):
     """Return the Path of a candidate at normalised parameters (point, parameter)."""
-    seeds = bench.seeds_of_a_batch([*records, bench.signals.lowest]) if seeds is None else seeds
+    seeds = bench.seeds_of_a_batch({*records, bench.signals.lowest}) if seeds is None else seeds
     kept, means, readings = [], [], []
     for number, unit in enumerate(np.atleast_2d(parameters)):
         physical = candidate.physical(unit, scales)
