@@ -1,0 +1,67 @@
+"""The closer look at a candidate, on a law that costs nothing to simulate: it finds what is hidden, at the end of a range as well, and gives up what is far behind."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy import finalists
+from vibroimpact.discrepancy.finalists import Finalist, refine
+from vibroimpact.discrepancy.null import Null
+from vibroimpact.discrepancy.screening import Path
+
+RECORDS, FEATURES, SD, SEEDS = 3, 60, 0.15, 2
+LAYOUT = SimpleNamespace(blend=np.full(FEATURES, 1.0e3))  # compresses nothing
+BENCH = SimpleNamespace(layout=LAYOUT, linear_stage=False)
+
+
+def law(unit):
+    """(record, feature) of a curved law of the parameters, as different in every feature."""
+    rng = np.random.default_rng(8)
+    slopes, bends = rng.standard_normal((2, RECORDS, FEATURES, len(unit)))
+    return 4.0 * np.tanh(slopes @ unit) + 2.0 * bends @ (np.asarray(unit) - 0.4) ** 2
+
+
+@pytest.fixture
+def looked(monkeypatch):
+    """Return the function (truth, start, least) -> (Finalist, how many points were simulated)."""
+
+    def run(truth, start, least=-np.inf):
+        count, rng = [0], np.random.default_rng(1)
+
+        def simulated(bench, candidate, points, *_, **__):
+            count[0] += len(points)
+            features = np.array([law(unit) for unit in points])
+            return Path(np.array(points), features + SD / np.sqrt(SEEDS) * rng.standard_normal(features.shape), np.full(len(points), SEEDS), [None] * len(points))
+
+        def judged(bench, null, measured, candidate, unit, path, found, free, scales, seeds, first_seed):
+            runs = law(unit)[:, None] + SD * rng.standard_normal((RECORDS, seeds, FEATURES))
+            scores = finalists.direct_scores(bench, null, measured, runs.mean(axis=1))
+            return Finalist(candidate, unit, found.interval, scores, 0.0, runs, path, found.profile, free)
+
+        monkeypatch.setattr(finalists, "simulate_path", simulated)
+        monkeypatch.setattr(finalists, "judged", judged)
+        monkeypatch.setattr(finalists, "_free", lambda *_: np.zeros((1, RECORDS, FEATURES)))
+        bare = law(np.zeros(len(truth)))
+        seeds = bare[:, None] + SD * rng.standard_normal((RECORDS, 16, FEATURES))
+        covariance = np.tile(2.0 * SD**2 * np.eye(FEATURES), (RECORDS, 1, 1))
+        null = Null(np.arange(RECORDS), seeds, seeds.mean(axis=1), covariance, covariance, np.zeros(FEATURES, int), LAYOUT.blend)
+        measured = law(truth) + SD * rng.standard_normal((RECORDS, FEATURES))
+        candidate = SimpleNamespace(periodic=(), neutral_unit=lambda scales: np.full(len(truth), np.nan))
+        first = simulated(None, candidate, finalists._around(np.array(start), 0.12, ()))
+        return refine(BENCH, null, measured, candidate, first, {}, np.array([True, True, False]), least=least), count[0]
+
+    return run
+
+
+@pytest.mark.parametrize(("truth", "start"), [((0.62,), (0.4,)), ((0.3, 0.7), (0.5, 0.5)), ((0.8, 0.45, 0.0), (0.7, 0.5, 0.2)), ((1.0, 0.02, 0.5), (0.8, 0.2, 0.4))])
+def test_what_is_hidden_is_found_also_at_the_end_of_a_range(looked, truth, start):
+    found, _ = looked(truth, start)
+    assert found.unit == pytest.approx(np.array(truth), abs=0.03)
+
+
+def test_what_is_far_behind_gets_no_closer_look(looked):
+    _, whole = looked((0.3, 0.7), (0.5, 0.5))
+    behind, few = looked((0.3, 0.7), (0.5, 0.5), least=1.0e6)
+    assert few == 5 < whole  # those that it began with
+    assert behind.features.shape[1] == finalists.FEW_SEEDS
