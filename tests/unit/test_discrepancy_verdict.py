@@ -72,6 +72,8 @@ def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
     assert decided([finalist("gap@left", 300.0), pair]).ambiguity == [["gap"]]
     insufficient = decided([single, finalist("gap@left+dry_friction@all", 400.0, LEFT)])
     assert (insufficient.verdict, insufficient.ambiguity) == ("partly_explained", [["dry_friction", "gap"], ["gap"]])
+    little = decided([single, finalist("gap@left+dry_friction@all", 325.0)])
+    assert (little.verdict, little.ambiguity) == ("partly_explained", [["gap"], ["dry_friction", "gap"]]) and little.chosen is single
     idle = finalist("gap@left+dry_friction@all", 400.0, part=390.0)
     assert decided([single, idle]).chosen is single
 

@@ -30,6 +30,7 @@ LINEAR_RESIDUAL = 2.0  # of the lowest record's residual over noise, in a driven
 UNREAD = 0.5  # of the responses that the force drives: where modes leave more, the lowest record tells nothing of the linear structure
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
 LINEAR_SECOND = 8.0  # the same of two over the better of them
+SECOND_SHARE = 0.1  # of the first effect's gain: a second effect that adds less may be what two codes of the first differ by
 GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside the threshold from null seeds
 PARAMETER_COST = 3.0  # of log likelihood per parameter beyond the first
 AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart

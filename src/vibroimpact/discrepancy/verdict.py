@@ -35,7 +35,9 @@ def decide(bench, null, prepared, found, threshold, p_before):
         without = Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
     if best is None or totals[best.candidate.name][0] < threshold:
         return without
-    if doubles and totals[doubles[0].candidate.name][0] > totals[best.candidate.name][0] + threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z:
+    added = totals[doubles[0].candidate.name][0] - totals[best.candidate.name][0] if doubles else 0.0
+    second = added > threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z
+    if second and added > priors.SECOND_SHARE * totals[best.candidate.name][0]:
         best = doubles[0]
     best = simpler(best, found, totals, prepared)
     left = naming.explained(bench, best.own(null), best.mean, measured)
@@ -49,6 +51,8 @@ def decide(bench, null, prepared, found, threshold, p_before):
             return without  # what the lowest record told, and no more
         if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
             together += whole_sets(linear, [(singles[0].candidate.ids, singles[0].candidate.alone)])
+        elif second:  # nor is a second effect ruled out
+            together += whole_sets(linear, [(sorted(doubles[0].candidate.ids), doubles[0].candidate.alone)])
         return Decision("partly_explained", best, together, totals, left, threshold)
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
 
