@@ -86,7 +86,43 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     fit (record,) bool: the records its parameters are fitted to; least: gain of log likelihood below which a closer look is
     not worth its runs.
     """
-    level, centre, at, own = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, null
+    looked = _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed)
+    path, found, free, simulated = looked.path, looked.found, looked.free, looked.path.parameters[np.argmax(looked.scores)]
+    if looked.losing:
+        units, free, seeds = [simulated], np.zeros((0, *null.mean.shape)), min(seeds, FEW_SEEDS)
+    else:
+        units = _to_judge(candidate, found.unit, simulated, scales)
+        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
+        near_enough = len(free) and len(again) and _apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
+        free = 0.5 * (free + again) if near_enough else again
+    own = null.freed(free)
+    law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
+    for unit in units:
+        try:
+            row = judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000)
+        except IntegrationError:
+            continue  # between points that can be simulated lies one that can not
+        score = direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low
+        if judgement is None or score > best + CLEARLY:
+            judgement, best = row, score
+    return judgement
+
+
+@dataclass(frozen=True)
+class _Searched:
+    """Where stars of runs led: path, of all that was simulated; found: Calibrated; scores (point,) of the path; free: null.free_at of `at` (parameter,); losing: whether it was given up."""
+
+    path: Path
+    found: object
+    scores: np.ndarray
+    free: np.ndarray
+    at: np.ndarray
+    losing: bool
+
+
+def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed):
+    """Return the _Searched of a candidate; arguments as of `refine`."""
+    level, centre, at, free, own = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, None, null
     gain = gains_of(bench, null, measured, path).max()
     losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):
@@ -110,26 +146,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         centre = found.unit if stayed or better or not number else path.parameters[np.argmax(scores)]
         if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
-    found = _with_whole_interval(bench, own, measured, candidate, path, fit, found)
-    simulated = path.parameters[np.argmax(scores)]
-    if losing:
-        units, free, seeds = [simulated], np.zeros((0, *null.mean.shape)), min(seeds, FEW_SEEDS)
-    else:
-        units = _to_judge(candidate, found.unit, simulated, scales)
-        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
-        near_enough = len(free) and len(again) and _apart(found.unit, at, candidate.periodic).max() <= MOVED
-        free = 0.5 * (free + again) if near_enough else again
-    own = null.freed(free)
-    law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
-    for unit in units:
-        try:
-            row = judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000)
-        except IntegrationError:
-            continue  # between points that can be simulated lies one that can not
-        score = direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low
-        if judgement is None or score > best + CLEARLY:
-            judgement, best = row, score
-    return judgement
+    return _Searched(path, _with_whole_interval(bench, own, measured, candidate, path, fit, found), scores, free, at, losing)
 
 
 def with_parts(bench, null, measured, found, scales, first_seed=9000):
