@@ -11,5 +11,5 @@ sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf
 folder, tables = Path(snakemake.output.done).parent, {}
 make_campaign(Plan((0, 0), (), "null", levels=LEVELS, duration=float(snakemake.params.seconds), gain_scatter=0.0, frequency_scatter=0.0, damping_scatter=0.0),
               snakemake.output.campaign, folder / "truth.json", False)  # fmt: skip
-run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables)
+run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables, for_all=True)
 (folder / "tables.pickle").write_bytes(pickle.dumps(tables))

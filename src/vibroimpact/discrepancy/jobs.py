@@ -17,15 +17,9 @@ from vibroimpact.records import read_text, write_text
 UNSEEN_SEEDS = 4  # of each damping
 
 
-def contact_records(bench):
-    """Return (record,): those whose features are compared; the lowest one is read by its modes where it can be."""
-    records = np.arange(len(bench.signals.load))
-    return records[records != bench.signals.lowest] if bench.linear_stage else records
-
-
 def null_part(run, part, path):
     """Simulate a part of the null's seeds and of those with other damping of unseen modes; the features of what is screened are of the same runs."""
-    bench, records = run.bench, contact_records(run.bench)
+    bench, records = run.bench, run.records
     each, unseen = priors.NULL_SEEDS // NULL_PARTS, UNSEEN_SEEDS * len(UNSEEN) // NULL_PARTS
     arrays = {}
     which, turn = part % len(UNSEEN), part // len(UNSEEN)  # a part runs one of the other dampings: few runs would leave most lanes of a batch empty
@@ -42,7 +36,7 @@ def candidate_path(run, candidate, path, quick=False):
     """Simulate a candidate at the points of its design."""
     bench, arrays = run.screening_bench, {}
     for alone in (False, True) if in_place_of_adopted(run.prepared, candidate) else (False,):
-        found = simulate_path(bench, replace(candidate, alone=alone), candidate.design(quick), run.prepared.scales, contact_records(bench))
+        found = simulate_path(bench, replace(candidate, alone=alone), candidate.design(quick), run.prepared.scales, run.records)
         if found is not None:
             arrays |= {alone * store.ALONE + name: value for name, value in store.path_arrays(found).items()}
     store.save(path, **arrays) if arrays else store.save_empty(path)

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from vibroimpact.config import check_config
 from vibroimpact.discrepancy import store
 from vibroimpact.discrepancy.bank import Source, known_paths
@@ -48,6 +50,13 @@ class Run:
     def whole_bench(self):
         """Return the Workbench of whole records."""
         return self._bench(self.prepared.longest_s)
+
+    @property
+    def records(self):
+        """Return (record,): those whose features are compared; the lowest one is read by its modes where it can be, and compared in a bank for campaigns where it can not."""
+        bench = self.bench
+        records = np.arange(len(bench.signals.load))
+        return records[records != bench.signals.lowest] if bench.linear_stage and not self.prepared.for_all else records
 
     @property
     def screened_as_compared(self):

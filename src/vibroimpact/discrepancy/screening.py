@@ -48,7 +48,8 @@ class Path:
 
 def simulate_path(bench, candidate, parameters, scales, records, seeds=None, first_seed=100):
     """Return the Path of a candidate at normalised parameters (point, parameter)."""
-    seeds = bench.seeds_of_a_batch({*records, bench.signals.lowest}) if seeds is None else seeds
+    lowest, records = bench.signals.lowest, list(records)
+    seeds = bench.seeds_of_a_batch({*records, lowest}) if seeds is None else seeds
     kept, means, readings = [], [], []
     for number, unit in enumerate(np.atleast_2d(parameters)):
         physical = candidate.physical(unit, scales)
@@ -57,12 +58,14 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
         low = bench.linear_stage and not candidate.effect.measured
         try:
             model = bench.model(values)
-            responses = bench.respond(model, runs + bench.runs([bench.signals.lowest], 1) * low, candidate.measuring(physical, bench.signals.names))
+            more = bench.runs([lowest], 1) if low and lowest not in records else []
+            responses = bench.respond(model, runs + more, candidate.measuring(physical, bench.signals.names))
         except (IntegrationError, ConfigError):
             continue  # an effect this strong throws the structure off, or is none that a model may have: no measurement comes from there
         kept.append(unit)
         means.append(bench.noisy_features(runs, responses[: len(runs)]).reshape(len(records), seeds, -1).mean(axis=1))
-        readings.append(bench.low_reading(responses[-1] / bench.gains[:, None]) if low else None)
+        lowest_run = -1 if lowest not in records else seeds * records.index(lowest)
+        readings.append(bench.low_reading(responses[lowest_run] / bench.gains[:, None]) if low else None)
     return Path(np.array(kept), np.array(means), np.full(len(means), seeds), readings) if kept else None
 
 
