@@ -26,7 +26,7 @@ def law(unit):
 def looked(monkeypatch):
     """Return the function (truth, start, least) -> (Finalist, how many points were simulated)."""
 
-    def run(truth, start, least=-np.inf):
+    def run(truth, start, least=-np.inf, signed=(), law=law):
         count, rng = [0], np.random.default_rng(1)
 
         def simulated(bench, candidate, points, *_, **__):
@@ -47,7 +47,7 @@ def looked(monkeypatch):
         covariance = np.tile(2.0 * SD**2 * np.eye(FEATURES), (RECORDS, 1, 1))
         null = Null(np.arange(RECORDS), seeds, seeds.mean(axis=1), covariance, covariance, np.zeros(FEATURES, int), LAYOUT.blend)
         measured = law(truth) + SD * rng.standard_normal((RECORDS, FEATURES))
-        candidate = SimpleNamespace(periodic=(), neutral_unit=lambda scales: np.full(len(truth), np.nan))
+        candidate = SimpleNamespace(periodic=(), signed=signed, neutral_unit=lambda scales: np.full(len(truth), np.nan))
         first = simulated(None, candidate, finalists._around(np.array(start), 0.12, ()))
         return refine(BENCH, null, measured, candidate, first, {}, np.array([True, True, False]), least=least), count[0]
 
@@ -58,6 +58,19 @@ def looked(monkeypatch):
 def test_what_is_hidden_is_found_also_at_the_end_of_a_range(looked, truth, start):
     found, _ = looked(truth, start)
     assert found.unit == pytest.approx(np.array(truth), abs=0.03)
+
+
+def mirrored(unit):
+    """A law that is nearly as strong with other signs of its parameters, 0.5 being nothing."""
+    x, y = 2.0 * np.asarray(unit) - 1.0
+    slopes = np.random.default_rng(9).standard_normal((4, RECORDS, FEATURES))
+    return 8.0 * (slopes[0] * x**2 + slopes[1] * y**2) + 0.5 * slopes[2] * x * y + 0.5 * slopes[3] * x
+
+
+def test_other_signs_are_tried(looked):
+    truth, start = np.array([0.86, 0.2]), np.array([0.16, 0.22])
+    assert looked(truth, start, law=mirrored)[0].unit[0] < 0.5  # a star alone stays where it began
+    assert looked(truth, start, signed=(0, 1), law=mirrored)[0].unit == pytest.approx(truth, abs=0.04)
 
 
 def test_what_is_far_behind_gets_no_closer_look(looked):

@@ -82,11 +82,16 @@ class Candidate:
         chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
         axes = np.meshgrid(*[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij")
         points = np.stack([axis.ravel() for axis in axes], axis=-1)
-        if chosen is None and len(axes) > 1 and all(parameter.neutral == 0.0 and parameter.low == -parameter.high for parameter in self.effect.parameters):
+        if chosen is None and len(axes) > 1 and len(self.signed) == len(axes):
             # components of a vector: along one axis alone the structure may keep its symmetry, which no point beside it tells of
             along = np.vstack([0.5 + side * np.eye(len(axes)) for side in (-ALONG, ALONG)])
             points = np.vstack([points, along])
         return points
+
+    @property
+    def signed(self):
+        """Return the numbers of the parameters that are as strong with the other sign."""
+        return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.neutral == 0.0 and parameter.low == -parameter.high)
 
     @property
     def periodic(self):
@@ -166,6 +171,11 @@ class Pair:
     def split(self):
         """Return the number of the first one's parameters."""
         return len(self.first.effect.parameters)
+
+    @property
+    def signed(self):
+        """Return the numbers of the parameters that are as strong with the other sign."""
+        return self.first.signed + tuple(number + self.split for number in self.second.signed)
 
     @property
     def periodic(self):

@@ -1,5 +1,6 @@
 """Finalists: candidates refined by stars of runs round the best that was simulated, and judged by what is simulated there and nothing else."""
 
+import itertools
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,6 +20,7 @@ HOPELESS = 0.5  # of that gain: below it, nothing more is simulated round it
 FEW_SEEDS = 4  # of what is not worth a closer look, and of a pair's parts
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
+IMAGED = 2  # rounds that try other signs as well
 NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
 
 
@@ -126,7 +128,8 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
     gain = gains_of(bench, null, measured, path).max()
     losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):
-        points = [] if losing else _unknown(_around(centre, STEPS[level], candidate.periodic), path, candidate.periodic)
+        looked_at = [*_around(centre, STEPS[level], candidate.periodic), *(_images(centre, candidate.signed) if number < IMAGED else [])]
+        points = [] if losing else _unknown(looked_at, path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
         known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
@@ -268,6 +271,16 @@ def offset(one, other, periodic):
 def _apart(one, other, periodic):
     """Return (parameter,) the distances of two points (an angle wraps round)."""
     return np.abs(offset(one, other, periodic))
+
+
+def _images(unit, signed):
+    """Return [(parameter,)]: unit with other signs of the parameters that have one. Powers are alike there, and only what is odd tells them apart: a star does not reach them."""
+    points = []
+    for sides in itertools.product((False, True), repeat=len(signed)):
+        turned = np.array(unit)
+        turned[list(signed)] = np.where(sides, 1.0 - turned[list(signed)], turned[list(signed)])
+        points.append(turned)
+    return points[1:]
 
 
 def _around(unit, step, periodic):
