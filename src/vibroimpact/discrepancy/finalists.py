@@ -12,12 +12,13 @@ from vibroimpact.discrepancy.null import free_at
 from vibroimpact.discrepancy.screening import LAW_TURNS, Path, calibrate, direct_scores, linear_score, null_scores, path_emulator, simulate_path
 
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
-ENOUGH = 2  # this close is close enough where no parameter is known better
-ROUNDS = 4  # at most
+ENOUGH = 2  # this close is close enough where no parameter is known better, and nothing was gained
+INSIDE = 0.7  # of a star's radius: an optimum farther out is at its edge, and may lie beyond
+ROUNDS = 6  # at most
 START_STEP, STARTS, NEW = 0.12, 3, 0.003
 PLACED_FROM = 0.5  # of the gain that makes a closer look worth its runs: from there on other places are tried
 HOPELESS = 0.5  # of that gain: below it, nothing more is simulated round it
-FEW_SEEDS = 4  # of what is not worth a closer look, and of a pair's parts
+FEW_SEEDS = 4  # of what is not worth a closer look
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
 IMAGED = 2  # rounds that try other signs as well
@@ -143,20 +144,20 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
         scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY
-        stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= STEPS[level])
+        stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= INSIDE * STEPS[level])
         if stayed or number and not better:
             level += 1  # it stayed within what was looked at, or led nowhere: look closer
         centre = found.unit if stayed or better or not number else path.parameters[np.argmax(scores)]
-        if losing or level == len(STEPS) or level >= ENOUGH and np.ptp(found.interval, axis=1).min() > STEPS[level]:
+        if losing or level == len(STEPS) or level >= ENOUGH and stayed and not better and np.ptp(found.interval, axis=1).min() > STEPS[level]:
             break
     return _Searched(path, _with_whole_interval(bench, own, measured, candidate, path, fit, found), scores, free, at, losing)
 
 
-def with_parts(bench, null, measured, found, scales, first_seed=9000):
-    """Return the Finalist of a pair with what each of the two explains without the other, by runs of its own."""
+def with_parts(bench, null, measured, found, scales, first_seed=8000):
+    """Return the Finalist of a pair with what each of the two explains without the other, by as many runs of its own: by fewer it would explain less."""
     own, parts = found.own(null), []
     for part, unit in found.candidate.parts(found.unit):
-        alone = simulate_path(bench, part, unit, scales, null.records, FEW_SEEDS, first_seed)
+        alone = simulate_path(bench, part, unit, scales, null.records, found.features.shape[1], first_seed)
         parts.append(-np.inf if alone is None else float(direct_scores(bench, own, measured, alone.features[0]).sum() + linear_score(bench, alone.readings[0])))
     return replace(found, parts=np.array(parts))
 

@@ -35,7 +35,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
         without = Decision(named if rest.min() > priors.EXPLAINED_Z else "partly_explained", None, linear, totals, rest, threshold)
     if best is None or totals[best.candidate.name][0] < threshold:
         return without
-    added = totals[doubles[0].candidate.name][0] - totals[best.candidate.name][0] if doubles else 0.0
+    added = min(totals[doubles[0].candidate.name][0] - totals[best.candidate.name][0], doubles[0].total - doubles[0].parts.max()) if doubles else 0.0
     second = added > threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z
     if second and added > priors.SECOND_SHARE * totals[best.candidate.name][0]:
         best = doubles[0]
