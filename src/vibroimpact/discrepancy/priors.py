@@ -1,4 +1,7 @@
-"""Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on."""
+"""Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
+
+Fourth freeze: after what the third draw showed of the search.
+"""
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
 FREQUENCY_SD = 0.003  # of each modal frequency
