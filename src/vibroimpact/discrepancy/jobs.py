@@ -114,9 +114,17 @@ def known_finalists(files):
 
 
 def ordered(bench, null, found):
-    """Return ([Finalist] best first, totals {name: (all, fit, held-out)})."""
-    totals = naming.totals(bench, null, bench.measured_features[null.records], found)
-    return sorted(found, key=lambda row: -totals[row.candidate.name][0]), totals
+    """Return ([Finalist] best first, totals {name: (all, fit, held-out)}); before one that leaves something comes one not told apart from it that leaves nothing."""
+    measured = bench.measured_features[null.records]
+    totals = naming.totals(bench, null, measured, found)
+    found = sorted(found, key=lambda row: -totals[row.candidate.name][0])
+    singles = [row for row in found if isinstance(row.candidate, Candidate)]
+    left = {row.candidate.name: second.needed(naming.explained(bench, row.own(null), row.mean, measured)) for row in singles}
+    if singles and left[singles[0].candidate.name]:
+        near = naming.not_told_apart({name: totals[name] for name in left}, singles[0].candidate.name)
+        enough = next((row for row in singles if row.candidate.name in near and not left[row.candidate.name]), None)
+        found = found if enough is None else [enough, *(row for row in found if row is not enough)]
+    return found, totals
 
 
 def pairs(run, files, screened, path, quick=False):

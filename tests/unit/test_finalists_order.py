@@ -1,0 +1,40 @@
+"""Who comes first of what was looked at closely."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy import jobs
+from vibroimpact.discrepancy.candidates import candidate_named
+
+ENOUGH, LEFT = np.array([0.3, -1.0]), np.array([0.3, -4.9])
+
+
+@pytest.fixture
+def ordered(monkeypatch):
+    """Return the function ({name: (gain, explained)}) -> [name], best first."""
+
+    def run(rows):
+        monkeypatch.setattr(jobs.naming, "totals", lambda *_: {name: (gain, gain, 0.0) for name, (gain, _) in rows.items()})
+        monkeypatch.setattr(jobs.naming, "explained", lambda bench, null, mean, *_: rows[mean][1])
+        found = [SimpleNamespace(candidate=candidate_named(name), mean=name, own=lambda null: null) for name in rows]
+        bench = SimpleNamespace(measured_features={"records": None})
+        return [row.candidate.name for row in jobs.ordered(bench, SimpleNamespace(records="records"), found)[0]]
+
+    return run
+
+
+def test_the_larger_gain_comes_first(ordered):
+    assert ordered({"gap@all": (300.0, LEFT), "hertz@all": (500.0, LEFT)}) == ["hertz@all", "gap@all"]
+
+
+def test_of_two_that_are_not_told_apart_the_one_that_suffices_comes_first(ordered):
+    rows = {"hertz@all": (663.0, LEFT), "contact_stiffness@all": (641.0, ENOUGH), "plate_flexibility@all": (170.0, ENOUGH)}
+    assert ordered(rows)[:2] == ["contact_stiffness@all", "hertz@all"]
+    assert ordered(rows | {"hertz@all": (663.0, ENOUGH)})[0] == "hertz@all"
+    assert ordered(rows | {"contact_stiffness@all": (400.0, ENOUGH)})[0] == "hertz@all"
+
+
+def test_nothing_comes_first_of_nothing(ordered):
+    assert ordered({}) == []
