@@ -158,6 +158,12 @@ def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
     assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [["sensor_gain"]]
 
 
+def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided):
+    part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
+    assert verdict.refuted(part, -2.8) and not verdict.refuted(part, 0.4) and not verdict.refuted(part, None)
+    assert not verdict.refuted(decided([finalist("gap@all", 300.0)]), -2.8)
+
+
 def screened(**scores):
     """[Screened] best first of {effect at location: score}, locations after two underscores."""
     rows = [naming.Screened(candidate_named(name.replace("__", "@")), score, np.zeros(1)) for name, score in scores.items()]

@@ -78,6 +78,8 @@ def conclude(run, screening, final_files, provenance, quick=False):
         p_before = mapping.global_p(bench, null, measured, before.compared[null.records], law=False)
     gaps = {name: misfit.misfit_of(whole, records, chosen_cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
             {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
+    if verdict.refuted(decision, gaps["holdout"]["closed_fraction"]):
+        decision = replace(decision, verdict="unknown", ambiguity=[])
     difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)
     ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured, decision)
     content = {

@@ -57,6 +57,11 @@ def decide(bench, null, prepared, found, threshold, p_before):
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
 
 
+def refuted(decision, closed):
+    """Return whether a partial explanation makes the held-out records worse: closed, the share of the misfit that it closes there, None where there is none to close."""
+    return decision.verdict == "partly_explained" and closed is not None and closed < priors.WORSE
+
+
 def simpler(best, found, totals, prepared):
     """Return the Finalist of one effect in the place of the adopted one that is as good as the best beside it, or the best: fewer effects are the better answer."""
     if prepared.adopted is None or best.candidate.alone:
