@@ -12,7 +12,7 @@ from tests.discrepancy_results import CHANNELS, EDGES, RECORDS, made_up_candidat
 from vibroimpact.discrepancy_page import discrepancy_page, verdict_sentence
 from vibroimpact.discrepancy_results import read_results
 from vibroimpact.figures.discrepancy import discrepancy_figures
-from vibroimpact.figures.discrepancy_ranking import axis_label, shown_unit
+from vibroimpact.figures.discrepancy_ranking import axis_label, found_of, named_of, shown_unit
 from vibroimpact.figures.discrepancy_spectra import chosen_channels, chosen_records
 from vibroimpact.records import write_record, write_table
 
@@ -91,6 +91,20 @@ def test_the_ranking_shows_scores_and_the_null_line(folder, figures):
     assert [bar.get_width() for bar in bars[:3]] == [84.0, 82.0, 61.0]
     assert bars[0].get_facecolor() != bars[1].get_facecolor() != bars[6].get_facecolor()  # named; simulated; emulated
     assert "best by chance (98 %)" in [line.get_label() for line in figures["discrepancy_ranking"].axes["main"].lines]
+
+
+def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair_each_estimate():
+    def candidate(law, value, ids=("foliate_obstacle",), name="angle"):
+        return {"ids": list(ids), "name": law, "parameters": {name: {"value": value}}}
+
+    effects = [{"id": "foliate_obstacle", "parameters": {"angle": {"value": 0.4}}}, {"id": "gap", "parameters": {"gap_factor": {"value": 1.2}}}]
+    lands, lobes = candidate("foliate_lands@all", 0.4), candidate("foliate_obstacle@all", 0.5)
+    pair = candidate("pair", 0.4, ("foliate_obstacle", "gap"), "foliate_obstacle.angle")
+    assert named_of([lobes, lands], effects[:1]) == [lands]
+    assert named_of([lobes, lands, pair], effects) == [pair]
+    assert named_of([lobes, lands], []) == [lobes]
+    assert found_of(effects, "gap.gap_factor") == {"value": 1.2} and found_of(effects, "angle") == {"value": 0.4} and found_of(effects, "gap.angle") is None
+    assert axis_label("foliate_obstacle.angle", "deg") == "foliate obstacle, angle (deg)"
 
 
 def test_parameters_are_shown_in_units_of_the_field():

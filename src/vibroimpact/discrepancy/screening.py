@@ -10,6 +10,7 @@ from vibroimpact.config import ConfigError
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.candidates import unit_grid
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import compressed, uncompressed
 from vibroimpact.discrepancy.likelihood import LawLikelihood, log_likelihood
@@ -159,8 +160,7 @@ def _best(score, start, box=None):
     low, high = np.tile([[0.0], [1.0]], count) if box is None else np.transpose(box)
     best = np.clip(start, low, high)
     if count in GRID:
-        axes = [np.linspace(*ends, GRID[count]) for ends in zip(low, high, strict=True)]
-        best = _top(score, np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=-1))
+        best = _top(score, low + (high - low) * unit_grid(count, GRID[count]))
     else:
         for number in range(count):
             lines = np.repeat(best[None], SCAN, axis=0)

@@ -96,12 +96,9 @@ def _true(value):
 def profiles_figure(candidates, effects):
     """Return [Sheet] of score against parameter value for the named effects, for the best candidate where none is named; effects that the lowest record told have none.
 
-    candidates: contents of candidates/*.json, {ids, profile: [{parameter, unit, values, score}]}, best first; effects: those of verdict.json.
+    candidates: contents of candidates/*.json, {ids, parameters: {name: {value}}, profile: [{parameter, unit, values, score}]}, best first; effects: those of verdict.json.
     """
-    chosen = [candidate for effect in effects for candidate in candidates if candidate["ids"] == [effect["id"]]]
-    whole = [candidate for candidate in candidates if sorted(candidate["ids"]) == sorted(effect["id"] for effect in effects)]
-    part = [candidate for candidate in candidates if set(candidate["ids"]) <= {effect["id"] for effect in effects}][:1]
-    shown = whole or chosen or (part if effects else candidates[:1])
+    shown = named_of(candidates, effects)
     curves = [curve for candidate in shown for curve in candidate.get("profile", [])][:MOST_PROFILES]
     caption = ("Score against each parameter, the others re-fitted, where they were scanned. Line: value of the verdict; shaded: its 90 % interval. "
                "A curve that is flat, or highest at an end, tells nothing about its parameter.")
@@ -120,6 +117,29 @@ def profiles_figure(candidates, effects):
     return [sheet]
 
 
+def named_of(candidates, effects):
+    """Return [candidate] that the effects of a verdict are, by their estimates, since a catalogue may hold two laws of one effect: those of most effects; the
+    best candidate where none is named."""
+    if not effects:
+        return candidates[:1]
+    named = [candidate for candidate in candidates if all(_same(effects, name, row["value"]) for name, row in candidate.get("parameters", {}).items())
+             and set(candidate["ids"]) <= {effect["id"] for effect in effects}]  # fmt: skip
+    most = max((len(candidate["ids"]) for candidate in named), default=0)
+    return [candidate for candidate in named if len(candidate["ids"]) == most]
+
+
+def found_of(effects, name):
+    """Return {value, low, high} of a parameter, by its name alone or, of one effect of several, as effect.parameter; None where the effects have none."""
+    effect_id, _, parameter = name.rpartition(".")
+    rows = [effect["parameters"] for effect in effects if not effect_id or effect["id"] == effect_id]
+    return next((row[parameter] for row in rows if parameter in row), None)
+
+
+def _same(effects, name, value):
+    found = found_of(effects, name)
+    return found is not None and bool(np.isclose(found["value"], value, rtol=1e-6, atol=0.0))
+
+
 def _profile(sheet, axes, curve, effects):
     """Draw one profile, with the interval of the verdict where it names the parameter."""
     unit, factor = shown_unit(curve["unit"], curve["values"])
@@ -128,7 +148,7 @@ def _profile(sheet, axes, curve, effects):
     score = np.asarray(curve["score"], float)[order]
     place = sheet.record(axes, curve["parameter"], parameter=np.asarray(curve["values"], float)[order], score=score)
     axes.plot(values, score, color=BLUE, marker="o", markersize=4, gid=place)
-    found = next((effect["parameters"][curve["parameter"]] for effect in effects if curve["parameter"] in effect["parameters"]), None)
+    found = found_of(effects, curve["parameter"])
     if found is not None:
         axes.axvspan(factor * found["low"], factor * found["high"], color=ORANGE, alpha=0.2, linewidth=0, zorder=0)
         axes.axvline(factor * found["value"], color=ORANGE, linewidth=1.6)
@@ -145,9 +165,7 @@ def levels_figure(candidates, effects):
 
     candidates as in profiles_figure, with by_level: [{parameter, unit, load_rms_N, gap_m, value, low, high}], lists of equal length.
     """
-    names = sorted(effect["id"] for effect in effects)
-    best = next((candidate for candidate in candidates if sorted(candidate["ids"]) == names), candidates[0] if candidates else {})
-    curves = best.get("by_level", [])[:MOST_PROFILES]
+    curves = next((candidate["by_level"] for candidate in named_of(candidates, effects) if candidate.get("by_level")), [])[:MOST_PROFILES]
     caption = ("Parameters of the named effect, fitted to each record alone, with 90 % intervals, against load; the band is the interval of the fit "
                "to all records. A law that is "
                "right gives the same value at every level and gap; a trend says that another law hides behind the name.")
@@ -170,7 +188,7 @@ def levels_figure(candidates, effects):
             axes.errorbar(load[here] * 1.04**index, factor * value[here], spread, fmt=GAP_MARKERS[index % len(GAP_MARKERS)],
                           color=GAP_COLOURS[index % len(GAP_COLOURS)],
                           capsize=3, label=f"gap {gap * 1e3:.3g} mm" if np.isfinite(gap) else None)
-        found = next((effect["parameters"][curve["parameter"]] for effect in effects if curve["parameter"] in effect["parameters"]), None)
+        found = found_of(effects, curve["parameter"])
         if found is not None:
             axes.axhspan(factor * found["low"], factor * found["high"], color=BLACK, alpha=0.1, linewidth=0)
         axes.set_xscale("log")
@@ -189,4 +207,4 @@ def shown_unit(unit, values):
 
 def axis_label(parameter, unit):
     """Return the label of a parameter's axis: its name in words and its unit."""
-    return f"{parameter.replace('_', ' ')} ({'-' if unit in NO_UNIT else unit})"
+    return f"{parameter.replace('_', ' ').replace('.', ', ')} ({'-' if unit in NO_UNIT else unit})"
