@@ -15,7 +15,9 @@ from vibroimpact.completion.store import read_values
 from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.completion.study import STUDIES, study_of
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
-from vibroimpact.discrepancy.dag import NULL_PARTS, finalist_names, frozen_seed, pair_names, screened_files, screened_names, shard_of
+from vibroimpact.discrepancy.dag import (
+    NULL_PARTS, SUITE_NAME, SUITE_S, finalist_names, frozen_seed, pair_names, screened_files, screened_names, shard_of, suite_name,
+)
 from vibroimpact.discrepancy.suite_check import CHECKS
 from vibroimpact.provenance import imported_files
 from vibroimpact.stages import stage_params
@@ -31,7 +33,7 @@ FIGURES = {
 
 
 # What a run is asked to look at; no key of the study.
-REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds", "compared_s") if name in config}
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds", "compared_s", "draw") if name in config}
 
 
 def number_asked(name):
@@ -41,13 +43,14 @@ def number_asked(name):
     except ValueError:
         value = -1
     if value is not None and not value > 0:
-        sys.exit(f"{name} = '{REQUEST[name]}': give a positive number of seconds, as in --config {name}=49")
+        sys.exit(f"{name} = '{REQUEST[name]}': give a positive number, as in --config {name}={1 if name == 'draw' else 49}")
     return value
 
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
 COMPARED_S = number_asked("compared_s")
+DRAW = int(number_asked("draw") or 0)
 QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
 
 
@@ -250,3 +253,14 @@ wildcard_constraints:
     structure="|".join(STRUCTURES),
     law=r"[a-z_]+\.[A-Za-z0-9_-]+",
     load=r"[0-9.e+-]+",
+
+
+def plain_verdicts(seed, suite, campaigns):
+    """The verdicts of the plain suite that another one of its seed is held against, as an input; a sentence where the other is the plain one."""
+    def paths(wildcards):
+        plain = f"results/{suite_name(seed)}"
+        if suite == plain:
+            sys.exit("suite_difference compares with the plain suite: say what is other, as in --config seconds=49 or draw=1")
+        return [f"{plain}/campaign_{number:04d}/verdict.json" for number in campaigns]
+
+    return paths

@@ -1,5 +1,5 @@
 # A measured campaign against a model: `snakemake -j2 discrepancy --config campaign=FILE [model=config/x.yaml]`.
-# bank=FOLDER takes the candidates' simulations from another campaign of the same model, loads and gaps.
+# bank=FOLDER takes the candidates' simulations from another campaign of the same model, loads and gaps; draw=1, 2.. simulates with other seeds.
 
 BANK = REQUEST.get("bank", "")
 NULLS = [f"{DISCREPANCY}/null/{part}.npz" for part in range(NULL_PARTS)]
@@ -21,6 +21,7 @@ checkpoint discrepancy_prepare:
     params:
         config=MODEL.model_dump(mode="json"),
         compared_s=COMPARED_S,
+        draw=DRAW,
     log:
         f"{DISCREPANCY}/logs/prepare.log",
     benchmark:

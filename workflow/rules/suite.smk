@@ -1,32 +1,35 @@
 # The hidden-effect suite: `snakemake -j2 suite --config suite_seed=1 count=90 shard=0/1`. Shards add up; what is done is kept. Without a seed it is that of
-# the frozen thresholds.
+# the frozen thresholds. seconds=49 makes the same campaigns longer, draw=1 simulates with other seeds; `suite_difference` holds such a suite against the plain one.
 
 SUITE_SEED = int(REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")))
-SUITE = f"results/suite_{SUITE_SEED}"
-SUITE_S = int(REQUEST.get("seconds", 20))
+SUITE = f"results/{suite_name(SUITE_SEED, int(number_asked('seconds') or SUITE_S), DRAW)}"
 SUITE_CAMPAIGNS = shard_of(int(REQUEST.get("count", 12)), REQUEST.get("shard", "0/1"))
 SUITE_FIGURES = ("suite_rates", "suite_confusion", "suite_strength", "suite_parameters")  # in the order of the page
+
+
+wildcard_constraints:
+    suite=SUITE_NAME,
+    number=r"[0-9]{4}",
 
 
 rule suite_bank:
     input:
         library=library("suite_bank"),
     output:
-        campaign=f"{SUITE}/bank/bank.nc",
-        done=f"{SUITE}/bank/verdict.json",
+        campaign="results/{suite}/bank/bank.nc",
+        done="results/{suite}/bank/verdict.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        seconds=SUITE_S,
     log:
-        f"{SUITE}/logs/bank.log",
+        "results/{suite}/logs/bank.log",
     benchmark:
-        f"{SUITE}/benchmarks/bank.tsv"
+        "results/{suite}/benchmarks/bank.tsv"
     threads: 1
     resources:
         mem_mb=3000,
         runtime=120,
     message:
-        "Suite: candidates simulated on a campaign with nothing hidden, for all campaigns of the suite"
+        "Candidates simulated on a campaign with nothing hidden, for all campaigns of {wildcards.suite}"
     script:
         "../scripts/suite_bank.py"
 
@@ -34,24 +37,22 @@ rule suite_bank:
 rule suite_campaign:
     input:
         library=library("suite_campaign"),
-        bank=f"{SUITE}/bank/verdict.json",
+        bank="results/{suite}/bank/verdict.json",
     output:
-        verdict=f"{SUITE}/campaign_{{number}}/verdict.json",
-        truth=f"{SUITE}/truth/campaign_{{number}}.json",
+        verdict="results/{suite}/campaign_{number}/verdict.json",
+        truth="results/{suite}/truth/campaign_{number}.json",
     params:
         config=MODEL.model_dump(mode="json"),
-        seed=SUITE_SEED,
-        seconds=SUITE_S,
     log:
-        f"{SUITE}/logs/campaign_{{number}}.log",
+        "results/{suite}/logs/campaign_{number}.log",
     benchmark:
-        f"{SUITE}/benchmarks/campaign_{{number}}.tsv"
+        "results/{suite}/benchmarks/campaign_{number}.tsv"
     threads: 1
     resources:
         mem_mb=3000,
         runtime=60,
     message:
-        "Suite: campaign {wildcards.number}"
+        "Campaign {wildcards.number} of {wildcards.suite}"
     script:
         "../scripts/suite_campaign.py"
 
@@ -83,6 +84,30 @@ rule suite:
         f"Suite of seed {SUITE_SEED}: {SUITE}/report.html"
     script:
         "../scripts/suite.py"
+
+
+rule suite_difference:
+    input:
+        library=library("suite_difference"),
+        plain=plain_verdicts(SUITE_SEED, SUITE, SUITE_CAMPAIGNS),
+        other=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
+    output:
+        campaigns=f"{SUITE}/difference.csv",
+        rates=f"{SUITE}/difference_rates.csv",
+    params:
+        campaigns=[f"campaign_{number:04d}" for number in SUITE_CAMPAIGNS],
+    log:
+        f"{SUITE}/logs/suite_difference.log",
+    benchmark:
+        f"{SUITE}/benchmarks/suite_difference.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    message:
+        f"Verdicts of {SUITE} against those of the plain one: {SUITE}/difference.csv"
+    script:
+        "../scripts/suite_difference.py"
 
 
 include: "suite_check.smk"

@@ -7,6 +7,6 @@ from vibroimpact.discrepancy.prepared import prepare
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 config = check_config(snakemake.params.config, "model")
-prepared = prepare(config, snakemake.input.campaign, asked_s=snakemake.params.compared_s)
+prepared = prepare(config, snakemake.input.campaign, asked_s=snakemake.params.compared_s, draw=snakemake.params.draw)
 prepared.write(snakemake.output.prepared)
 print(prepared.refusal or f"adopted: {prepared.adopted}")

@@ -4,12 +4,14 @@ import pickle
 import sys
 from pathlib import Path
 
+from vibroimpact.discrepancy.dag import suite_of
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
 folder, tables = Path(snakemake.output.done).parent, {}
-make_campaign(Plan((0, 0), (), "null", levels=LEVELS, duration=float(snakemake.params.seconds), gain_scatter=0.0, frequency_scatter=0.0, damping_scatter=0.0),
+suite = suite_of(snakemake.wildcards.suite)
+make_campaign(Plan((0, 0), (), "null", levels=LEVELS, duration=float(suite["seconds"]), gain_scatter=0.0, frequency_scatter=0.0, damping_scatter=0.0),
               snakemake.output.campaign, folder / "truth.json", False)  # fmt: skip
-run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables, for_all=True)
+run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables, for_all=True, draw=suite["draw"])
 (folder / "tables.pickle").write_bytes(pickle.dumps(tables))

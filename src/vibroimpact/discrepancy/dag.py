@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from pathlib import Path
 
 QUICK_S = 10.0  # records are cut to it where the run must be quick
@@ -32,6 +33,21 @@ def pair_names(path):
 def frozen_seed(path):
     """Return the seed of an acceptance draw: of the content of the file of thresholds and priors, so that the draw can not precede the freeze."""
     return int(hashlib.sha256(Path(path).read_bytes()).hexdigest()[:8], 16)
+
+
+SUITE_S = 20  # of every record of a suite's campaigns
+SUITE_NAME = r"suite_[0-9]+(?:_[0-9]+s)?(?:_draw[0-9]+)?"
+
+
+def suite_name(seed, seconds=SUITE_S, draw=0):
+    """Return the name of the suite of a seed, of campaigns of so many seconds, judged with a draw of the simulations' seeds."""
+    return f"suite_{seed}" + f"_{seconds}s" * (seconds != SUITE_S) + f"_draw{draw}" * bool(draw)
+
+
+def suite_of(name):
+    """Return {seed, seconds, draw} of a suite's name."""
+    seed, seconds, draw = re.fullmatch(r"suite_([0-9]+)(?:_([0-9]+)s)?(?:_draw([0-9]+))?", name).groups()
+    return {"seed": int(seed), "seconds": int(seconds or SUITE_S), "draw": int(draw or 0)}
 
 
 def shard_of(count, shard):

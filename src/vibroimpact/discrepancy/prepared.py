@@ -31,7 +31,7 @@ class Prepared:
     {name, unit, gain, interval} of the linear effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every linear candidate,
     best first; screened: names of the candidates that only simulation tells of; linear_stage: whether the lowest record tells of the linear structure; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
     noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them, see windows; fit: the ModalFit of the lowest record on
-    the model with what was adopted; for_all: see prepare.
+    the model with what was adopted; for_all, draw: see prepare.
     """
 
     checks: list
@@ -51,6 +51,7 @@ class Prepared:
     screened_s: float | None = None
     fit: dict | None = None
     for_all: bool = False
+    draw: int = 0
 
     def write(self, path):
         """Write as JSON."""
@@ -89,7 +90,7 @@ def workbench(config, campaign_path, prepared, seconds):
     campaign, refusal = usable_campaign(campaign_path, prepared.checks)
     if refusal:
         raise CampaignError(refusal)
-    bench = Workbench(config, campaign, seconds)
+    bench = Workbench(config, campaign, seconds, prepared.draw)
     bench.linear_stage = prepared.linear_stage
     if prepared.delays:
         delay = np.array([prepared.delays.get(name, 0.0) for name in bench.signals.names])
@@ -116,11 +117,12 @@ def adopt(bench, prepared):
     bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
-def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None, for_all=False):
+def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None, for_all=False, draw=0):
     """Return the Prepared of a campaign file and a checked Config.
 
     tables {candidate name: LinearTable}: known from another campaign of the same model, extended; without: ids of effects that are not in the
-    catalogue this time; asked_s: compare so many seconds of each record; for_all: look at every candidate and record, for campaigns of the same model that need them.
+    catalogue this time; asked_s: compare so many seconds of each record; for_all: look at every candidate and record, for campaigns of the same model that need them; draw: number of the
+    draw of seeds, of which verdicts shall not depend.
     """
     _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
@@ -139,7 +141,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
             refusal = str(error)
     if refusal is not None:
         return Prepared(checks, refusal)
-    out = Prepared(checks, longest_s=longest_s, compared_s=seconds, screened_s=screened_s(seconds), not_testable=not_testable(held(campaign)), for_all=for_all)
+    out = Prepared(checks, longest_s=longest_s, compared_s=seconds, screened_s=screened_s(seconds), not_testable=not_testable(held(campaign)), for_all=for_all, draw=draw)
     gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
     reach = float(gap.max()) if len(gap) else float(np.nanstd(bench.signals.response[bench.signals.load.argmax()]) / (2.0 * np.pi * bench.signals.band_Hz[0]) ** 2)
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]

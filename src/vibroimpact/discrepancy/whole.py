@@ -15,17 +15,17 @@ from vibroimpact.discrepancy.prepared import Prepared, prepare
 from vibroimpact.discrepancy.run import Run
 
 
-def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, workers=1, without=frozenset(), for_all=False):
+def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, workers=1, without=frozenset(), for_all=False, draw=0):
     """Run a campaign file against a configuration in plain values; results as the workflow's in the folder.
 
     bank: folder of another campaign of the same model, loads and gaps, whose candidates' simulations serve this one if it holds all that is looked at; tables {name: LinearTable}, likewise
     of its linear candidates, extended here; workers: processes; without: ids of effects that are not in the catalogue this time; for_all: this is to be such a bank,
-    of every candidate and record that any campaign may ask for.
+    of every candidate and record that any campaign may ask for; draw: number of the draw of seeds.
     """
     folder, config = Path(folder), check_config(values, "model")
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
-        prepare(config, campaign, longest_s, tables, without, for_all=for_all).write(prepared_file)
+        prepare(config, campaign, longest_s, tables, without, for_all=for_all, draw=draw).write(prepared_file)
     prepared = Prepared.read(prepared_file)
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
     run = Run(config, str(campaign), folder, prepared, (), tuple(nulls), ())

@@ -20,15 +20,16 @@ from vibroimpact.kernels import LANES
 FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
 TOUCHES = 0.98  # of the gap: a linear response that comes that near is not taken for free of contact
 SETTLING_S = 4.0  # until a run from rest has forgotten it
+DRAW = 1000000  # seeds from the first of a draw to that of the next
 SAME = 1.0e-5  # relative difference of two responses without contact
 
 
 class Workbench:
-    """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s where given."""
+    """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s where given; draw: number of the draw of seeds."""
 
-    def __init__(self, config, campaign, longest_s=None):
+    def __init__(self, config, campaign, longest_s=None, draw=0):
         config = with_channel_points(config, campaign)
-        self.config, self.campaign = config, campaign
+        self.config, self.campaign, self.draw = config, campaign, draw
         self.signals = signals_of(campaign, longest_s)
         self.bare = attach(config, campaign)
         self.layout = feature_layout(self.signals, campaign["channel_point"].values)
@@ -119,7 +120,8 @@ class Workbench:
 
     def runs(self, records, seeds, first_seed=0):
         """Return [(record, gap, seed)] of `seeds` runs of every record."""
-        return [(int(record), float(self.signals.gap[record]), first_seed + seed) for record in records for seed in range(seeds)]
+        first = first_seed + DRAW * self.draw
+        return [(int(record), float(self.signals.gap[record]), first + seed) for record in records for seed in range(seeds)]
 
     def noisy_features(self, runs, responses):
         """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each cut to the valid samples of its record."""
