@@ -12,6 +12,7 @@ from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gains_of, own, placed, refine, started, with_parts
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
+from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.records import read_text, write_text
 
 UNSEEN_SEEDS = 4  # of each damping
@@ -69,7 +70,11 @@ def least_gain(name, chosen):
     if "pairs" in chosen:
         return chosen["least"]
     effects = {part.split("@")[0] for part in name.split("+")}
-    return LOSING * max((row["score"] for row in chosen["ranked"] if row["name"].split("@")[0] not in effects), default=-np.inf)
+    others = [(row["score"], row["name"].split("@")[0]) for row in chosen["ranked"] if row["name"].split("@")[0] not in effects]
+    if not others:
+        return -np.inf
+    score, first = max(others)
+    return (ALIAS_LOSING if effects & set(EFFECTS[first].aliases) else LOSING) * score
 
 
 def finalist(run, name, chosen, path, quick=False):
@@ -103,6 +108,7 @@ def longer(bench, null, measured, path, screened):
 
 
 LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
+ALIAS_LOSING = 0.35  # the same for its aliases: to name one alone is to say that it is not the other
 LONGER = 3.0
 
 
