@@ -5,9 +5,10 @@ import pytest
 from vibroimpact.discrepancy.suite_check import CHECKS, table
 
 
-def verdict(kind, *sets):
+def verdict(kind, *sets, factor=None):
     """The part of verdict.json that is looked at."""
-    return {"verdict": kind, "ambiguity_set": [list(row) for row in sets]}
+    rows = [] if factor is None else [{"id": "gap", "parameters": {"gap_factor": {"value": factor}}}]
+    return {"verdict": kind, "ambiguity_set": [list(row) for row in sets], "effects": [], "most_probable": rows}
 
 
 @pytest.mark.parametrize("name, said, right", [
@@ -19,7 +20,10 @@ def verdict(kind, *sets):
     ("force_gain", verdict("named", ["sensor_gain"]), True),
     ("force_gain", verdict("ambiguous", ["gap"], ["sensor_gain"]), False),
     ("contact_damping", verdict("ambiguous", ["hunt_crossley"], ["contact_damping"]), True),
-    ("contact_damping", verdict("named", ["dry_friction"]), False)])  # fmt: skip
+    ("contact_damping", verdict("named", ["dry_friction"]), False),
+    ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"], factor=0.63), True),
+    ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"], factor=1.6), False),
+    ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"]), False)])  # fmt: skip
 def test_a_verdict_is_right_or_told_why_not(name, said, right):
     (row,) = table({name: said})
     assert row["right"] == right and bool(row["faults"]) != right
@@ -30,3 +34,9 @@ def test_every_check_hides_what_the_generator_knows():
     from vibroimpact_truth.measure import INSTRUMENTS
 
     assert {effect for check in CHECKS.values() for effect, _ in check.hidden} <= {*EFFECTS, *INSTRUMENTS}
+
+
+def test_what_only_the_model_has_is_in_its_configuration(study_config):
+    plain = study_config.model_dump(mode="json")
+    assert CHECKS["nothing"].values(plain) == plain
+    assert {support["gap_factor"] for support in CHECKS["swapped"].values(plain)["supports"]} == {1.6}

@@ -14,5 +14,5 @@ name, verdict = snakemake.wildcards.check, Path(snakemake.output.verdict)
 plan = Plan((SEED, list(CHECKS).index(name)), CHECKS[name].hidden, levels=LEVELS, duration=SECONDS)
 with TemporaryDirectory(dir=verdict.parent) as work:
     make_campaign(plan, Path(work, "campaign.nc"), Path(work, "truth.json"), False)
-    run_campaign(snakemake.params.config, Path(work, "campaign.nc"), work, {}, longest_s=QUICK_S, quick=True)
+    run_campaign(CHECKS[name].values(snakemake.params.config), Path(work, "campaign.nc"), work, {}, longest_s=QUICK_S, quick=True)
     Path(work, "verdict.json").rename(verdict)
