@@ -48,7 +48,7 @@ def looked(monkeypatch):
         null = Null(np.arange(RECORDS), seeds, seeds.mean(axis=1), covariance, covariance, np.zeros(FEATURES, int), LAYOUT.blend)
         measured = law(truth) + SD * rng.standard_normal((RECORDS, FEATURES))
         candidate = SimpleNamespace(periodic=(), signed=signed, neutral_unit=lambda scales: np.full(len(truth), np.nan))
-        first = simulated(None, candidate, finalists._around(np.array(start), 0.12, ()))
+        first = simulated(None, candidate, finalists.around(np.array(start), 0.12, ()))
         return refine(BENCH, null, measured, candidate, first, {}, np.array([True, True, False]), least=least), count[0]
 
     return run

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.discrepancy import estimate_scatter
-from vibroimpact.discrepancy.finalists import Finalist, near, offset
+from vibroimpact.discrepancy.finalists import Finalist
+from vibroimpact.discrepancy.neighbourhood import near, offset
 from vibroimpact.discrepancy.screening import Path
 
 
@@ -34,6 +35,20 @@ def widened(monkeypatch):
 def test_an_estimate_that_its_own_seeds_scatter_is_no_better_known(widened):
     low, high = widened([0.45, 0.55, 0.45, 0.55], [0.0, 100.0, 0.0, 0.0])
     assert (0.5 - low, high - 0.5) == pytest.approx((np.hypot(0.01, 1.645 * 0.05),) * 2)
+
+
+def test_seeds_are_looked_for_near_the_estimate(monkeypatch, widened):
+    boxes = []
+
+    def calibrate(*arguments):
+        boxes.append(arguments[-1].tolist())
+        return SimpleNamespace(unit=np.array([0.5]))
+
+    widened([0.5], [0.0, 100.0, 0.0, 0.0])  # the other parts of the interval are made up from here on
+    monkeypatch.setattr(estimate_scatter, "calibrate", calibrate)
+    found = Finalist(SimpleNamespace(periodic=()), np.array([0.1]), np.array([[0.0, 0.2]]), None, 0.0, np.zeros((1, 2, 1)), path_at(0.1, 0.2, 0.3, 0.4), [], np.zeros((0, 1, 1)))
+    estimate_scatter.with_scatter(None, SimpleNamespace(freed=lambda free: SimpleNamespace(scattered=lambda features: None)), None, found)
+    assert boxes == [[[0.0, pytest.approx(0.3)]]] * 2
 
 
 def test_seeds_that_agree_leave_the_interval(widened):

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.finalists import near, offset, scores_along
+from vibroimpact.discrepancy.finalists import scores_along
 from vibroimpact.discrepancy.naming import fit_mask
+from vibroimpact.discrepancy.neighbourhood import box_round, near, offset
 from vibroimpact.discrepancy.screening import calibrate
 
 EXCLUDED = 80.0  # of log likelihood: more than the scatter of two seeds, by which neighbours differ by 50
@@ -20,7 +21,8 @@ def with_scatter(bench, null, measured, found):
     """
     candidate, own, path, fit = found.candidate, found.own(null), found.path, fit_mask(bench, null)
     known = path.of(near(path, found.unit, candidate.periodic))
-    moved = [offset(calibrate(bench, own, found.features[:, seed], candidate, known, fit).unit, found.unit, candidate.periodic)
+    box = box_round(found.unit, candidate.periodic)
+    moved = [offset(calibrate(bench, own, found.features[:, seed], candidate, known, fit, box).unit, found.unit, candidate.periodic)
              for seed in range(found.features.shape[1])]  # fmt: skip
     scatter = priors.NINETY_SD * np.sqrt(np.mean(np.square(moved), axis=0))
     below, above = (np.hypot(side * (found.interval[:, end] - found.unit), scatter) for end, side in ((0, -1.0), (1, 1.0)))

@@ -1,6 +1,5 @@
 """Finalists: candidates refined by stars of runs round the best that was simulated, and judged by what is simulated there and nothing else."""
 
-import itertools
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import other_places
+from vibroimpact.discrepancy.neighbourhood import NEAR, NEW, apart, around, box_round, images, near, nearest, unknown
 from vibroimpact.discrepancy.null import free_at
 from vibroimpact.discrepancy.screening import LAW_TURNS, Path, calibrate, direct_scores, linear_score, null_scores, path_emulator, simulate_path
 
@@ -15,14 +15,13 @@ STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a r
 ENOUGH = 2  # this close is close enough where no parameter is known better, and nothing was gained
 INSIDE = 0.7  # of a star's radius: an optimum farther out is at its edge, and may lie beyond
 ROUNDS = 6  # at most
-START_STEP, STARTS, NEW = 0.12, 3, 0.003
+START_STEP, STARTS = 0.12, 3
 PLACED_FROM = 0.5  # of the gain that makes a closer look worth its runs: from there on other places are tried
 HOPELESS = 0.5  # of that gain: below it, nothing more is simulated round it
 FEW_SEEDS = 4  # of what is not worth a closer look
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
 IMAGED = 2  # rounds that try other signs as well
-NEAR = 0.2  # of the searched range: points farther from the best no longer help to calibrate
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ class Finalist:
 
 def started(bench, null, candidate, unit, scales, first_seed=2000):
     """Return the Path round normalised parameters of a candidate that was not screened: a pair, or an effect at another place."""
-    return simulate_path(bench, candidate, _around(unit, START_STEP, candidate.periodic), scales, null.records, first_seed=first_seed)
+    return simulate_path(bench, candidate, around(unit, START_STEP, candidate.periodic), scales, null.records, first_seed=first_seed)
 
 
 def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=2000):
@@ -96,7 +95,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     else:
         units = _to_judge(candidate, found.unit, simulated, scales)
         again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
-        near_enough = len(free) and len(again) and _apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
+        near_enough = len(free) and len(again) and apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
         free = 0.5 * (free + again) if near_enough else again
     own = null.freed(free)
     law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
@@ -129,22 +128,22 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
     gain = gains_of(bench, null, measured, path).max()
     losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):
-        looked_at = [*_around(centre, STEPS[level], candidate.periodic), *(_images(centre, candidate.signed) if number < IMAGED else [])]
-        points = [] if losing else _unknown(looked_at, path, candidate.periodic)
+        looked_at = [*around(centre, STEPS[level], candidate.periodic), *(images(centre, candidate.signed) if number < IMAGED else [])]
+        points = [] if losing else unknown(looked_at, path, candidate.periodic)
         fresh = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed + 500 * number) if len(points) else None
         known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
         before, gain = gain, gains_of(bench, null, measured, path, own).max()
         losing = losing or gain + (rounds - 1 - number) * max(0.0, gain - before) < least  # rounds to come may bring as much as the last
-        if not losing and (at is None or _apart(centre, at, candidate.periodic).max() > MOVED):
-            at = path.parameters[_nearest(path, centre, candidate.periodic)]
+        if not losing and (at is None or apart(centre, at, candidate.periodic).max() > MOVED):
+            at = path.parameters[nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
             own = null.freed(free)
             gain = gains_of(bench, null, measured, path, own).max()
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
         scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY
-        stayed = np.all(_apart(found.unit, centre, candidate.periodic) <= INSIDE * STEPS[level])
+        stayed = np.all(apart(found.unit, centre, candidate.periodic) <= INSIDE * STEPS[level])
         if stayed or number and not better:
             level += 1  # it stayed within what was looked at, or led nowhere: look closer
         centre = found.unit if stayed or better or not number else path.parameters[np.argmax(scores)]
@@ -162,9 +161,10 @@ def with_parts(bench, null, measured, found, scales, first_seed=8000):
     return replace(found, parts=np.array(parts))
 
 
-def _nearest(path, unit, periodic):
-    """Return the number of the point of a path that is nearest to unit (parameter,)."""
-    return int(np.argmin([np.sum(_apart(unit, other, periodic) ** 2) for other in path.parameters]))
+def gain_of_part(bench, null, measured, found):
+    """Return the gain of log likelihood over the null of the better one of the two effects of a Finalist of a pair, without the other."""
+    return found.parts.max() - null_scores(bench, null, measured).sum() - linear_score(bench, None)
+
 
 
 def _free(bench, null, candidate, unit, scales, first_seed):
@@ -174,10 +174,6 @@ def _free(bench, null, candidate, unit, scales, first_seed):
     except IntegrationError:
         return np.zeros((0, *null.mean.shape))
 
-
-def _unknown(points, path, periodic):
-    """Return those of points (point, parameter) that a path does not hold."""
-    return np.array([unit for unit in points if not any(np.all(_apart(unit, other, periodic) < NEW) for other in path.parameters)])
 
 
 def law_at(bench, null, candidate, path, unit):
@@ -219,14 +215,8 @@ def _calibrated_near(bench, null, measured, candidate, path, fit):
     """Return the Calibrated of the points near the best simulated one, looked for near it: what an effect changes elsewhere tells little, and where nothing was
     simulated an emulator forgives what it does not know."""
     best = _best_simulated(bench, null, measured, candidate, path, fit)
-    box = np.clip(best[:, None] + NEAR * np.array([-1.0, 1.0]), 0.0, 1.0)
-    box[list(candidate.periodic)] = 0.0, 1.0
-    return calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit, box)
+    return calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit, box_round(best, candidate.periodic))
 
-
-def near(path, unit, periodic):
-    """Return (point,) bool: the points of a path near unit (parameter,)."""
-    return np.array([_apart(unit, other, periodic).max() for other in path.parameters]) <= NEAR
 
 
 def _with_whole_interval(bench, null, measured, candidate, path, fit, found):
@@ -258,39 +248,9 @@ def judged(bench, null, measured, candidate, unit, path, found, free, scales, se
     runs = bench.runs(null.records, seeds, first_seed)
     features = bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1)
     scores = direct_scores(bench, null.scattered(features), measured, features.mean(axis=1))
-    nearest = int(np.argmin(np.sum((path.parameters - unit) ** 2, axis=1)))
+    reading = path.readings[nearest(path, unit, candidate.periodic)]
     interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)
-    return Finalist(candidate, unit, interval, scores, linear_score(bench, path.readings[nearest]), features, path, found.profile, free)
+    return Finalist(candidate, unit, interval, scores, linear_score(bench, reading), features, path, found.profile, free)
 
 
-def offset(one, other, periodic):
-    """Return (parameter,) one minus other of two points, the short way round where an angle wraps."""
-    difference = one - other
-    return np.where(np.isin(np.arange(len(one)), periodic), (difference + 0.5) % 1.0 - 0.5, difference)
 
-
-def _apart(one, other, periodic):
-    """Return (parameter,) the distances of two points (an angle wraps round)."""
-    return np.abs(offset(one, other, periodic))
-
-
-def _images(unit, signed):
-    """Return [(parameter,)]: unit with other signs of the parameters that have one. Powers are alike there, and only what is odd tells them apart: a star does not reach them."""
-    points = []
-    for sides in itertools.product((False, True), repeat=len(signed)):
-        turned = np.array(unit)
-        turned[list(signed)] = np.where(sides, 1.0 - turned[list(signed)], turned[list(signed)])
-        points.append(turned)
-    return points[1:]
-
-
-def _around(unit, step, periodic):
-    """Return (point, parameter): unit and its neighbours along each parameter, within 0 to 1 (an angle wraps round)."""
-    points = [unit]
-    for number in range(len(unit)):
-        for side in (-step, step):
-            moved = np.array(unit)
-            moved[number] = (moved[number] + side) % 1.0 if number in periodic else np.clip(moved[number] + side, 0.0, 1.0)
-            if not np.allclose(moved, unit):
-                points.append(moved)
-    return np.array(points)

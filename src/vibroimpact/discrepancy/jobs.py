@@ -9,9 +9,10 @@ from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gains_of, own, placed, refine, started, with_parts
+from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gain_of_part, gains_of, own, placed, refine, started, with_parts
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
+from vibroimpact.discrepancy.verdict import idle
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.records import read_text, write_text
 
@@ -97,6 +98,11 @@ def finalist(run, name, chosen, path, quick=False):
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
     if found is not None and not single:
         found = with_parts(bench, null, measured, found, sizes)
+        if idle(found, chosen["threshold"]) and gain_of_part(bench, null, measured, found) > least:
+            # one of the two explains it where its own search never was: it is looked at closely there, and no pair is left
+            candidate, unit = found.candidate.parts(found.unit)[int(np.argmax(found.parts))]
+            known = started(bench, null, candidate, unit, sizes, first_seed=9000)
+            found = refine(bench, null, measured, candidate, known, sizes, fit, least=least, seeds=seeds, first_seed=10000)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
@@ -134,10 +140,10 @@ def ordered(bench, null, found):
 
 
 def pairs(run, files, screened, path, quick=False):
-    """Write the pairs to simulate, {pairs: {name: unit}}: none where one effect explains the measurement, or none is found at all."""
+    """Write the pairs to simulate, {pairs: {name: unit}, least, threshold}: none where one effect explains the measurement, or none is found at all."""
     out, least, found, threshold = {}, None, known_finalists(files), screened["threshold"]
     if quick or not found:
-        write_text(json.dumps({"pairs": out, "least": None}), path)
+        write_text(json.dumps({"pairs": out, "least": None, "threshold": threshold}), path)
         return
     bench, null, paths = run.bench, run.null, run.paths
     found, totals = ordered(bench, null, found)
@@ -149,7 +155,7 @@ def pairs(run, files, screened, path, quick=False):
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}
-    write_text(json.dumps({"pairs": out, "least": least}, indent=1), path)
+    write_text(json.dumps({"pairs": out, "least": least, "threshold": threshold}, indent=1), path)
 
 
 def read_json(path):

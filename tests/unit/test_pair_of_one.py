@@ -1,0 +1,51 @@
+"""A pair of which one effect explains as much alone becomes that effect, looked at closely where the pair led."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy import jobs
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.finalists import Finalist
+
+PAIR = candidate_named("hertz@all+plate_flexibility@all")
+UNIT = np.array([0.9, 0.5, 0.8])
+START = -400.0  # log likelihood of the bare model
+
+
+@pytest.fixture
+def looked_at(monkeypatch):
+    """Return the function (total of the pair, of its parts) -> [(name, unit) of every close look], the file's name last."""
+
+    def run(total, parts, least=100.0):
+        looks, saved = [], []
+
+        def refine(bench, null, measured, candidate, known, *_, **__):
+            looks.append((candidate.name, known))
+            return Finalist(candidate, UNIT, None, np.array([total]), 0.0, None, None, [], None)
+
+        monkeypatch.setattr(jobs, "refine", refine)
+        monkeypatch.setattr(jobs, "started", lambda bench, null, candidate, unit, *_, **__: np.asarray(unit).tolist())
+        monkeypatch.setattr(jobs, "with_parts", lambda bench, null, measured, found, _: Finalist(found.candidate, found.unit, None, found.scores, 0.0, None, None, [], None, np.array(parts)))
+        monkeypatch.setattr(jobs, "gain_of_part", lambda bench, null, measured, found: found.parts.max() - START)
+        monkeypatch.setattr(jobs.naming, "fit_mask", lambda *_: None)
+        monkeypatch.setattr(jobs.store, "finalist_arrays", lambda found: {"name": found.candidate.name})
+        monkeypatch.setattr(jobs.store, "save", lambda path, name: saved.append(name))
+        run = SimpleNamespace(bench=SimpleNamespace(measured_features={"r": None}), null=SimpleNamespace(records="r"), paths={}, prepared=SimpleNamespace(scales={}))
+        jobs.finalist(run, PAIR.name, {"pairs": {PAIR.name: UNIT.tolist()}, "least": least, "threshold": 15.0}, None)
+        return [*looks, *saved]
+
+    return run
+
+
+def test_the_effect_that_explains_as_much_alone_takes_the_pairs_place(looked_at):
+    assert looked_at(550.0, [-330.0, 570.0]) == [(PAIR.name, UNIT.tolist()), ("plate_flexibility@all", [0.5, 0.8]), "plate_flexibility@all"]
+
+
+def test_a_pair_of_two_remains_one(looked_at):
+    assert looked_at(550.0, [-330.0, 500.0]) == [(PAIR.name, UNIT.tolist()), PAIR.name]
+
+
+def test_an_effect_that_is_known_to_explain_more_is_not_looked_at_again(looked_at):
+    assert looked_at(550.0, [-330.0, 570.0], least=980.0) == [(PAIR.name, UNIT.tolist()), PAIR.name]
