@@ -1,6 +1,6 @@
 """Marching a batch of cases through time: checks before, the kernel, statistics and energies after."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from .potential import stored_energy
 from .stopwatch import Stopwatch
 
 CHUNK_TICKS = 2000  # steps between visits to Python, in units of RATIO: its forces fit the second-level cache
+ROOM, SETTLED = 0.7, 12.0  # damping ratio under which a structure comes to rest, and by how much: exp(-SETTLED)
 
 
 @dataclass
@@ -80,17 +81,33 @@ class Schedule:
         return ticks * RATIO
 
 
-def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive, receive=None) -> Lanes:
+def march_lanes(model: ModalModel, schedule: Schedule, gap, imperfection, drive, receive=None, initial=None) -> Lanes:
     """Integrate up to LANES cases side by side.
 
     gap (case,) m; imperfection (contact_point, 2, case) m, added to the obstacles' centres; drive: function
     (first, count) -> (count, force_channel, case) force in N at steps first, first + 1, ... (0 to schedule.steps).
     receive: function (first, displacement, acceleration, force) that takes the time series as they come: those of Lanes, float32, from
     sample first on, in arrays that are used again; Lanes then holds none, and no array grows with the duration.
+    initial: (mode, LANES) modal amplitudes in which every lane starts at rest, see `resting`; the model's initial state when left out.
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the run diverged.
     """
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
-    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap), contraction).finish(receive)
+    return _Run(model, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), drive, np.size(gap), contraction, initial).finish(receive)
+
+
+def resting(model: ModalModel, schedule: Schedule, gap, imperfection):
+    """Return (mode, LANES) modal amplitudes in which each case rests under its dead loads, against its supports where it must; arguments as of march_lanes.
+
+    None where it rests at zero: no dead load, all supports centred; or nowhere: a mode is free. Found by a march with the modes damped to ROOM of critical.
+    """
+    if not (model.constant_force.any() or model.centre_offset.any()) or not (model.omega > 0.0).all():
+        return None
+    damped = replace(model, damping=2.0 * ROOM * model.omega, initial_displacement=np.zeros(model.modes), initial_velocity=np.zeros(model.modes))
+    contraction, channels = checked_contraction(damped, schedule.steps_per_second, schedule.scheme), model.drive_shapes.shape[1]
+    run = _Run(damped, schedule, to_lanes(gap, 1.0), to_lanes(imperfection, 0.0), lambda first, count: np.zeros((count, channels, np.size(gap))), np.size(gap), contraction)
+    for ticks in _chunks(round(SETTLED / (ROOM * model.omega.min()) * schedule.steps_per_second / RATIO), run.chunk):
+        run.advance(ticks, 0, recorded=False)
+    return run.state.displacement[-1][run.layout.place]
 
 
 def to_lanes(values, padding):
@@ -104,14 +121,15 @@ def to_lanes(values, padding):
 class _Run:
     """One batch on its way: the kernel's arrays and the sums carried from chunk to chunk."""
 
-    def __init__(self, model, schedule, gap, imperfection, drive, cases, contraction):
+    def __init__(self, model, schedule, gap, imperfection, drive, cases, contraction, initial=None):
         self.model, self.schedule, self.drive, self.cases, self.contraction = model, schedule, drive, cases, contraction
         self.layout = ModalLayout(model, schedule.scheme)
         self.dt = 1.0 / schedule.steps_per_second
         self.modal = self.layout.modal(self.dt)
         self.contact, self.laws = self.layout.contact(gap, imperfection, contraction), self.layout.laws(gap)
         self.state, self.tally, self.work = self.layout.state(), self.layout.tally(), self.layout.work()
-        start_state(self.layout, self.modal, self.contact, self.laws, self.state, self.work, self.forces(0, 1)[0])
+        start_state(self.layout, self.modal, self.contact, self.laws, self.state, self.work, self.forces(0, 1)[0],
+                    None if initial is None else (initial, np.zeros_like(initial)))  # fmt: skip
         tail = schedule.filter.second.size - schedule.filter.step
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
         self.output = self.layout.output(schedule.filter.phase_weights(), tail + self.chunk, schedule.steps_per_second)

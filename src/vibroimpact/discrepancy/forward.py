@@ -1,12 +1,13 @@
 """Simulating a campaign's records: the measured force on the model, the response as its sensors would have kept it."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from vibroimpact.excitation import resample_measured
-from vibroimpact.integrate import Schedule, march_lanes
-from vibroimpact.kernels import LANES, RATIO
+from vibroimpact.integrate import Schedule, march_lanes, resting
+from vibroimpact.kernels import LANES, RATIO, SLOTS
 
 IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
 NO_GAP_M = 1.0  # where a record has no clearance
@@ -45,7 +46,8 @@ def simulate_records(model, schedule, forces, runs, kinds, extra=()):
     """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed), LANES of them at a time.
 
     kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is the integral of neither: refused by the checks.
-    A run's seed draws the tiny offset of the obstacles that makes two runs of an impacting tube differ.
+    Before a record begins, the structure rests under its dead loads, against its supports where it must. A run's seed draws
+    the tiny offset of the obstacles that makes two runs of an impacting tube differ.
     """
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
     acceleration = np.array([kind == "acceleration" for kind in kinds])
@@ -55,13 +57,24 @@ def simulate_records(model, schedule, forces, runs, kinds, extra=()):
         offsets = np.stack([np.random.default_rng([seed, record]).uniform(-IMPERFECTION, IMPERFECTION, (len(model.support_of_point), 2)) * gap
                             for (record, _, seed), gap in zip(batch, gaps, strict=True)], axis=-1)  # fmt: skip
 
-        def drive(at, count, batch=batch):
-            return np.stack([forces.values(record)[at : at + count] for record, _, _ in batch], axis=-1)
+        initial = resting(model, schedule, gaps, offsets)
+        led, lead = (schedule, 0) if initial is None else _led(schedule)
+
+        def drive(at, count, batch=batch, lead=lead):
+            silent = min(max(lead - at, 0), count)
+            force = np.stack([forces.values(record)[max(at - lead, 0) : max(at - lead + count, 0)] for record, _, _ in batch], axis=-1)
+            return np.pad(force, ((silent, 0), (0, 0), (0, 0)))
 
         def receive(at, displacement, accelerations, _, first=first, size=len(batch)):
             stop = at + displacement.shape[-1]
             out[first : first + size, acceleration, at:stop] = accelerations[:, acceleration]
             out[first : first + size, ~acceleration, at:stop] = displacement[:, ~acceleration]
 
-        march_lanes(model, schedule, gaps, offsets, drive, receive)
+        march_lanes(model, led, gaps, offsets, drive, receive, initial)
     return out
+
+
+def _led(schedule):
+    """Return (Schedule, steps): with as long a start-up as the output filter looks back, so that it sees a structure that does not rest at zero at rest."""
+    ticks = schedule.filter.delay + SLOTS
+    return replace(schedule, start_up=ticks * RATIO / schedule.steps_per_second), ticks * RATIO

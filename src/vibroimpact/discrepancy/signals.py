@@ -1,5 +1,6 @@
 """A campaign as arrays: forces and responses in SI, the excited band, the noise of every channel."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ DEFAULT_BAND_HZ = (5.0, 200.0)
 EXCITED = 1.0e-3  # of the largest smoothed force PSD: above it a line is excited
 QUIET = 0.75  # of half the sampling frequency: where the anti-alias filter begins
 QUIET_ABOVE = 1.6  # times the band's upper end
+PARTS, BELOW, LEAST_LINES = 12, 5.0, 40  # of the spectrum, from this much below the band; lines of a part that tells its density
+FAR_BELOW = 0.4  # of the density above the band: a part below it is no scatter
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,10 @@ def excited_band(force, rate):
 
 
 def noise_of(campaign, response, rate, band):
-    """Return (channel,) RMS of the noise: as the campaign says, or from the lowest record above the excited band; 0 where neither tells."""
+    """Return (channel,) RMS of the noise: as the campaign says, or from the lowest record above the excited band; 0 where neither tells.
+
+    Impacts fill the range above the band. Where a part of the spectrum is far below it, the noise can be no more than that.
+    """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float)
     valid = response[:, np.isfinite(response).all(axis=0)]
@@ -116,5 +122,14 @@ def noise_of(campaign, response, rate, band):
     quiet = (frequency > QUIET_ABOVE * band[1]) & (frequency < QUIET * 0.5 * rate)
     if quiet.sum() < 50:
         return np.zeros(len(response))
-    density = np.median(np.abs(np.fft.rfft(window * valid, axis=-1)[:, quiet]) ** 2, axis=-1) / np.log(2.0)  # a median of exponentials, as a mean
-    return np.sqrt(density / np.sum(window**2))
+    power = np.abs(np.fft.rfft(window * valid, axis=-1)) ** 2
+    edges = np.geomspace(band[0] / BELOW, QUIET * 0.5 * rate, PARTS + 1)
+    parts = [(frequency >= low) & (frequency < high) for low, high in itertools.pairwise(edges)]
+    density = _density(power[:, quiet])
+    least = np.min([density, *(_density(power[:, part]) for part in parts if part.sum() >= LEAST_LINES)], axis=0)
+    return np.sqrt(np.where(least < FAR_BELOW * density, least, density) / np.sum(window**2))
+
+
+def _density(power):
+    """Return (channel,) the mean of (channel, line), from the median: lines of noise are exponentials, and a few of something else do not count."""
+    return np.median(power, axis=-1) / np.log(2.0)
