@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.screening import Path
 
 RECORDS, FEATURES, SD, SEEDS = 3, 60, 0.15, 2
 LAYOUT = SimpleNamespace(blend=np.full(FEATURES, 1.0e3))  # compresses nothing
-BENCH = SimpleNamespace(layout=LAYOUT, linear_stage=False)
+BENCH = SimpleNamespace(layout=LAYOUT, linear_stage=False, reads_lowest=False)
 
 
 def law(unit):
@@ -71,6 +71,13 @@ def test_other_signs_are_tried(looked):
     truth, start = np.array([0.86, 0.2]), np.array([0.16, 0.22])
     assert looked(truth, start, law=mirrored)[0].unit[0] < 0.5  # a star alone stays where it began
     assert looked(truth, start, signed=(0, 1), law=mirrored)[0].unit == pytest.approx(truth, abs=0.04)
+
+
+def test_other_signs_are_tried_where_a_search_ends(looked, monkeypatch):
+    """Of a tube that is pressed to its plates, no star far from the optimum tells to which side."""
+    monkeypatch.setattr(finalists, "IMAGED", 0)
+    truth = np.array([0.86, 0.2])
+    assert looked(truth, np.array([0.16, 0.22]), signed=(0, 1), law=mirrored)[0].unit == pytest.approx(truth, abs=0.04)
 
 
 def test_what_is_far_behind_gets_no_closer_look(looked):

@@ -63,7 +63,7 @@ class Source:
 
     def _reading(self, reading, model):
         """Return a Reading of a variant with the channels and modes of this campaign: what it changes, on a model."""
-        if not self.bench.linear_stage or reading is None and model is self.bench.bare:
+        if not self.bench.reads_lowest or reading is None and model is self.bench.bare:
             return None
         if reading is None:
             return linear.gained(linear.reading_of_model(model, self.bench.measured_fit.modes), self.bench.measuring)

@@ -89,6 +89,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     not worth its runs.
     """
     looked = _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed)
+    looked = _with_other_signs(bench, null, measured, candidate, looked, scales, fit, least, first_seed + 20000)
     path, found, free, simulated = looked.path, looked.found, looked.free, looked.path.parameters[np.argmax(looked.scores)]
     if looked.losing:
         units, free, seeds = [simulated], np.zeros((0, *null.mean.shape)), min(seeds, FEW_SEEDS)
@@ -122,9 +123,23 @@ class _Searched:
     losing: bool
 
 
-def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed):
-    """Return the _Searched of a candidate; arguments as of `refine`."""
-    level, centre, at, free, own = 0, path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, None, null
+def _with_other_signs(bench, null, measured, candidate, looked, scales, fit, least, first_seed):
+    """Return the _Searched of a candidate, its search gone on where another sign of its best point is better: far from the optimum, signs are told from nothing."""
+    best = looked.path.parameters[np.argmax(looked.scores)]
+    points = [] if looked.losing else unknown(images(best, candidate.signed), looked.path, candidate.periodic)
+    other = simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed) if len(points) else None
+    if other is None:
+        return looked
+    own, path = null.freed(looked.free), looked.path.joined(other)
+    scores = scores_along(bench, own, measured, candidate, path, fit)
+    if np.argmax(scores) < len(looked.path.parameters):
+        return looked
+    return _searched(bench, null, measured, candidate, path, scales, fit, len(STEPS), least, first_seed + 500, level=1)
+
+
+def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed, level=0):
+    """Return the _Searched of a candidate, its first star one of STEPS[level]; other arguments as of `refine`."""
+    centre, at, free, own = path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, None, null
     gain = gains_of(bench, null, measured, path).max()
     losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):

@@ -91,7 +91,7 @@ def workbench(config, campaign_path, prepared, seconds):
     if refusal:
         raise CampaignError(refusal)
     bench = Workbench(config, campaign, seconds, prepared.draw)
-    bench.linear_stage = prepared.linear_stage
+    bench.linear_stage, bench.nonlinear_low = prepared.linear_stage, prepared.nonlinear_low
     if prepared.delays:
         delay = np.array([prepared.delays.get(name, 0.0) for name in bench.signals.names])
         bench.late = Measuring(np.ones(len(delay)), delay, 1.0)

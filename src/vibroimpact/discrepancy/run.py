@@ -56,7 +56,7 @@ class Run:
         """Return (record,): those whose features are compared; the lowest one is read by its modes where it can be, and compared in a bank for campaigns where it can not."""
         bench = self.bench
         records = np.arange(len(bench.signals.load))
-        return records[records != bench.signals.lowest] if bench.linear_stage and not self.prepared.for_all else records
+        return records[records != bench.signals.lowest] if bench.reads_lowest and not self.prepared.for_all else records
 
     @property
     def screened_as_compared(self):

@@ -56,7 +56,7 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
         physical = candidate.physical(unit, scales)
         values = bench.variant(candidate, physical)
         runs = bench.runs(records, seeds, first_seed + 50 * number)
-        low = bench.linear_stage and not candidate.effect.measured
+        low = bench.reads_lowest and not candidate.effect.measured
         try:
             model = bench.model(values)
             more = bench.runs([lowest], 1) if low and lowest not in records else []
@@ -72,7 +72,7 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
 
 def linear_score(bench, reading):
     """Return the log likelihood of the lowest record's Reading under a variant's, of the bare model where it is None: by a t law, as for other records."""
-    if not bench.linear_stage:
+    if not bench.reads_lowest:
         return 0.0
     fit = bench.measured_fit
     score, chi_square, _ = linear.likelihood(bench.measured_reading, bench.bare_reading if reading is None else reading, fit.covariance)

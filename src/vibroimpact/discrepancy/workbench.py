@@ -37,6 +37,7 @@ class Workbench:
         self.forces = Forces(self.signals.force, self.schedule)
         self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
+        self.nonlinear_low = False  # whether the lowest record, though its modes are seen, is not that of a linear structure
         self.followed = False  # whether the model holds what moved its modes: no resonances are looked for without it then
         self.values = self.given = config.model_dump(mode="json")
 
@@ -66,6 +67,11 @@ class Workbench:
     def linear_stage(self):
         """Return True where the lowest record tells of the linear structure: a mode is seen and the bare model does not touch."""
         return not self.touches(self.bare) and self.measured_fit is not None
+
+    @property
+    def reads_lowest(self):
+        """Return True where the lowest record is compared by its modes alone: that of a linear structure. By its features, as the others, where it is not."""
+        return self.linear_stage and not self.nonlinear_low
 
     @cached_property
     def linear_record(self):
