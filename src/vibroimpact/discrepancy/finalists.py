@@ -70,10 +70,10 @@ def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=20
     return simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed)
 
 
-def placed(bench, null, measured, candidate, path, scales, fit, first_seed=2500):
-    """Return (candidate, its Path) at the place where the best point of its Path comes nearest to what was measured."""
+def placed(bench, null, measured, candidate, path, scales, fit, whole=False, first_seed=2500):
+    """Return (candidate, its Path) at the place where the best point of its Path, any where it is the whole, comes nearest to what was measured."""
     scores = _scores(bench, null, measured, path, fit)
-    at, best, kept = path.parameters[np.argmax(scores)], scores.max(), (candidate, path)
+    at, best, kept = path.parameters if whole else path.parameters[np.argmax(scores)], scores.max(), (candidate, path)
     for other in other_places(candidate, bench.values):
         there = simulate_path(bench, other, at, scales, null.records, first_seed=first_seed)
         found = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()

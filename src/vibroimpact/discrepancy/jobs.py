@@ -93,8 +93,9 @@ def finalist(run, name, chosen, path, quick=False):
         store.save_empty(path)
         return
     single, seeds = isinstance(candidate, Candidate), QUICK_SEEDS if quick else priors.FINAL_SEEDS
-    if single and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
-        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit)
+    leads = single and name in [row["name"] for row in chosen.get("ranked", ())[:1]]  # the best as screened may be so at the wrong place
+    if single and not quick and (leads or gains_of(bench, null, measured, known).max() > PLACED_FROM * least):
+        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit, whole=leads)
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
     if found is not None and not single:
         found = with_parts(bench, null, measured, found, sizes)
