@@ -36,7 +36,7 @@ def frozen_seed(path):
 
 
 SUITE_S = 20  # of every record of a suite's campaigns
-SUITE_NAME = r"suite_[0-9]+(?:_[0-9]+s)?(?:_draw[0-9]+)?"
+SUITE_NAME = r"suite_([0-9]+)(?:_([0-9]+)s)?(?:_draw([0-9]+))?"
 
 
 def suite_name(seed, seconds=SUITE_S, draw=0):
@@ -46,7 +46,7 @@ def suite_name(seed, seconds=SUITE_S, draw=0):
 
 def suite_of(name):
     """Return {seed, seconds, draw} of a suite's name."""
-    seed, seconds, draw = re.fullmatch(r"suite_([0-9]+)(?:_([0-9]+)s)?(?:_draw([0-9]+))?", name).groups()
+    seed, seconds, draw = re.fullmatch(SUITE_NAME, name).groups()
     return {"seed": int(seed), "seconds": int(seconds or SUITE_S), "draw": int(draw or 0)}
 
 

@@ -181,14 +181,12 @@ def gain_of_part(bench, null, measured, found):
     return found.parts.max() - null_scores(bench, null, measured).sum() - linear_score(bench, None)
 
 
-
 def _free(bench, null, candidate, unit, scales, first_seed):
     """Return null.free_at of a point, nothing where it can not be simulated."""
     try:
         return free_at(bench, candidate, unit, scales, null.records, first_seed)
     except IntegrationError:
         return np.zeros((0, *null.mean.shape))
-
 
 
 def law_at(bench, null, candidate, path, unit):
@@ -233,7 +231,6 @@ def _calibrated_near(bench, null, measured, candidate, path, fit):
     return calibrate(bench, null, measured, candidate, path.of(near(path, best, candidate.periodic)), fit, box_round(best, candidate.periodic))
 
 
-
 def _with_whole_interval(bench, null, measured, candidate, path, fit, found):
     """Return the Calibrated with the intervals of the whole path where those of the near points reach as far as the points."""
     best = _best_simulated(bench, null, measured, candidate, path, fit)
@@ -266,6 +263,5 @@ def judged(bench, null, measured, candidate, unit, path, found, free, scales, se
     reading = path.readings[nearest(path, unit, candidate.periodic)]
     interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)
     return Finalist(candidate, unit, interval, scores, linear_score(bench, reading), features, path, found.profile, free)
-
 
 
