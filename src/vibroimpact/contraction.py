@@ -9,7 +9,11 @@ CONTRACTION_LIMIT = 0.5
 
 
 class IntegrationError(Exception):
-    """A run that can not be done or that diverged; the message names the place and the remedy."""
+    """A run that can not be done or that diverged; the message names the place and the remedy, case (None: all) the case of the batch."""
+
+    def __init__(self, message, case=None):
+        super().__init__(message)
+        self.case = case
 
 
 def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -> float:

@@ -243,7 +243,8 @@ class _Run:
         raise IntegrationError(
             f"diverged at t = {(self.done + steps - 1) * self.dt - self.schedule.start_up:.4f} s of the record, case {lane} of the batch, "
             f"contact point {points[0] if points.size else row}: raise integration.steps_per_second (now {self.schedule.steps_per_second:g}, "
-            f"highest mode kept {self.model.omega.max() / (2 * np.pi):.0f} Hz) or check the contact stiffness and the force"
+            f"highest mode kept {self.model.omega.max() / (2 * np.pi):.0f} Hz) or check the contact stiffness and the force",
+            case=int(lane),
         )
 
 

@@ -24,7 +24,8 @@ def at(monkeypatch):
     monkeypatch.setattr(finalists, "_scores", lambda bench, null, measured, path, fit: path.features[:, 0, 0])
 
     def run(whole):
-        place, known = placed(SimpleNamespace(values={}), SimpleNamespace(records=[0]), None, "shaker", path("shaker", [[1.0], [0.6]]), {}, None, whole=whole)
+        own = path("shaker", [[1.0], [0.6]])
+        place, known = placed(SimpleNamespace(values={}), SimpleNamespace(records=[0]), None, "shaker", own, {}, None, at=own.parameters if whole else None)
         return place, known.parameters[:, 0].tolist()
 
     return run

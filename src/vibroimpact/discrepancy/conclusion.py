@@ -15,6 +15,7 @@ from vibroimpact.discrepancy.estimate_scatter import with_scatter
 from vibroimpact.discrepancy.invariances import broken_invariances
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.prepared import workbench
+from vibroimpact.discrepancy.survivors import survivors
 from vibroimpact.records import plain, read_text, write_record, write_table, write_text
 
 FRESH = 20000  # first seed of the verification: none of the calibration's
@@ -135,7 +136,9 @@ def verified(whole, model, seeds, bench):
     runs = whole.runs(range(records), seeds, FRESH)
     responses = whole.respond(model, runs)
     features, compared = (window.noisy_features(runs, responses).reshape(records, seeds, -1) for window in (whole, bench))
-    responses = responses.reshape(records, seeds, *responses.shape[1:])[:, : mapping.SHOWN_SEEDS]
+    stayed = survivors(features)
+    features, compared = (np.take_along_axis(rows, stayed[..., None], axis=1) for rows in (features, compared))
+    responses = responses.reshape(records, seeds, *responses.shape[1:])[np.arange(records)[:, None], stayed[:, : mapping.SHOWN_SEEDS]]
     noise = np.random.default_rng(11).standard_normal(responses.shape, dtype=np.float32) * whole.signals.noise[:, None].astype(np.float32)
     shown = np.where(np.isfinite(whole.signals.force[:, :1])[:, None], responses + noise, np.nan)
     return Verified(features, compared.mean(axis=1), shown)

@@ -10,15 +10,19 @@ from vibroimpact.discrepancy.candidates import other_places
 from vibroimpact.discrepancy.neighbourhood import NEAR, NEW, apart, around, box_round, images, near, nearest, unknown
 from vibroimpact.discrepancy.null import free_at
 from vibroimpact.discrepancy.screening import LAW_TURNS, Path, calibrate, direct_scores, linear_score, null_scores, path_emulator, simulate_path
+from vibroimpact.discrepancy.survivors import of_survivors
 
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves
 ENOUGH = 2  # this close is close enough where no parameter is known better, and nothing was gained
 INSIDE = 0.7  # of a star's radius: an optimum farther out is at its edge, and may lie beyond
 ROUNDS = 6  # at most
 START_STEP, STARTS = 0.12, 3
+SAME_PLACE = 100.0  # of log likelihood: two seeds of one law differ by as much
+PLACED_STEP = 0.06  # as strong at another place is not the same to a parameter
 PLACED_FROM = 0.5  # of the gain that makes a closer look worth its runs: from there on other places are tried
 HOPELESS = 0.5  # of that gain: below it, nothing more is simulated round it
 FEW_SEEDS = 4  # of what is not worth a closer look
+SAFER = 4  # of what was simulated, best first, until one is not thrown off
 CLEARLY = 5.0  # of log likelihood: less is the scatter of a few seeds
 MOVED = 0.06  # of the searched range: farther from where it was told, what is free is told anew
 IMAGED = 2  # rounds that try other signs as well
@@ -70,15 +74,31 @@ def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=20
     return simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed)
 
 
-def placed(bench, null, measured, candidate, path, scales, fit, whole=False, first_seed=2500):
-    """Return (candidate, its Path) at the place where the best point of its Path, any where it is the whole, comes nearest to what was measured."""
+def placed(bench, null, measured, candidate, path, scales, fit, at=None, first_seed=2500):
+    """Return (candidate, its Path) at the place where one of at (point, parameter), the best point of its Path where None, comes nearest to what was measured."""
     scores = _scores(bench, null, measured, path, fit)
-    at, best, kept = path.parameters if whole else path.parameters[np.argmax(scores)], scores.max(), (candidate, path)
+    at = path.parameters[np.argmax(scores)] if at is None else at
+    return _nearest_place(bench, null, measured, candidate, at, scales, fit, first_seed, scores.max()) or (candidate, path)
+
+
+def placed_again(bench, null, measured, found, scales, fit, first_seed=15000):
+    """Return (candidate, Path) of the other place, now that it is known how strong a Finalist is, that comes as near as it or nearer, None where there is none.
+
+    Where it was screened, places a hand apart differ by less than the points of the design.
+    """
+    own, at = found.own(null), around(found.unit, PLACED_STEP, found.candidate.periodic)
+    best = _scores(bench, own, measured, found.path, fit).max() - SAME_PLACE
+    return _nearest_place(bench, own, measured, found.candidate, at, scales, fit, first_seed, best)
+
+
+def _nearest_place(bench, null, measured, candidate, at, scales, fit, first_seed, best):
+    """Return (candidate, Path) of the other place where one of at (point, parameter) scores highest, None where none scores above `best`."""
+    kept = None
     for other in other_places(candidate, bench.values):
         there = simulate_path(bench, other, at, scales, null.records, first_seed=first_seed)
-        found = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
-        if found > best:
-            best, kept = found, (other, there)
+        score = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
+        if score > best:
+            best, kept = score, (other, there)
     return kept
 
 
@@ -100,11 +120,14 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         free = 0.5 * (free + again) if near_enough else again
     own = null.freed(free)
     law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
-    for unit in units:
+    safer = path.parameters[np.argsort(_scores(bench, null, measured, path, fit))[::-1][:SAFER]]
+    for number, unit in enumerate([*units, *safer]):
+        if number >= len(units) and judgement is not None:
+            break
         try:
             row = judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000)
         except IntegrationError:
-            continue  # between points that can be simulated lies one that can not
+            continue  # where few runs stayed, of more of them too many may be thrown off: the next best
         score = direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low
         if judgement is None or score > best + CLEARLY:
             judgement, best = row, score
@@ -258,7 +281,7 @@ def judged(bench, null, measured, candidate, unit, path, found, free, scales, se
     physical = candidate.physical(unit, scales)
     model = bench.model(bench.variant(candidate, physical))
     runs = bench.runs(null.records, seeds, first_seed)
-    features = bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1)
+    features = of_survivors(bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1))
     scores = direct_scores(bench, null.scattered(features), measured, features.mean(axis=1))
     reading = path.readings[nearest(path, unit, candidate.periodic)]
     interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)

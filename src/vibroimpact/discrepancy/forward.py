@@ -5,11 +5,13 @@ from functools import lru_cache
 
 import numpy as np
 
+from vibroimpact.contraction import IntegrationError
 from vibroimpact.excitation import resample_measured
 from vibroimpact.integrate import Schedule, march_lanes, resting
 from vibroimpact.kernels import LANES, RATIO, SLOTS
 
 IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
+LOST = 0.25  # of a batch at most: a structure that is thrown off more often is none that was measured
 NO_GAP_M = 1.0  # where a record has no clearance
 
 
@@ -46,7 +48,7 @@ def simulate_records(model, schedule, forces, runs, kinds, extra=()):
     """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed), LANES of them at a time.
 
     kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is the integral of neither: refused by the checks.
-    Before a record begins, the structure rests under its dead loads, against its supports where it must. A run's seed draws
+    A run that diverges is NaN where few of its batch do, IntegrationError where more. Before a record begins, the structure rests under its dead loads, against its supports where it must. A run's seed draws
     the tiny offset of the obstacles that makes two runs of an impacting tube differ.
     """
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
@@ -60,9 +62,12 @@ def simulate_records(model, schedule, forces, runs, kinds, extra=()):
         initial = resting(model, schedule, gaps, offsets)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
 
-        def drive(at, count, batch=batch, lead=lead):
+        lost = set()
+
+        def drive(at, count, batch=batch, lead=lead, lost=lost):
             silent = min(max(lead - at, 0), count)
             force = np.stack([forces.values(record)[max(at - lead, 0) : max(at - lead + count, 0)] for record, _, _ in batch], axis=-1)
+            force[..., list(lost)] = 0.0
             return np.pad(force, ((silent, 0), (0, 0), (0, 0)))
 
         def receive(at, displacement, accelerations, _, first=first, size=len(batch)):
@@ -70,7 +75,15 @@ def simulate_records(model, schedule, forces, runs, kinds, extra=()):
             out[first : first + size, acceleration, at:stop] = accelerations[:, acceleration]
             out[first : first + size, ~acceleration, at:stop] = displacement[:, ~acceleration]
 
-        march_lanes(model, led, gaps, offsets, drive, receive, initial)
+        while True:
+            try:
+                march_lanes(model, led, gaps, offsets, drive, receive, initial)
+                break
+            except IntegrationError as error:  # again, with no force on what was thrown off
+                if error.case is None or error.case in lost or len(lost) + 1 > LOST * len(batch):
+                    raise
+                lost.add(error.case)
+        out[[first + case for case in lost]] = np.nan
     return out
 
 

@@ -9,7 +9,7 @@ from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gain_of_part, gains_of, own, placed, refine, started, with_parts
+from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gain_of_part, gains_of, own, placed, placed_again, refine, started, with_parts
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.discrepancy.verdict import idle
@@ -66,10 +66,10 @@ QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS = 3, 1, 4
 def least_gain(name, chosen):
     """Return the gain of log likelihood below which a closer look at a candidate is not worth its runs; chosen: content of the file that named it.
 
-    A pair must be better than the best single effect; a finalist not far behind the best of the other effects, as they were screened.
+    A pair must be better than the best single effect by what a second effect must add; a finalist not far behind the best of the other effects, as they were screened.
     """
     if "pairs" in chosen:
-        return chosen["least"]
+        return chosen["least"] + (second.least_added(chosen["least"], chosen["threshold"]) if "+" in name else 0.0)
     effects = {part.split("@")[0] for part in name.split("+")}
     others = [(row["score"], row["name"].split("@")[0]) for row in chosen["ranked"] if row["name"].split("@")[0] not in effects]
     if not others:
@@ -93,18 +93,35 @@ def finalist(run, name, chosen, path, quick=False):
         store.save_empty(path)
         return
     single, seeds = isinstance(candidate, Candidate), QUICK_SEEDS if quick else priors.FINAL_SEEDS
-    leads = single and name in [row["name"] for row in chosen.get("ranked", ())[:1]]  # the best as screened may be so at the wrong place
+    leads = single and leading(candidate, chosen)
     if single and not quick and (leads or gains_of(bench, null, measured, known).max() > PLACED_FROM * least):
-        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit, whole=leads)
+        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit, at=known.parameters if leads else None)
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
+    if leads and not quick and found is not None and second.needed(naming.explained(bench, found.own(null), found.mean, measured)):
+        found = at_another_place(bench, null, measured, found, sizes, fit, least)
     if found is not None and not single:
         found = with_parts(bench, null, measured, found, sizes)
-        if idle(found, chosen["threshold"]) and gain_of_part(bench, null, measured, found) > least:
+        if idle(found, chosen["threshold"]) and gain_of_part(bench, null, measured, found) > chosen["least"]:
             # one of the two explains it where its own search never was: it is looked at closely there, and no pair is left
             candidate, unit = found.candidate.parts(found.unit)[int(np.argmax(found.parts))]
             known = started(bench, null, candidate, unit, sizes, first_seed=9000)
-            found = refine(bench, null, measured, candidate, known, sizes, fit, least=least, seeds=seeds, first_seed=10000)
+            found = refine(bench, null, measured, candidate, known, sizes, fit, least=chosen["least"], seeds=seeds, first_seed=10000)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
+
+
+def at_another_place(bench, null, measured, found, sizes, fit, least):
+    """Return the Finalist that explains more: the one found, or the same effect at the place that comes nearest."""
+    near = placed_again(bench, null, measured, found, sizes, fit)
+    other = None if near is None else refine(bench, null, measured, *near, sizes, fit, least=least, first_seed=16000)
+    return found if other is None or other.total < found.total else other
+
+
+def leading(candidate, chosen):
+    """Return whether a candidate is the best of a screening, or of an effect that looks like it: as screened, both may be at the wrong place."""
+    if not chosen.get("ranked"):
+        return False
+    first = candidate_named(chosen["ranked"][0]["name"])
+    return candidate.name == first.name or candidate.effect_id in first.effect.aliases
 
 
 def longer(bench, null, measured, path, screened):

@@ -8,7 +8,7 @@ from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
 from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, scatter_of
 from vibroimpact.discrepancy.linearised import same_modes
-
+from vibroimpact.discrepancy.survivors import of_survivors
 
 UNSEEN = (priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)  # times the damping of modes that the lowest record does not show
 SCATTERED = 4.0  # times the variance of the null's seeds: 8 seeds of the same law exceed it in one of a hundred features
@@ -104,5 +104,6 @@ def free_at(bench, candidate, unit, scales, records, first_seed):
     physical, seeds = candidate.physical(unit, scales), bench.seeds_of_a_batch(records)
     values, measuring = bench.variant(candidate, physical), candidate.measuring(physical, bench.signals.names)
     runs = bench.runs(records, seeds, first_seed)
-    less, more = (bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1).mean(axis=1) for factor in UNSEEN)
+    less, more = (of_survivors(bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1)).mean(axis=1)
+                  for factor in UNSEEN)  # fmt: skip
     return compressed(less - more, bench.layout)[None] / np.sqrt(2.0)

@@ -1,6 +1,6 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Fourth freeze: after what the third draw showed of the search.
+Sixth freeze: after what the fifth draw showed of noise, rest, places and runs that are thrown off.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.

@@ -14,6 +14,7 @@ from vibroimpact.discrepancy.candidates import unit_grid
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import compressed, uncompressed
 from vibroimpact.discrepancy.likelihood import LawLikelihood, log_likelihood
+from vibroimpact.discrepancy.survivors import of_survivors
 
 LEAST_LOW = 300.0  # log likelihood of the lowest record below the best: farther off tells nothing more
 SMOOTHING = 1.0e-3  # points that were simulated twice differ by the seeds
@@ -51,7 +52,7 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
     """Return the Path of a candidate at normalised parameters (point, parameter)."""
     lowest, records = bench.signals.lowest, list(records)
     seeds = bench.seeds_of_a_batch({*records, lowest}) if seeds is None else seeds
-    kept, means, readings = [], [], []
+    kept, means, counts, readings = [], [], [], []
     for number, unit in enumerate(np.atleast_2d(parameters)):
         physical = candidate.physical(unit, scales)
         values = bench.variant(candidate, physical)
@@ -61,13 +62,17 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
             model = bench.model(values)
             more = bench.runs([lowest], 1) if low and lowest not in records else []
             responses = bench.respond(model, runs + more, candidate.measuring(physical, bench.signals.names))
+            features = of_survivors(bench.noisy_features(runs, responses[: len(runs)]).reshape(len(records), seeds, -1))
         except (IntegrationError, ConfigError):
             continue  # an effect this strong throws the structure off, or is none that a model may have: no measurement comes from there
+        low_response = responses[-1 if lowest not in records else seeds * records.index(lowest)]
+        if low and np.isnan(low_response).any():
+            continue
         kept.append(unit)
-        means.append(bench.noisy_features(runs, responses[: len(runs)]).reshape(len(records), seeds, -1).mean(axis=1))
-        lowest_run = -1 if lowest not in records else seeds * records.index(lowest)
-        readings.append(bench.low_reading(responses[lowest_run] / bench.gains[:, None]) if low else None)
-    return Path(np.array(kept), np.array(means), np.full(len(means), seeds), readings) if kept else None
+        means.append(features.mean(axis=1))
+        counts.append(features.shape[1])
+        readings.append(bench.low_reading(low_response / bench.gains[:, None]) if low else None)
+    return Path(np.array(kept), np.array(means), np.array(counts), readings) if kept else None
 
 
 def linear_score(bench, reading):

@@ -35,6 +35,11 @@ def pairs(bench, null, measured, found, paths):
     return [row for place, row in enumerate(ordered) if place < LEAST_PAIRS or row[2] - single > NEAR * (ordered[0][2] - single)]
 
 
+def least_added(gain, threshold):
+    """Return what a second effect must add, in log likelihood, to the gain of the first; threshold: that of a name."""
+    return max(threshold, priors.SECOND_SHARE * gain)
+
+
 def needed(explained):
     """Return whether the best single effect leaves something: explained (record,) z of naming.explained."""
     return bool(np.min(explained) < priors.EXPLAINED_Z)

@@ -6,6 +6,8 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.second import least_added
+
 
 @dataclass
 class Decision:
@@ -37,7 +39,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
         return without
     added = min(totals[doubles[0].candidate.name][0] - totals[best.candidate.name][0], doubles[0].total - doubles[0].parts.max()) if doubles else 0.0
     second = added > threshold and naming.explained(bench, best.own(null), best.mean, measured).min() < priors.EXPLAINED_Z
-    if second and added > priors.SECOND_SHARE * totals[best.candidate.name][0]:
+    if second and added > least_added(totals[best.candidate.name][0], threshold):
         best = doubles[0]
     best = simpler(best, found, totals, prepared)
     left = naming.explained(bench, best.own(null), best.mean, measured)

@@ -130,9 +130,12 @@ class Workbench:
         return [(int(record), float(self.signals.gap[record]), first + seed) for record in records for seed in range(seeds)]
 
     def noisy_features(self, runs, responses):
-        """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each cut to the valid samples of its record."""
+        """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each cut to the valid samples of its record; NaN of one that diverged."""
         out = []
         for (record, _, seed), response in zip(runs, responses, strict=True):
+            if np.isnan(response).any():  # it was thrown off
+                out.append(np.full(len(self.layout.kind), np.nan))
+                continue
             keep = np.isfinite(self.signals.force[record][0]) & self.settled
             noise = np.random.default_rng([7, seed, record]).standard_normal((len(self.signals.noise), int(keep.sum())), dtype=np.float32)
             noisy = response[:, : keep.size][:, keep] + noise * self.signals.noise[:, None].astype(np.float32)
