@@ -9,7 +9,8 @@ from vibroimpact.discrepancy.measuring import measuring_of, places
 from vibroimpact.effects.registry import EFFECTS
 
 ALONE = "@alone"
-SCREENED = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
+QUICK_PLACES = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
+PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
 ALONG = 0.2  # of a searched range
 
 QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number of parameters
@@ -229,9 +230,9 @@ def elsewhere(candidate, values):
 
 
 def other_places(candidate, values):
-    """Return the candidate at every other place of its kind, where a few of many were screened."""
+    """Return the candidate at every other place of its kind, of an effect that sits at a point."""
     locations = candidate.effect.locations(values)
-    return [] if "all" in locations or candidate.effect_id not in SCREENED else [replace(candidate, location=place) for place in locations if place != candidate.location]
+    return [replace(candidate, location=place) for place in locations if place != candidate.location] if candidate.effect_id in QUICK_PLACES else []
 
 
 def linear_candidates(values, names, held, modes):
@@ -249,8 +250,8 @@ def linear_candidates(values, names, held, modes):
     return found
 
 
-def local_candidates(values, held, modes=None):
-    """Return the candidates that only simulation tells of, those to screen first: one place each, or the first few.
+def local_candidates(values, held, modes=None, quick=False):
+    """Return the candidates that only simulation tells of, those to screen first: all supports together, points up to PLACES, fewer where it must be quick.
 
     modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear structure, and linear effects are tried as the others are.
     """
@@ -262,8 +263,15 @@ def local_candidates(values, held, modes=None):
                 locations = locations[:1]
             if effect.id == "mode_frequency_error":
                 locations = locations[:UNSEEN_MODES]
-            found += [Candidate(effect.id, location) for location in locations[: SCREENED.get(effect.id, len(locations))]]
+            if effect.id in QUICK_PLACES:
+                locations = locations[: QUICK_PLACES[effect.id]] if quick else spread(locations)
+            found += [Candidate(effect.id, location) for location in locations]
     return [candidate for candidate in found if modes is None or not _told(candidate, modes)]
+
+
+def spread(locations, count=PLACES):
+    """Return the first of locations and others evenly among the rest, `count` at most."""
+    return [locations[number] for number in np.unique(np.round(np.linspace(0, len(locations) - 1, min(count, len(locations)))).astype(int))]
 
 
 UNSEEN_MODES = 6  # the first so many modes of the structure: the frequencies of those that the lowest record does not show are tried

@@ -74,27 +74,26 @@ def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=20
     return simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed)
 
 
-def placed(bench, null, measured, candidate, path, scales, fit, at=None, first_seed=2500):
-    """Return (candidate, its Path) at the place where one of at (point, parameter), the best point of its Path where None, comes nearest to what was measured."""
+def placed(bench, null, measured, candidate, path, places, scales, fit, first_seed=2500):
+    """Return (candidate, its Path), or one of places [candidate] where the best point of its Path comes nearer to what was measured."""
     scores = _scores(bench, null, measured, path, fit)
-    at = path.parameters[np.argmax(scores)] if at is None else at
-    return _nearest_place(bench, null, measured, candidate, at, scales, fit, first_seed, scores.max()) or (candidate, path)
+    return _nearest_place(bench, null, measured, places, path.parameters[np.argmax(scores)], scales, fit, first_seed, scores.max()) or (candidate, path)
 
 
 def placed_again(bench, null, measured, found, scales, fit, first_seed=15000):
     """Return (candidate, Path) of the other place, now that it is known how strong a Finalist is, that comes as near as it or nearer, None where there is none.
 
-    Where it was screened, places a hand apart differ by less than the points of the design.
+    Places a hand apart differ by less than the points of the design that they were screened at.
     """
     own, at = found.own(null), around(found.unit, PLACED_STEP, found.candidate.periodic)
     best = _scores(bench, own, measured, found.path, fit).max() - SAME_PLACE
-    return _nearest_place(bench, own, measured, found.candidate, at, scales, fit, first_seed, best)
+    return _nearest_place(bench, own, measured, other_places(found.candidate, bench.values), at, scales, fit, first_seed, best)
 
 
-def _nearest_place(bench, null, measured, candidate, at, scales, fit, first_seed, best):
-    """Return (candidate, Path) of the other place where one of at (point, parameter) scores highest, None where none scores above `best`."""
+def _nearest_place(bench, null, measured, places, at, scales, fit, first_seed, best):
+    """Return (candidate, Path) of the one of places [candidate] where one of at (point, parameter) scores highest, None where none scores above `best`."""
     kept = None
-    for other in other_places(candidate, bench.values):
+    for other in places:
         there = simulate_path(bench, other, at, scales, null.records, first_seed=first_seed)
         score = -np.inf if there is None else _scores(bench, null, measured, there, fit).max()
         if score > best:

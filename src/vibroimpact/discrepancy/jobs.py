@@ -7,7 +7,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
-from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gain_of_part, gains_of, own, placed, placed_again, refine, started, with_parts
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
@@ -93,9 +93,9 @@ def finalist(run, name, chosen, path, quick=False):
         store.save_empty(path)
         return
     single, seeds = isinstance(candidate, Candidate), QUICK_SEEDS if quick else priors.FINAL_SEEDS
-    leads = single and leading(candidate, chosen)
-    if single and not quick and (leads or gains_of(bench, null, measured, known).max() > PLACED_FROM * least):
-        candidate, known = placed(bench, null, measured, candidate, known, sizes, fit, at=known.parameters if leads else None)
+    leads, places = single and leading(candidate, chosen), [other for other in other_places(candidate, bench.values) if other.name not in run.prepared.screened] if single else []
+    if places and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
+        candidate, known = placed(bench, null, measured, candidate, known, places, sizes, fit)
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
     if leads and not quick and found is not None and second.needed(naming.explained(bench, found.own(null), found.mean, measured)):
         found = at_another_place(bench, null, measured, found, sizes, fit, least)
@@ -117,7 +117,7 @@ def at_another_place(bench, null, measured, found, sizes, fit, least):
 
 
 def leading(candidate, chosen):
-    """Return whether a candidate is the best of a screening, or of an effect that looks like it: as screened, both may be at the wrong place."""
+    """Return whether a candidate is the best of a screening, or of an effect that looks like it: where it sits is looked at again."""
     if not chosen.get("ranked"):
         return False
     first = candidate_named(chosen["ranked"][0]["name"])

@@ -117,12 +117,12 @@ def adopt(bench, prepared):
     bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
-def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None, for_all=False, draw=0):
+def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None, for_all=False, draw=0, quick=False):
     """Return the Prepared of a campaign file and a checked Config.
 
     tables {candidate name: LinearTable}: known from another campaign of the same model, extended; without: ids of effects that are not in the
     catalogue this time; asked_s: compare so many seconds of each record; for_all: look at every candidate and record, for campaigns of the same model that need them; draw: number of the
-    draw of seeds, of which verdicts shall not depend.
+    draw of seeds, of which verdicts shall not depend; quick: look for effects at fewer places.
     """
     _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
@@ -150,7 +150,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     if out.linear_stage:
         read_lowest(bench, lambda: Workbench(config, campaign, seconds), out, {} if tables is None else tables, without)
     modes = (out.fit["modes"] if out.fit else bench.measured_fit.modes) if out.linear_stage and not for_all else None
-    candidates = local_candidates(config.model_dump(mode="json"), held(campaign), modes)
+    candidates = local_candidates(bench.given, held(campaign), modes, quick)
     out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids)]
     if out.linear_stage and out.nonlinear_low:  # a linear effect may be what makes it touch: those that come nearest are simulated as well
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]

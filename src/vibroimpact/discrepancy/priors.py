@@ -1,6 +1,6 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Sixth freeze: after what the fifth draw showed of noise, rest, places and runs that are thrown off.
+Seventh freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, and the sixth of places.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.

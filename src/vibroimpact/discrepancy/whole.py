@@ -25,7 +25,7 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     folder, config = Path(folder), check_config(values, "model")
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
-        prepare(config, campaign, longest_s, tables, without, for_all=for_all, draw=draw).write(prepared_file)
+        prepare(config, campaign, longest_s, tables, without, for_all=for_all, draw=draw, quick=quick).write(prepared_file)
     prepared = Prepared.read(prepared_file)
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
     run = Run(config, str(campaign), folder, prepared, (), tuple(nulls), ())
