@@ -16,7 +16,7 @@ EFFECT = Effect(
     source="force = clip(stiffness u, +-limit)",
     parameters=(
         Parameter("stiffness", "N/m", 0.05, 50.0, 0.0, per="tube_translation", design=(0.2, 0.5, 0.8)),
-        Parameter("limit", "N", 0.02, 2.0, 0.0, per="load", design=(0.2, 0.5, 0.8), gain_power=1.0),
+        Parameter("limit", "N", 0.02, 10.0, 0.0, per="load", design=(0.2, 0.5, 0.8), gain_power=1.0),
     ),
     apply=apply,
     below_contact=True,
