@@ -36,7 +36,7 @@ def figure_12_broadband(config, model, curves, spectra, rows):
         axes, case = sheet.axes[f"{load:g} N"], cases[load]
         found = next((row for row in rows if row["method"] == "broadband" and row["load_rms_N"] == load and row["seed"] == case.seed), None)
         _panel(sheet, axes, config, model, (curves[case], spectra[case]), (stiffness, shape, load, sensor))
-        axes.set_title(f"load {load:g} N RMS\n{_values(found)}")
+        axes.set_title(f"load {load:.3g} N RMS\n{_values(found)}")
         sheet.legend(axes, loc="lower left")
     for load in loads[1:]:
         sheet.axes[f"{load:g} N"].set_ylabel("")

@@ -82,7 +82,7 @@ def _peaks(sheet, axes, config, curves, spectra, rows):
                 continue
             if method == "peak_half":
                 sheet.line(axes, ("frequency_Hz", fitted["low_frequency"].values[known]), (column, curve[known] / load**2), "fitted to 1/2",
-                           tags={"load_rms_N": load}, color=colours[load], linewidth=1.8, label=f"{load:g} N")
+                           tags={"load_rms_N": load}, color=colours[load], linewidth=1.8, label=f"{load:.3g} N")
             edges = np.array(level_edges(pole["frequency_Hz"], pole["damping_ratio"], level))
             sheet.line(axes, ("frequency_Hz", edges), (column, np.full(2, np.nanmax(curve) / level / load**2)), f"width at 1/{level:g}",
                        tags={"load_rms_N": load}, color=BLACK, marker="|", linewidth=0.9, markersize=5, zorder=5,
@@ -107,7 +107,7 @@ def figure_09_stabilisation(config, curves, spectra, rows):
                   size=(7.6, 4.2), sharey=True)
     for load in loads:
         _chart(sheet, sheet.axes[f"{load:g} N"], config, curves[cases[load]], spectra[cases[load]], sensor)
-        sheet.axes[f"{load:g} N"].set_title(f"load {load:g} N RMS")
+        sheet.axes[f"{load:g} N"].set_title(f"load {load:.3g} N RMS")
     for key in [f"{load:g} N" for load in loads][1:]:
         sheet.axes[key].set_ylabel("")
     handles, labels = sheet.axes[f"{loads[0]:g} N"].get_legend_handles_labels()

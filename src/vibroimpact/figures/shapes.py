@@ -61,7 +61,7 @@ def _shapes(sheet, axes, model, found, loads):
     for load in loads:
         shapes = np.array([_unit(dataset["ods_re"].values) for case, dataset in found.items() if case.load_rms_N == load])
         sheet.line(axes, ("arc_length_m", place), ("shape", _unit(np.median(shapes, axis=0))), "ods", low=shapes.min(axis=0),
-                   high=shapes.max(axis=0), tags={"load_rms_N": load}, color=colours[load], marker=".", label=f"{load:g} N")
+                   high=shapes.max(axis=0), tags={"load_rms_N": load}, color=colours[load], marker=".", label=f"{load:.3g} N")
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     sheet.legend(axes, loc="lower center", bbox_to_anchor=(0.5, 0.08))
 
