@@ -18,7 +18,7 @@ LAYERS = (
      "provenance", "stopwatch", "kept", "centreline", "beam", "kernels", "laws", "model"),
     ("records", "variables"),
     ("structure", "matrix_files", "point_structure", "supports", "loads", "local_elements", "force_files", "excitation", "force_stream", "spectra", "spectra_of_case", "spectral_kernel",
-     "units", "multisine", "campaign", "campaign_checks", "campaign_faults", "campaign_linear_checks", "campaign_model_checks", "campaign_signals"),
+     "units", "shown_units", "multisine", "campaign", "campaign_checks", "campaign_faults", "campaign_linear_checks", "campaign_model_checks", "campaign_signals"),
     ("importing",),
     ("ritz", "modifications", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),
     ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "identified", "steady", "identify", "synthetic_campaign"),

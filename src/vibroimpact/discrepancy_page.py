@@ -7,8 +7,10 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
+from vibroimpact.discrepancy_results import best_places
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.shown_units import shown_unit
 
 TEMPLATE = Path(__file__).with_suffix(".html")
 SPLITS = {"fit": "fitted", "holdout": "held out"}
@@ -36,7 +38,7 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS):
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
         figures=embedded(figures),
         ranking=[{"ids": in_words(row["ids"]), "location": ", ".join((row.get("location") or "").split("+")), "score": digits(row["heldout_score"]),
-                  "closed": percent(row["closed_fraction"])} for row in verdict["ranking"][:MOST_ROWS]],
+                  "closed": percent(row["closed_fraction"])} for row in best_places(verdict["ranking"])[:MOST_ROWS]],
         checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)), seconds=digits(verdict["seconds"]),
         provenance=[*_flat(verdict["provenance"])])
 
@@ -54,6 +56,8 @@ def verdict_sentence(verdict):
     named = "; and ".join(_with_parameters(effect) for effect in verdict["effects"])
     alternatives = [ids for ids in verdict["ambiguity_set"] if sorted(ids) != sorted(effect["id"] for effect in verdict["effects"])]
     others = f" This campaign can not tell it from {sets_in_words(alternatives)}." if named and alternatives else ""
+    near = [effect["id"] for effect in verdict.get("most_probable", ())]
+    nearest = f" What came nearest, {in_words(near)}, is not it." if near else ""
     refusals = " ".join(row["message"] for row in verdict["checks"] if row["level"] == "refuse")
     sentences = {
         "none": "No effect is missing: the model explains the campaign within the scatter of its seeds (chance makes such a map with probability "
@@ -62,7 +66,7 @@ def verdict_sentence(verdict):
         "partly_explained": f"The model lacks {named}, and something else that the catalogue does not hold: the remaining difference is more than "
                             f"chance.{shrinks}{others}",
         "ambiguous": f"One of these is missing, and this campaign can not tell which: {sets_in_words(verdict['ambiguity_set'])}.",
-        "unknown": "The model and the measurement disagree, and no effect of the catalogue explains it: the map says where to look.",
+        "unknown": f"The model and the measurement disagree, and no effect of the catalogue explains it: the map says where to look.{nearest}",
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
     return sentences.get(kind, f"Verdict: {kind}.")
@@ -128,10 +132,10 @@ def digits(value):
 
 
 def _for_reading(row):
-    """Return {value, low, high, unit} of a parameter in the unit that is read in a workshop: small lengths in mm."""
-    if row["unit"] == "m" and abs(row["value"]) < 0.1:
-        return {"unit": "mm", **{key: None if row[key] is None else 1e3 * row[key] for key in ("value", "low", "high")}}
-    return row
+    """Return {value, low, high, unit} of a parameter in the unit that it is shown in."""
+    values = {key: row[key] for key in ("value", "low", "high")}
+    unit, factor = shown_unit(row["unit"], values.values())
+    return {"unit": unit, **{key: None if value is None else factor * value for key, value in values.items()}}
 
 
 def percent(fraction):

@@ -34,6 +34,20 @@ def read_results(folder):
     return Results(verdict, _map(folder / "map.nc"), _map(folder / "map_after.nc"), ranking, candidates)
 
 
+NO_VALUE = ("None", "", "nan")
+
+
+def best_places(rows):
+    """Return the rows of a ranking without those that were screened only, of effects that a row before them shows at another place."""
+    shown, kept = set(), []
+    for row in rows:
+        ids = row["ids"] if isinstance(row["ids"], str) else "+".join(row["ids"])
+        if str(row["heldout_score"]) not in NO_VALUE or ids not in shown:
+            kept.append(row)
+        shown.add(ids)
+    return kept
+
+
 def _map(path):
     """Return the map of a file, None where there is no file or nothing in it."""
     data = read_dataset(path) if path.is_file() else None

@@ -10,11 +10,12 @@ import pytest
 
 from tests.discrepancy_results import CHANNELS, EDGES, RECORDS, made_up_candidates, made_up_map, made_up_ranking, made_up_verdict
 from vibroimpact.discrepancy_page import discrepancy_page, verdict_sentence
-from vibroimpact.discrepancy_results import read_results
+from vibroimpact.discrepancy_results import best_places, read_results
 from vibroimpact.figures.discrepancy import discrepancy_figures
-from vibroimpact.figures.discrepancy_ranking import axis_label, found_of, named_of, shown_unit
+from vibroimpact.figures.discrepancy_ranking import axis_label, found_of, named_of
 from vibroimpact.figures.discrepancy_spectra import chosen_channels, chosen_records
 from vibroimpact.records import write_record, write_table
+from vibroimpact.shown_units import shown_unit
 
 KINDS = ("none", "named", "ambiguous", "partly_explained", "unknown", "not_testable")
 
@@ -110,7 +111,20 @@ def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair
 def test_parameters_are_shown_in_units_of_the_field():
     assert shown_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and shown_unit("m", [1.2]) == ("m", 1.0)
     assert shown_unit("N/m", [4e6]) == ("MN/m", 1e-6) and shown_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3) and shown_unit("1", [0.15]) == ("1", 1.0)
+    assert shown_unit("N/m^3", [7e11, None]) == ("GN/m³", 1e-9) and shown_unit("N/m^2", [np.nan, 1.03e6]) == ("kN/m²", 1e-3)
     assert axis_label("offset_x", "mm") == "offset x (mm)" and axis_label("mu", "1") == "mu (-)"
+
+
+def test_what_came_nearest_is_told_where_nothing_is_named():
+    told = verdict_sentence(made_up_verdict("unknown") | {"most_probable": [{"id": "clearance"}, {"id": "support_offset"}]})
+    assert told.endswith("What came nearest, clearance and support offset, is not it.")
+    assert "nearest" not in verdict_sentence(made_up_verdict("unknown"))
+
+
+def test_an_effect_that_was_screened_at_many_places_is_shown_at_the_best():
+    rows = [{"ids": ids, "location": place, "heldout_score": score} for ids, place, score in
+            (("clearance", "leg", 40.0), ("clearance", "apex", 20.0), ("clearance", "shaker", ""), (["gap"], "all", None), ("gap", "left", np.nan))]  # fmt: skip
+    assert [row["location"] for row in best_places(rows)] == ["leg", "apex", "all"]  # what was looked at closely stays
 
 
 def test_a_run_without_map_or_candidates_says_so(tmp_path):

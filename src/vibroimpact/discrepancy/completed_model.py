@@ -16,7 +16,7 @@ def updated_model(bench, decision, prepared):
         values = bench.variant(decision.chosen.candidate, decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales))
     if bench.nuisance is not None:
         values = with_nuisance(values, bench.nuisance, computed_modes(values, bench.campaign)[bench.nuisance.modes])
-    what = "The verdict is unknown: effects in here are those that came nearest." if decision.verdict == "unknown" else "The model with what the campaign showed to be missing."
+    what = "The verdict is unknown: nothing was added to what the lowest record told." if decision.verdict == "unknown" else "The model with what the campaign showed to be missing."
     lines = [f"# {what} Corrections of modes are in mode_frequency_factors and damping."]
     if bench.nuisance is not None:
         gains = ", ".join(f"{name} {gain:.4f}" for name, gain in zip(bench.signals.names, bench.nuisance.gain, strict=True))

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.discrepancy import jobs, mapping, misfit, power_balance, priors, verdict
+from vibroimpact.contraction import IntegrationError
+from vibroimpact.discrepancy import jobs, mapping, misfit, naming, power_balance, priors, verdict
 from vibroimpact.discrepancy.by_level import by_level
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.completed_model import updated_model
@@ -64,23 +65,18 @@ def conclude(run, screening, final_files, provenance, quick=False):
     if prepared.adopted is not None:
         before_bench = workbench(run.config, run.campaign, replace(prepared, adopted=None, fit=None), prepared.longest_s)
     before = verified(before_bench, before_bench.model(), seeds, bench)
-    if decision.chosen is None and prepared.adopted is None:
-        after, p_after = before, p_before
-    else:
-        model = whole.model()
-        if decision.chosen is not None:
-            chosen = decision.chosen
-            model = whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, prepared.scales)))
-        after = verified(whole, model, seeds, bench)
+    most_probable = verdict.effects_of(prepared, decision, prepared.scales)
+    after = completed(run, decision, before, seeds)
+    gaps = None if after is None else misfits(whole, before, after)
+    if gaps is None or verdict.refuted(decision, gaps["holdout"]["closed_fraction"]):  # nothing is added then
+        decision = replace(decision, verdict="unknown", chosen=None, ambiguity=[], explained=naming.explained(bench, null, null.mean, measured, False))
+        after = completed(run, decision, before, seeds)
+        gaps = misfits(whole, before, after)
+    p_after = p_before
+    if after is not before:
         p_after = mapping.global_p(bench, null if decision.chosen is None else decision.chosen.own(null), measured, after.compared[null.records])
-    chosen_cells = misfit.counted(whole)
-    splits = {"fit": whole.signals.fit(), "holdout": whole.signals.holdout()}
     if prepared.adopted is not None:  # the null holds what was adopted; the model as given does not
         p_before = mapping.global_p(bench, null, measured, before.compared[null.records], law=False)
-    gaps = {name: misfit.misfit_of(whole, records, chosen_cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
-            {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
-    if verdict.refuted(decision, gaps["holdout"]["closed_fraction"]):
-        decision = replace(decision, verdict="unknown", ambiguity=[])
     difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)
     ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured, decision)
     content = {
@@ -91,12 +87,12 @@ def conclude(run, screening, final_files, provenance, quick=False):
                     for row in ranking],
         "next_measurement": next_measurement(decision.ambiguity),
         "broken_invariances": broken_invariances(bench, null, prepared, power_balance.broken(before_bench, before.shown)),
-        "regions": mapping.regions(before_bench, difference, z, chosen_cells),
+        "regions": mapping.regions(before_bench, difference, z, misfit.counted(whole)),
         "misfit": gaps, "p_global_before": p_before, "p_global_after": p_after,
         "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
         "seconds": elapsed(folder), "simulations": simulations(null, paths, found, before.features, after.features),
         "not_testable": prepared.not_testable, "linear": prepared.linear[:SHOWN], "explained_z": decision.explained.tolist(),
-        "most_probable": verdict.effects_of(prepared, decision, prepared.scales), "provenance": provenance,
+        "most_probable": most_probable, "provenance": provenance,
     }  # fmt: skip
     write_text(json.dumps(plain(content), indent=1), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
@@ -118,6 +114,26 @@ def elapsed(folder):
         if len(rows) > 1 and file.stem != "discrepancy_report":
             total += float(rows[1].split("\t")[0])
     return total
+
+
+def completed(run, decision, before, seeds):
+    """Return the Verified of the model with what was adopted and what a Decision chose, `before` itself where that is nothing, None where whole records throw it off."""
+    if decision.chosen is None and run.prepared.adopted is None:
+        return before
+    whole, chosen = run.whole_bench, decision.chosen
+    if chosen is None:
+        return verified(whole, whole.model(), seeds, run.bench)
+    try:
+        return verified(whole, whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, run.prepared.scales))), seeds, run.bench)
+    except IntegrationError:
+        return None
+
+
+def misfits(whole, before, after):
+    """Return {split: misfit.misfit_of} of what two Verified leave, nothing known where a split has no records."""
+    cells, splits = misfit.counted(whole), {"fit": whole.signals.fit(), "holdout": whole.signals.holdout()}
+    return {name: misfit.misfit_of(whole, records, cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
+            {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
 
 
 @dataclass(frozen=True)

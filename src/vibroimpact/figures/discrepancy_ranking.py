@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.discrepancy_results import best_places
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GAP_COLOURS, GAP_MARKERS, GREY, ORANGE, RED, SKY, label_of, number
+from vibroimpact.shown_units import shown_unit
 
 MOST_BARS = 16
 MOST_PROFILES = 6
-# unit -> (shown unit, shown per SI unit, largest SI value that is shown so)
-PREFIXES = {"m": (("mm", 1e3, 0.5),), "N/m": (("N/m", 1.0, 2e3), ("kN/m", 1e-3, 2e6), ("MN/m", 1e-6, np.inf)),
-            "rad": (("deg", 180.0 / np.pi, np.inf),),
-            "s": (("ms", 1e3, 0.5),), "kg": (("g", 1e3, 0.5),), "N/m³": (("GN/m³", 1e-9, np.inf),)}
 NO_UNIT = ("", "1", "-")
 
 
@@ -21,7 +19,7 @@ def ranking_figure(ranking, named=()):
 
     ranking: rows {ids, fit_score, heldout_score, closed_fraction, threshold, tested}, ids joined by +; named: ids of the verdict.
     """
-    rows = sorted(ranking, key=lambda row: -_value(row["heldout_score"]))[:MOST_BARS]
+    rows = best_places(sorted(ranking, key=lambda row: -_value(row["heldout_score"])))[:MOST_BARS]
     caption = ("Candidates by how much better they explain the records that they were not fitted on (bars) and those that they were (rings), against "
                "the model as given or, where the lowest record shows a linear effect, the model with it. "
                "Red line: the best that chance does on campaigns with nothing hidden (98 % of them lie below). Text: share of the distance beyond "
@@ -197,12 +195,6 @@ def levels_figure(candidates, effects):
         axes.set_ylabel(axis_label(curve["parameter"], unit))
         sheet.legend(axes)
     return [sheet]
-
-
-def shown_unit(unit, values):
-    """Return (unit, display units per SI unit) for values in SI of a parameter."""
-    largest = float(np.nanmax(np.abs(np.asarray(values, float)))) if np.size(values) else 0.0
-    return next(((shown, factor) for shown, factor, limit in PREFIXES.get(unit, ()) if largest <= limit), (unit, 1.0))
 
 
 def axis_label(parameter, unit):
