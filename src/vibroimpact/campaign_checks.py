@@ -177,7 +177,7 @@ def _linear(measured, spectra, record):
         return
     if best < 0.8:
         yield _row("coherence", "warn", f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in record {name}: the "
-                                        "lowest level is not linear, or noisy.", name)
+                                        "lowest level is not linear, noisy, or moved by another force as well.", name)
     apart, common = delays(spectra, measured.kinds, measured.rate, finite)
     for index, samples in apart.items():
         yield _row("delay", "warn", f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by {abs(samples):.1f} "
