@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.dag import shard_of
 from vibroimpact.discrepancy.emulator import Emulator
@@ -240,6 +240,28 @@ def test_scatter_of_a_models_own_seeds_counts_where_it_is_clearly_larger():
     wider = null.scattered(seeds).covariance[0]
     assert np.diag(wider)[:2].tolist() == [1.0, 1.0]
     assert wider[2, 2] == pytest.approx(1.0 + seeds[0, :, 2].var(ddof=1) - null.features[0, :, 2].var(ddof=1))
+
+
+def test_chi_squares_of_a_record_of_bursts_scatter_more():
+    """A record in which one run of sixteen breaks out: its chi-square without that run is far from the others', so no 200 above expectation says that something is missing."""
+    rng, size = np.random.default_rng(5), 60
+    calm = rng.standard_normal((16, size))
+    burst = calm + np.where(np.arange(16) == 3, 4.0, 0.0)[:, None]
+    features = np.stack([calm, burst])
+    covariances = np.array([np.diag(np.full(size, 1.0)) + (1.0 + 1.0 / 16.0) * scatter_of(rows, Blend(size)).covariance for rows in features])
+    null = Null(np.array([1, 2]), features, features.mean(axis=1), covariances, covariances, np.zeros(size, int), Blend(size).blend)
+    chi_square = null.left_out()
+    assert chi_square.shape == (2, 16) and 0.4 * size < chi_square[0].mean() < 0.8 * size  # half of the covariance is what two codes differ by
+    assert np.argmax(chi_square[1]) == 3 and chi_square[1, 3] > 5.0 * np.median(chi_square[1])
+    least, wider = naming.bare_spread(null)
+    assert least == pytest.approx(naming.SPREAD * np.sqrt(2.0 * size)) and wider > 4.0 * least
+
+
+class Blend:
+    """What the compression of differences needs, so large that there is none."""
+
+    def __init__(self, size):
+        self.blend = np.full(size, 1.0e6)
 
 
 def test_a_likelihood_made_diagonal_once_is_the_same():

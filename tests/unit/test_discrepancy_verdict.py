@@ -30,6 +30,7 @@ def decided(monkeypatch):
         left = {row.mean: row.left for row in found} | {"null": rest}
         monkeypatch.setattr(verdict.naming, "totals", lambda *_: {row.candidate.name: (row.gain, row.gain - row.held_out, row.held_out) for row in found})
         monkeypatch.setattr(verdict.naming, "explained", lambda bench, null, mean, *_: left[mean])
+        monkeypatch.setattr(verdict.naming, "bare_explained", lambda *_: left["null"])
         monkeypatch.setattr(verdict, "closure", lambda *_: share)
         bench = SimpleNamespace(measured_features={"records": None})
         prepared = SimpleNamespace(adopted=adopted, linear=list(linear), scales=SCALES)

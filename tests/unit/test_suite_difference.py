@@ -54,7 +54,9 @@ def test_verdicts_are_held_against_each_other(tmp_path):
                                                                          [False, False, False, True]]  # fmt: skip
     assert rows[0]["moved_in_widths"] == pytest.approx(0.25) and rows[0]["other_value"] == 0.22 and rows[1]["parameter"] == ""
     rate = {row["quantity"]: row for row in agreement(rows)}
-    assert rate["verdict"]["rate"] == 0.5 and rate["verdict"]["low"] < 0.5 < rate["verdict"]["high"] and rate["verdict"]["campaigns"] == 4
+    same = rate["same verdict"]
+    assert same["rate"] == 0.5 and same["low"] < 0.5 < same["high"] and same["campaigns"] == 4
+    assert (rows[1]["verdict"], rows[1]["other_verdict"]) == ("ambiguous", "named")
 
 
 def test_campaigns_that_one_suite_lacks_are_no_difference(tmp_path):

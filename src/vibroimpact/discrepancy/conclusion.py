@@ -69,7 +69,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     after = completed(run, decision, before, seeds)
     gaps = None if after is None else misfits(whole, before, after)
     if gaps is None or verdict.refuted(decision, gaps["holdout"]["closed_fraction"]):  # nothing is added then
-        decision = replace(decision, verdict="unknown", chosen=None, ambiguity=[], explained=naming.explained(bench, null, null.mean, measured, False))
+        decision = replace(decision, verdict="unknown", chosen=None, ambiguity=[], explained=naming.bare_explained(bench, null, measured))
         after = completed(run, decision, before, seeds)
         gaps = misfits(whole, before, after)
     p_after = p_before

@@ -27,12 +27,10 @@ def global_p(bench, null, measured, mean=None, law=True):
     """Return p: how probable records as far off as the measured ones are, from seeds and what two codes differ by.
 
     mean (record, feature) of a model, the null's where None; law: whether what it changes counts as uncertain as its law. The sum of the records'
-    chi-squares is compared with a gamma law of its expectation, widened as in naming.explained.
+    chi-squares is compared with a gamma law of its expectation and of the bare model's scatter, see naming.bare_spread.
     """
-    z = naming.explained(bench, null, null.mean if mean is None else mean, measured, law and mean is not None)
-    size, records = measured.shape[1], len(measured)
-    total = np.sum(size - z * naming.SPREAD * np.sqrt(2.0 * size))
-    expected, variance = size * records, 2.0 * size * records * naming.SPREAD**2
+    total = naming.chi_squares(bench, null, null.mean if mean is None else mean, measured, law and mean is not None).sum()
+    expected, variance = measured.size, np.sum(naming.bare_spread(null) ** 2)
     return float(stats.gamma.sf(total, expected**2 / variance, scale=variance / expected))
 
 

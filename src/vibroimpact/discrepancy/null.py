@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
-from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, scatter_of
+from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, log_likelihood, scatter_of
 from vibroimpact.discrepancy.linearised import same_modes
 from vibroimpact.discrepancy.survivors import of_survivors
 
@@ -37,6 +37,16 @@ class Null:
     def seeds(self):
         """Return the number of seeds."""
         return self.features.shape[1]
+
+    def left_out(self):
+        """Return (record, seed): the chi-square of each seed under the others, with what two codes differ by."""
+        out = np.empty(self.features.shape[:2])
+        for record, seed in np.ndindex(out.shape):
+            own, others = self.features[record], np.delete(self.features[record], seed, axis=0)
+            known, left = (scatter_of(rows, self) for rows in (own, others))
+            covariance = self.covariance[record] - (1.0 + 1.0 / len(own)) * known.covariance + (1.0 + 1.0 / len(others)) * left.covariance
+            out[record, seed] = log_likelihood(compressed(own[seed] - left.mean, self), covariance)[1]
+        return out
 
     def freed(self, directions):
         """Return the Null with directions (direction, record, compressed feature) left free, one sigma each, in place of its own; itself where there are none."""

@@ -6,7 +6,7 @@ from vibroimpact.discrepancy.suite import read, share
 
 # quantity -> whether two judged rows agree in it
 AGREE = {
-    "verdict": lambda one, other: one["verdict"] == other["verdict"],
+    "same verdict": lambda one, other: one["verdict"] == other["verdict"],
     "same explanations": lambda one, other: _explanations(one) == _explanations(other),
     "an explanation in common, or none": lambda one, other: _explanations(one) == _explanations(other) or bool(_explanations(one) & _explanations(other)),
     "true in the set alike": lambda one, other: one["in_set"] == other["in_set"],

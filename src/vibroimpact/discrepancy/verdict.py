@@ -28,7 +28,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     linear = linear_sets(prepared)
     singles = [row for row in found if isinstance(row.candidate, Candidate)]
     doubles = [row for row in found if isinstance(row.candidate, Pair) and not idle(row, threshold)]
-    best, rest = singles[0] if singles else None, naming.explained(bench, null, null.mean, measured, False)
+    best, rest = singles[0] if singles else None, naming.bare_explained(bench, null, measured)
     named = "named" if len(linear) == 1 else "ambiguous"
     if prepared.adopted is None:
         quiet = p_before > priors.SIGNIFICANT or rest.min() > priors.EXPLAINED_Z
@@ -112,10 +112,8 @@ def local_sets(best, totals, names, sufficient=frozenset()):
 
 def closure(bench, null, found, measured):
     """Return the share of the distance beyond chance that a Finalist closes, on all records, in units of what seeds and two codes scatter by."""
-    size = measured.shape[1]
-    spread = naming.SPREAD * np.sqrt(2.0 * size)
-    before = np.sum(-naming.explained(bench, null, null.mean, measured, False) * spread)
-    after = np.sum(-naming.explained(bench, found.own(null), found.mean, measured) * spread)
+    before = np.sum(naming.chi_squares(bench, null, null.mean, measured, False) - measured.shape[1])
+    after = np.sum(naming.chi_squares(bench, found.own(null), found.mean, measured) - measured.shape[1])
     return 1.0 - np.sqrt(max(after, 0.0) / before) if before > 0.0 else 0.0
 
 
