@@ -44,7 +44,7 @@ class Forces:
         return out
 
 
-def simulate_records(model, schedule, forces, runs, kinds, extra=()):
+def simulate_records(model, schedule, forces, runs, kinds):
     """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed), LANES of them at a time.
 
     kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is the integral of neither: refused by the checks.
