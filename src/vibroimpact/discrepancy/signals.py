@@ -12,8 +12,10 @@ DEFAULT_BAND_HZ = (5.0, 200.0)
 EXCITED = 1.0e-3  # of the largest smoothed force PSD: above it a line is excited
 QUIET = 0.75  # of half the sampling frequency: where the anti-alias filter begins
 QUIET_ABOVE = 1.6  # times the band's upper end
-PARTS, BELOW, LEAST_LINES = 12, 5.0, 40  # of the spectrum, from this much below the band; lines of a part that tells its density
-FAR_BELOW = 0.4  # of the density above the band: a part below it is no scatter
+LEAST_QUIET = 50  # lines above the band: with fewer, the record was not sampled to tell its noise
+BELOW, LEAST_LINES, MOST_LINES = 5.0, 40, 500  # the spectrum is looked at from this much below the band; lines of a part of it
+MEDIAN_SCATTER = 1.77  # sigma of the median of n lines is this over sqrt(n) of it: 1 / ln 2 for exponentials, sqrt(1.5) for neighbours under a Hann window
+ALIKE = 4.0  # sigma: the least of some dozens of parts lies two below their mean, and none far above it
 
 
 @dataclass(frozen=True)
@@ -110,9 +112,10 @@ def excited_band(force, rate):
 
 
 def noise_of(campaign, response, rate, band):
-    """Return (channel,) RMS of the noise: as the campaign says, or from the lowest record above the excited band; 0 where neither tells.
+    """Return (channel,) RMS of the noise: as the campaign says, or the least density of the lowest record's spectrum; 0 where neither tells.
 
-    Impacts fill the range above the band. Where a part of the spectrum is far below it, the noise can be no more than that.
+    Where the lowest record touches, impacts fill the range above the band: noise is what parts of the spectrum that are as low as the lowest have, within
+    their scatter.
     """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float)
@@ -120,16 +123,21 @@ def noise_of(campaign, response, rate, band):
     window = np.hanning(valid.shape[-1])
     frequency = np.fft.rfftfreq(valid.shape[-1], 1.0 / rate)
     quiet = (frequency > QUIET_ABOVE * band[1]) & (frequency < QUIET * 0.5 * rate)
-    if quiet.sum() < 50:
+    if quiet.sum() < LEAST_QUIET:
         return np.zeros(len(response))
     power = np.abs(np.fft.rfft(window * valid, axis=-1)) ** 2
-    edges = np.geomspace(band[0] / BELOW, QUIET * 0.5 * rate, PARTS + 1)
-    parts = [(frequency >= low) & (frequency < high) for low, high in itertools.pairwise(edges)]
-    density = _density(power[:, quiet])
-    least = np.min([density, *(_density(power[:, part]) for part in parts if part.sum() >= LEAST_LINES)], axis=0)
-    return np.sqrt(np.where(least < FAR_BELOW * density, least, density) / np.sum(window**2))
+    edges = _edges(*np.searchsorted(frequency, [band[0] / BELOW, QUIET * 0.5 * rate]))
+    lines = np.diff(edges)
+    # from the median: lines of noise are exponentials, and a few of something else do not count
+    density = np.array([np.median(power[:, low:high], axis=-1) for low, high in itertools.pairwise(edges)]) / np.log(2.0)
+    least = np.min(density * (1.0 + ALIKE * MEDIAN_SCATTER / np.sqrt(lines))[:, None], axis=0)
+    share = lines[:, None] * (density <= least)
+    return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
 
 
-def _density(power):
-    """Return (channel,) the mean of (channel, line), from the median: lines of noise are exponentials, and a few of something else do not count."""
-    return np.median(power, axis=-1) / np.log(2.0)
+def _edges(first, last):
+    """Return the lines between parts of a spectrum's lines from first to last: narrow where lines are few, never wider than MOST_LINES."""
+    edges = [first]
+    while edges[-1] < last:
+        edges.append(edges[-1] + min(MOST_LINES, max(LEAST_LINES, edges[-1] // 2)))
+    return edges[:-1] if len(edges) > 2 else [first, last]
