@@ -112,13 +112,13 @@ def test_the_search_finds_the_top_of_a_tilted_hill(best):
     unit = _best(score, np.full(len(best), 0.5))
     np.testing.assert_allclose(unit, best, atol=0.02 if len(best) > 2 else 0.004)
     for number, (values, scores) in enumerate(_profile(score, unit)):
-        low, high = _above(values, scores, NINETY)
+        low, high = _above(values, scores, unit[number], NINETY)
         assert high - low == pytest.approx(2 * 1.645 * 0.08 * np.sqrt(np.linalg.inv(tilt)[number, number]), rel=0.1)
 
 
 def test_a_likelihood_that_knows_nothing_gives_the_whole_range():
     (values, scores), = _profile(lambda point: 0.0, np.array([0.4]))
-    assert _above(values, scores).tolist() == [0.0, 1.0]
+    assert _above(values, scores, 0.4).tolist() == [0.0, 1.0]
 
 
 def test_components_of_a_vector_are_also_tried_alone():
@@ -136,8 +136,20 @@ def test_where_an_effect_is_nothing_is_known_where_its_range_holds_it():
 
 def test_interval_of_a_parabola():
     values = np.linspace(0.0, 1.0, 61)
-    low, high = _above(values, -0.5 * ((values - 0.4) / 0.1) ** 2, NINETY)
+    low, high = _above(values, -0.5 * ((values - 0.4) / 0.1) ** 2, 0.38, NINETY)
     np.testing.assert_allclose([low, high], [0.4 - 0.1645, 0.4 + 0.1645], atol=0.006)
+
+
+def test_an_interval_is_that_of_its_own_hill():
+    """Where nothing was simulated the score of an emulator rises again, above what is known."""
+    values = np.linspace(0.0, 1.0, 61)
+    low, high = _above(values, np.maximum(-0.5 * ((values - 0.4) / 0.05) ** 2, np.where(values > 0.9, 30.0, -20.0)), 0.41, NINETY)
+    np.testing.assert_allclose([low, high], [0.4 - 0.0822, 0.4 + 0.0822], atol=0.006)
+
+
+def test_a_profile_stays_where_it_was_looked_at():
+    (values, _), = _profile(lambda point: -float(point[0] ** 2), np.array([0.4]), np.array([[0.2, 0.6]]))
+    assert (values.min(), values.max()) == (0.2, 0.6)
 
 
 def test_closed_fraction_is_that_of_the_excess():

@@ -172,7 +172,7 @@ def pairs(run, files, screened, path, quick=False):
             least = float(gains_of(bench, null, measured, found[0].path, found[0].own(null)).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
-            out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths)}
+            out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths, run.prepared.scales)}
     write_text(json.dumps({"pairs": out, "least": least, "threshold": threshold}, indent=1), path)
 
 

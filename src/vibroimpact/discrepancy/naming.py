@@ -132,15 +132,22 @@ SPREAD = 1.25  # right models of the development campaigns: 205 to 300 for 270 f
 
 
 def not_told_apart(total, best, sufficient=frozenset()):
-    """Return the names whose total gain is too near the best's: within AMBIGUOUS. An alias of the catalogue also within ALIAS_AMBIGUOUS, and wherever it
-    leaves nothing to be explained (sufficient: names of those that do not): two laws of one kind differ by less than two codes of one law. Laws of one quantity within
-    SAME_QUANTITY: which of them another code, with other contact points, comes nearer to is no property of the structure."""
+    """Return the names whose total gain is too near the best's: within AMBIGUOUS. An alias of the catalogue, of a pair's with the other effect the same, also within
+    ALIAS_AMBIGUOUS, and wherever it leaves nothing to be explained (sufficient: names of those that do not): two laws of one kind differ by less than two codes of one
+    law. Laws of one quantity within SAME_QUANTITY: which of them another code, with other contact points, comes nearer to is no property of the structure."""
     first, out = candidate_named(best), []
     for name, (gain, _, _) in total.items():
         other = candidate_named(name)
-        alias = bool({*other.ids} & {*first.effect.aliases} or {*first.ids} & {*other.effect.aliases})
+        alias = any({*two.ids} & {*one.effect.aliases} or {*one.ids} & {*two.effect.aliases} for one, two in [_exchanged(first, other)] if one and two)
         near = gain > total[best][0] - (priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS) or alias and name in sufficient
         same = first.effect.quantity and first.effect.quantity == other.effect.quantity and gain > priors.SAME_QUANTITY * total[best][0]
-        if other.ids != first.ids and (near or same):
+        if sorted(other.ids) != sorted(first.ids) and (near or same):
             out.append(name)
     return out
+
+
+def _exchanged(first, other):
+    """Return the (Candidate, Candidate) by which two answers differ, (None, None) where that is more than one effect."""
+    one, two = ([candidate for candidate, _ in row.parts(())] for row in (first, other))
+    left = [row for row in one if row.ids not in [same.ids for same in two]], [row for row in two if row.ids not in [same.ids for same in one]]
+    return tuple(row[0] for row in left) if [*map(len, left)] == [1, 1] else (None, None)

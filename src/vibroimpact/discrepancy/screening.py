@@ -152,9 +152,9 @@ def calibrate(bench, null, measured, candidate, path, fit, box=None):
         law = at(unit, [])[1]
         held = {record: LawLikelihood(null.covariance[record], law[record], null.groups, spread[record]) for record in fitted}
         unit = _best(lambda point, held=held: fit_score(point, held), unit, box)
-    profile = _profile(lambda point: fit_score(point, held), unit)
+    profile = _profile(lambda point: fit_score(point, held), unit, box)
     records, deviation = at(unit, np.arange(len(measured)))
-    interval = np.array([_above(values, score) for values, score in profile])
+    interval = np.array([_above(values, score, at) for at, (values, score) in zip(unit, profile, strict=True)])
     return Calibrated(unit, records, low_at(unit), null.mean + uncompressed(deviation, bench.layout), interval, profile)
 
 
@@ -183,8 +183,9 @@ def _top(score, points):
     return points[np.argmax([score(point) for point in points])]
 
 
-def _profile(score, unit):
-    """Return [(values (n,), score (n,))] along each parameter through the best, the others following the ridge that the curvature there tells."""
+def _profile(score, unit, box=None):
+    """Return [(values (n,), score (n,))] along each parameter through the best, within a box (parameter, 2), the others following the ridge that the curvature
+    there tells."""
     count = len(unit)
     at, step = np.clip(unit, CURVED, 1.0 - CURVED), CURVED * np.eye(count)
     bent = np.array([[score(at + a + b) - score(at + a - b) - score(at - a + b) + score(at - a - b) for b in step] for a in step]) / (4.0 * CURVED**2)
@@ -194,7 +195,7 @@ def _profile(score, unit):
     for number in range(count):
         sd, ridge = np.sqrt(covariance[number, number]), covariance[:, number] / covariance[number, number]
         near = unit[number] + sd * np.linspace(-4.0, 4.0, 33)
-        axis = np.unique(np.clip(np.concatenate([near, np.linspace(0.0, 1.0, 21)]), 0.0, 1.0))
+        axis = np.unique(np.clip(np.concatenate([near, np.linspace(0.0, 1.0, 21)]), *((0.0, 1.0) if box is None else box[number])))
         points = np.clip(unit + (axis - unit[number])[:, None] * ridge, 0.0, 1.0)
         out.append((axis, np.array([score(point) for point in points])))
     return out
@@ -208,9 +209,9 @@ def _lows(parameters, scores):
     return lambda unit: float(interpolator(np.atleast_2d(unit))[0])
 
 
-def _above(values, score, drop=NINETY + SCATTER):
-    """Return (low, high) of the values whose score is within `drop` of the best, between grid points by parabola and line."""
-    best = int(np.argmax(score))
+def _above(values, score, start, drop=NINETY + SCATTER):
+    """Return (low, high) of the values whose score is within `drop` of the best uphill from start, between grid points by parabola and line."""
+    best = _uphill(score, int(np.argmin(np.abs(values - start))))
     ends = []
     for step in (-1, 1):
         place = best
@@ -224,3 +225,12 @@ def _above(values, score, drop=NINETY + SCATTER):
         share = np.sqrt(share) if place == best else share  # beside a peak the score falls with the square
         ends.append(values[place] + share * (values[place + step] - values[place]))
     return np.clip(ends, 0.0, 1.0)
+
+
+def _uphill(score, place):
+    """Return the place of the top that score (n,) rises to from a place: far from what was simulated the emulator forgives what it does not know, and may be higher."""
+    while True:
+        higher = max(range(max(place - 1, 0), min(place + 2, len(score))), key=score.__getitem__)
+        if score[higher] <= score[place]:
+            return place
+        place = higher

@@ -100,13 +100,12 @@ def linear_sets(prepared):
 
 def local_sets(best, totals, names, sufficient=frozenset()):
     """Return [([ids], alone)] of what the contact levels can not tell apart, the best first; sufficient: names of those that leave nothing to be explained."""
-    if isinstance(best, Candidate):
-        alike = naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)
-    else:
-        alike = [name for name in names if totals[name][0] > totals[best.name][0] - priors.AMBIGUOUS]
+    alike = naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)
     out = [(sorted(candidate.ids), candidate.alone) for candidate in (best, *map(candidate_named, alike))]
-    if isinstance(best, Candidate) and best.effect_id == "gap" and best.location == "all":
-        out.append((["sensor_gain"], False))  # force and all responses scaled alike are a gap scaled: an exact alias
+    # force and all responses scaled alike are a gap scaled: an exact alias, also beside another effect
+    scaled = [candidate.ids for candidate, _ in best.parts(()) if candidate.effect_id == "gap" and candidate.location == "all"]
+    if scaled:
+        out += [(sorted({*ids} - {"gap"} | {"sensor_gain"}), alone) for ids, alone in out if "gap" in ids]
     return out
 
 
