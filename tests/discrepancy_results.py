@@ -57,7 +57,8 @@ def made_up_candidates():
     loads, value = [3.0, 10.0, 10.0], [0.142, 0.149, 0.158]
     by_level = {"parameter": "mu", "unit": "1", "load_rms_N": loads, "gap_m": [2.48e-4, 2.48e-4, 1.71e-4], "value": value, "low": [0.11, 0.131, 0.139], "high": [0.18, 0.168, 0.178]}
     gap = np.linspace(1.5e-4, 4e-4, 9)
-    return [{"ids": ["dry_friction"], "profile": [{"parameter": "mu", "unit": "1", "values": mu.tolist(), "score": (212.0 - 90.0 * np.log(mu / 0.15) ** 2).tolist()}],
+    return [{"ids": ["dry_friction"], "profile": [{"parameter": "mu", "unit": "1", "values": mu.tolist(), "score": (212.0 - 90.0 * np.log(mu / 0.15) ** 2).tolist(),
+                                                     "simulated": [0.1, 0.15, 0.3]}],
              "by_level": [by_level]},
             {"ids": ["gap"], "profile": [{"parameter": "gap", "unit": "m", "values": gap.tolist(), "score": (31.0 - 9e9 * (gap - 2.6e-4) ** 2).tolist()}]}]
 

@@ -108,6 +108,11 @@ def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair
     assert axis_label("foliate_obstacle.angle", "deg") == "foliate obstacle, angle (deg)"
 
 
+def test_profiles_show_what_was_simulated(folder, figures):
+    rows = [row["parameter"] for row in rows_of(folder, "discrepancy_profiles") if row["curve"] == "mu simulated"]
+    assert [float(value) for value in rows] == [0.1, 0.15, 0.3]
+
+
 def test_parameters_are_shown_in_units_of_the_field():
     assert shown_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and shown_unit("m", [1.2]) == ("m", 1.0)
     assert shown_unit("N/m", [4e6]) == ("MN/m", 1e-6) and shown_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3) and shown_unit("1", [0.15]) == ("1", 1.0)

@@ -208,12 +208,14 @@ def bounds(decision, prepared):
 
 
 def write_candidates(found, prepared, totals, folder, levels):
-    """Write candidates/<name>.json: parameters with their intervals, the score along each of them, and levels {name: see by_level}."""
+    """Write candidates/<name>.json: parameters with their intervals, the score along each of them and the values that were simulated, and levels {name: see by_level}."""
     for row in found:
         parts = [(row.candidate.first, 0), (row.candidate.second, row.candidate.split)] if isinstance(row.candidate, Pair) else [(row.candidate, 0)]
         profile, parameters = [], {}
         for candidate, offset in parts:
-            unit, interval = (np.array(rows[offset : offset + len(candidate.effect.parameters)]) for rows in (row.unit, row.interval))
+            own = slice(offset, offset + len(candidate.effect.parameters))
+            unit, interval = row.unit[own], np.array(row.interval[own])
+            simulated = [candidate.physical(point, prepared.scales) for point in row.path.parameters[:, own]]
             estimate = candidate.estimate(unit, interval, prepared.scales)
             for number, parameter in enumerate(candidate.effect.parameters):
                 values, score = row.profile[offset + number]
@@ -223,7 +225,8 @@ def write_candidates(found, prepared, totals, folder, levels):
                     moved[number] = value
                     sizes.append(candidate.physical(moved, prepared.scales)[parameter.name])
                 name = parameter.name if len(parts) == 1 else f"{candidate.effect.reported}.{parameter.name}"
-                profile.append({"parameter": name, "unit": parameter.unit, "values": sizes, "score": score.tolist()})
+                profile.append({"parameter": name, "unit": parameter.unit, "values": sizes, "score": score.tolist(),
+                                "simulated": sorted({point[parameter.name] for point in simulated})})  # fmt: skip
                 parameters[name] = dict(zip(("value", "low", "high"), estimate[parameter.name], strict=True)) | {"unit": parameter.unit}
         content = {"ids": row.candidate.ids, "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
                    "parameters": parameters, "by_level": levels.get(row.candidate.name, [])}  # fmt: skip

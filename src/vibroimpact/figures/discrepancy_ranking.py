@@ -94,12 +94,14 @@ def _true(value):
 def profiles_figure(candidates, effects):
     """Return [Sheet] of score against parameter value for the named effects, for the best candidate where none is named; effects that the lowest record told have none.
 
-    candidates: contents of candidates/*.json, {ids, parameters: {name: {value}}, profile: [{parameter, unit, values, score}]}, best first; effects: those of verdict.json.
+    candidates: contents of candidates/*.json, {ids, parameters: {name: {value}}, profile: [{parameter, unit, values, score, simulated}]}, best first; effects: those of
+    verdict.json.
     """
     shown = named_of(candidates, effects)
     curves = [curve for candidate in shown for curve in candidate.get("profile", [])][:MOST_PROFILES]
     caption = ("Score against each parameter, the others re-fitted, where they were scanned. Line: value of the verdict; shaded: its 90 % interval. "
-               "A curve that is flat, or highest at an end, tells nothing about its parameter.")
+               "Ticks: values that were simulated; between those far apart the curve forgives what it does not know. A curve that is flat there tells nothing about its "
+               "parameter.")
     if not curves:
         sheet = Sheet("discrepancy_profiles", "How well the parameters are known", caption)
         why = "no parameter was scanned" + ": what is named was read off the lowest record" * bool(effects)
@@ -146,6 +148,10 @@ def _profile(sheet, axes, curve, effects):
     score = np.asarray(curve["score"], float)[order]
     place = sheet.record(axes, curve["parameter"], parameter=np.asarray(curve["values"], float)[order], score=score)
     axes.plot(values, score, color=BLUE, marker="o", markersize=4, gid=place)
+    simulated = np.asarray(curve.get("simulated", []), float)
+    if len(simulated):
+        place = sheet.record(axes, f"{curve['parameter']} simulated", parameter=simulated)
+        axes.plot(factor * simulated, np.full(len(simulated), 0.025), "|", color=BLACK, markersize=10, transform=axes.get_xaxis_transform(), gid=place)
     found = found_of(effects, curve["parameter"])
     if found is not None:
         axes.axvspan(factor * found["low"], factor * found["high"], color=ORANGE, alpha=0.2, linewidth=0, zorder=0)
