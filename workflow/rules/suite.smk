@@ -24,9 +24,9 @@ rule suite_bank:
         "results/{suite}/logs/bank.log",
     benchmark:
         "results/{suite}/benchmarks/bank.tsv"
-    threads: 1
+    threads: 8
     resources:
-        mem_mb=3000,
+        mem_mb=6000,
         runtime=120,
     message:
         "Candidates simulated on a campaign with nothing hidden, for all campaigns of {wildcards.suite}"

@@ -13,5 +13,5 @@ folder, tables = Path(snakemake.output.done).parent, {}
 suite = suite_of(snakemake.wildcards.suite)
 make_campaign(Plan((0, 0), (), "null", levels=LEVELS, duration=float(suite["seconds"]), gain_scatter=0.0, frequency_scatter=0.0, damping_scatter=0.0),
               snakemake.output.campaign, folder / "truth.json", False)  # fmt: skip
-run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables, for_all=True, draw=suite["draw"])
+run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables, for_all=True, draw=suite["draw"], workers=snakemake.threads)
 (folder / "tables.pickle").write_bytes(pickle.dumps(tables))
