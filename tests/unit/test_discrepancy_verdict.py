@@ -161,8 +161,15 @@ def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
 
 def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided):
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
-    assert verdict.refuted(part, -2.8) and not verdict.refuted(part, 0.4) and not verdict.refuted(part, None)
-    assert not verdict.refuted(decided([finalist("gap@all", 300.0)]), -2.8)
+    assert verdict.refuted(part, 0.5, -2.8) and not verdict.refuted(part, 0.5, 0.4) and not verdict.refuted(part, 0.5, None)
+    assert not verdict.refuted(decided([finalist("gap@all", 300.0)]), 0.5, -2.8)
+
+
+def test_a_part_that_makes_no_records_better_is_no_explanation(decided):
+    """Likelihood may gain by co and quad and kurtosis where no band's power comes nearer."""
+    part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
+    assert verdict.refuted(part, -0.01, -0.2) and verdict.refuted(part, 0.05, None) and not verdict.refuted(part, None, None)
+    assert not verdict.refuted(part, 0.6, -0.2) and not verdict.refuted(part, -0.01, 0.6)
 
 
 def screened(**scores):

@@ -68,7 +68,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     most_probable = verdict.effects_of(prepared, decision, prepared.scales)
     after = completed(run, decision, before, seeds)
     gaps = None if after is None else misfits(whole, before, after)
-    if gaps is None or verdict.refuted(decision, gaps["holdout"]["closed_fraction"]):  # nothing is added then
+    if gaps is None or verdict.refuted(decision, *(gaps[split]["closed_fraction"] for split in ("fit", "holdout"))):  # nothing is added then
         decision = replace(decision, verdict="unknown", chosen=None, ambiguity=[], explained=naming.bare_explained(bench, null, measured))
         after = completed(run, decision, before, seeds)
         gaps = misfits(whole, before, after)

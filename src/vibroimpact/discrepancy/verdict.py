@@ -59,9 +59,13 @@ def decide(bench, null, prepared, found, threshold, p_before):
     return Decision("named" if len(together) == 1 else "ambiguous", best, together, totals, left, threshold)
 
 
-def refuted(decision, closed):
-    """Return whether a partial explanation makes the held-out records worse: closed, the share of the misfit that it closes there, None where there is none to close."""
-    return decision.verdict == "partly_explained" and closed is not None and closed < priors.WORSE
+def refuted(decision, fitted, held_out):
+    """Return whether a partial explanation makes the held-out records worse, or no records better: shares of the misfit that it closes on those fitted and on those
+    held out, None where there is none to close."""
+    if decision.verdict != "partly_explained":
+        return False
+    known = [share for share in (fitted, held_out) if share is not None]
+    return held_out is not None and held_out < priors.WORSE or bool(known) and max(known) < priors.LEAST_CLOSED
 
 
 def simpler(best, found, totals, prepared):
