@@ -230,7 +230,9 @@ def elsewhere(candidate, values):
 
 
 def other_places(candidate, values):
-    """Return the candidate at every other place of its kind, of an effect that sits at a point."""
+    """Return the candidate at every other place of its kind, of an effect that sits at a point; of a Pair the second effect, as the first was placed alone."""
+    if isinstance(candidate, Pair):
+        return [Pair(candidate.first, other) for other in other_places(candidate.second, values)]
     locations = candidate.effect.locations(values)
     return [replace(candidate, location=place) for place in locations if place != candidate.location] if candidate.effect_id in QUICK_PLACES else []
 

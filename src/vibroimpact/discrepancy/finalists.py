@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import other_places
+from vibroimpact.discrepancy.candidates import Pair, other_places
 from vibroimpact.discrepancy.neighbourhood import NEAR, NEW, apart, around, box_round, images, near, nearest, unknown
 from vibroimpact.discrepancy.null import free_at
 from vibroimpact.discrepancy.screening import LAW_TURNS, Path, calibrate, direct_scores, linear_score, null_scores, path_emulator, simulate_path
@@ -83,9 +83,11 @@ def placed(bench, null, measured, candidate, path, places, scales, fit, first_se
 def placed_again(bench, null, measured, found, scales, fit, first_seed=15000):
     """Return (candidate, Path) of the other place, now that it is known how strong a Finalist is, that comes as near as it or nearer, None where there is none.
 
-    Places a hand apart differ by less than the points of the design that they were screened at.
+    Places a hand apart differ by less than the points of the design that they were screened at. Of a pair the second effect is moved.
     """
     own, at = found.own(null), around(found.unit, PLACED_STEP, found.candidate.periodic)
+    if isinstance(found.candidate, Pair):
+        at = at[np.all(at[:, : found.candidate.split] == found.unit[: found.candidate.split], axis=1)]
     best = _scores(bench, own, measured, found.path, fit).max() - SAME_PLACE
     return _nearest_place(bench, own, measured, other_places(found.candidate, bench.values), at, scales, fit, first_seed, best)
 
@@ -171,7 +173,8 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
         known = len(path.parameters)
         path = path if fresh is None else path.joined(fresh)
         before, gain = gain, gains_of(bench, null, measured, path, own).max()
-        losing = losing or gain + (rounds - 1 - number) * max(0.0, gain - before) < least  # rounds to come may bring as much as the last
+        # rounds to come may bring as much as the last; what began with a star has had none
+        losing = losing or fresh is not None and gain + (rounds - 1 - number) * max(0.0, gain - before) < least
         if not losing and (at is None or apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)

@@ -97,6 +97,7 @@ def finalist(run, name, chosen, path, quick=False):
     if places and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
         candidate, known = placed(bench, null, measured, candidate, known, places, sizes, fit)
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
+    leads = leads or not single and found is not None and gains_of(bench, null, measured, found.path, found.own(null)).max() > least
     if leads and not quick and found is not None and second.needed(naming.explained(bench, found.own(null), found.mean, measured)):
         found = at_another_place(bench, null, measured, found, sizes, fit, least)
     if found is not None and not single:
@@ -172,7 +173,7 @@ def pairs(run, files, screened, path, quick=False):
             least = float(gains_of(bench, null, measured, found[0].path, found[0].own(null)).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
-            out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths, run.prepared.scales)}
+            out |= {pair.name: unit.tolist() for pair, unit, gain in second.pairs(bench, null, measured, found, paths, run.prepared)}
     write_text(json.dumps({"pairs": out, "least": least, "threshold": threshold}, indent=1), path)
 
 

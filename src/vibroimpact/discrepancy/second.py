@@ -1,54 +1,117 @@
 """A second effect: pairs proposed by adding what each effect changes, simulated at the point proposed, those that come nearest looked at closely."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import Pair
+from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.features import compressed, uncompressed
 from vibroimpact.discrepancy.finalists import gains_of
 from vibroimpact.discrepancy.screening import direct_scores, linear_score, simulate_path
 
 PAIRS, LEAST_PAIRS = 4, 2
 FIRSTS = 3
+POINTS = 2  # of an effect of several parameters, where one of a coarse design may be far off in the other
 WITHOUT_FIRST = 6  # pairs without the best finalist that are simulated; with it all are
 NEAR = 0.5  # of what the best adds to a single effect: pairs beyond the first two that add less are not looked at closely
 
 
-def pairs(bench, null, measured, found, paths, scales, first_seed=25000):
-    """Return [(Pair, unit (parameter,), gain)], best first, by direct simulation where `proposed` looks best; arguments as of `proposed`, scales of normalised parameters.
+@dataclass(frozen=True)
+class Told:
+    """A linear effect that the lowest record tells of, as the first of pairs: unit (parameter,) normalised, mean (record, feature) and log likelihood `low` there."""
 
-    Two effects that act on one contact change each other: a larger gap and a damped contact add to nothing, and together explain what neither does.
+    candidate: object
+    unit: np.ndarray
+    mean: np.ndarray
+    low: float
+
+    def own(self, null):
+        """Return the Null as it is."""
+        return null
+
+
+def told(bench, null, prepared, first_seed=24000):
+    """Return [Told] of the linear effect that comes nearest to a lowest record that is not quite linear, nothing elsewhere.
+
+    A mass and a stop that is met now and then: no single effect is near, and what looks best, a friction that stills the tube, belongs to neither.
     """
-    rows, best = [], set(found[0].candidate.ids)
-    order = proposed(bench, null, measured, found, paths)
-    others = [row for row in order if not best <= set(row[1].ids)]
-    for first, pair, unit in [row for row in order if best <= set(row[1].ids)] + others[:WITHOUT_FIRST]:
-        path = simulate_path(bench, pair, unit, scales, null.records, first_seed=first_seed)
-        if path is not None:
-            rows.append((pair, unit, float(gains_of(bench, null, measured, path, first.own(null))[0])))
-    rows.sort(key=lambda row: -row[2])
+    row = next((row for row in prepared.linear if "+" not in row["name"] and not candidate_named(row["name"]).effect.measured), None)
+    if row is None or not prepared.nonlinear_low or prepared.adopted is not None:
+        return []
+    candidate, unit = candidate_named(row["name"]), np.array(row["unit"])
+    path = simulate_path(bench, candidate, unit, prepared.scales, null.records, first_seed=first_seed)
+    return [] if path is None else [Told(candidate, unit, path.features[0], linear_score(bench, path.readings[0]))]
+
+
+def pairs(bench, null, measured, found, paths, prepared, first_seed=25000):
+    """Return [(Pair, unit (parameter,), gain)], best first, by direct simulation where `proposed` looks best.
+
+    found: Finalists, best first; paths {Candidate: Path}. With the best of found, and with what the lowest record tells, every effect is tried. Two effects that act
+    on one contact change each other: a larger gap and a damped contact add to nothing, and together explain what neither does.
+    """
+    def simulated(first, pair, unit):
+        path = simulate_path(bench, pair, unit, prepared.scales, null.records, first_seed=first_seed)
+        return _Simulated(first, pair, unit, -np.inf if path is None else float(gains_of(bench, null, measured, path, first.own(null))[0]))
+
+    firsts, best = [*found[:FIRSTS], *told(bench, null, prepared)], set(found[0].candidate.ids)
+    order = proposed(bench, null, measured, firsts, paths)
+    leading = [row for row in order if isinstance(row[0], Told) or best <= set(row[1].ids)]
+    others = [row for row in order if not (isinstance(row[0], Told) or best <= set(row[1].ids))]
+    rows = _one_each([simulated(*row) for row in leading + others[:WITHOUT_FIRST]])
+    for number, row in enumerate(rows[:LEAST_PAIRS]):
+        rows[number] = max([row, *(simulated(row.first, pair, row.unit) for pair in _at_other_places(row.pair, paths))], key=lambda row: row.gain)
+    rows = sorted((row for row in rows if np.isfinite(row.gain)), key=lambda row: -row.gain)
     single = max(gains_of(bench, null, measured, first.path, first.own(null)).max() for first in found[:FIRSTS])
-    return [row for place, row in enumerate(rows[:PAIRS]) if place < LEAST_PAIRS or row[2] - single > NEAR * (rows[0][2] - single)]
+    return [(row.pair, row.unit, row.gain) for place, row in enumerate(rows[:PAIRS])
+            if place < LEAST_PAIRS or row.gain - single > NEAR * (rows[0].gain - single)]  # fmt: skip
 
 
-def proposed(bench, null, measured, found, paths):
-    """Return [(Finalist, Pair, unit (parameter,))], best first: the best finalists, each with every other effect where it looks best of its simulated points.
+@dataclass(frozen=True)
+class _Simulated:
+    """A pair at unit (parameter,), and its gain of log likelihood over the null; first: of `proposed`."""
 
-    What two effects change is added in the compressed features; found: Finalists, best first; paths {Candidate: Path}.
+    first: object
+    pair: Pair
+    unit: np.ndarray
+    gain: float
+
+
+def _one_each(rows):
+    """Return [_Simulated], best first, of each two effects the best: with what the lowest record tells apart from the same two without it."""
+    best = {}
+    for row in sorted(rows, key=lambda row: -row.gain):
+        best.setdefault((isinstance(row.first, Told), *sorted(row.pair.ids)), row)
+    return list(best.values())
+
+
+def _at_other_places(pair, paths):
+    """Return [Pair] with the second effect at the other places where it was screened: a sum chose where it sits."""
+    return [Pair(pair.first, other) for other in paths if other.effect_id == pair.second.effect_id and other != pair.second and not other.alone]
+
+
+def proposed(bench, null, measured, firsts, paths):
+    """Return [(first, Pair, unit (parameter,))], best first: each of firsts, Finalists and Told, with every other effect where it looks best of its simulated points, at
+    two of them where it has several parameters.
+
+    What two effects change is added in the compressed features; paths {Candidate: Path}.
     """
     best = {}
-    for first in found[:FIRSTS]:
+    for first in firsts:
         own, moved = first.own(null), compressed(first.mean - null.mean, bench.layout)
         for candidate, path in paths.items():
             if candidate.ids == first.candidate.ids or candidate.alone:
                 continue
+            rows = best.setdefault((isinstance(first, Told), frozenset((*first.candidate.ids, *candidate.ids))), [])
             for unit, mean, reading in zip(path.parameters, path.features, path.readings, strict=True):
                 both = null.mean + uncompressed(moved + compressed(mean - null.mean, bench.layout), bench.layout)
                 score = direct_scores(bench, own, measured, both).sum() + min(first.low, linear_score(bench, reading))
-                key = frozenset((*first.candidate.ids, *candidate.ids))
-                if key not in best or score > best[key][0]:
-                    best[key] = (score, first, Pair(first.candidate, candidate), np.concatenate([first.unit, unit]))
-    return [row[1:] for row in sorted(best.values(), key=lambda row: -row[0])]
+                rows.append((score, first, Pair(first.candidate, candidate), np.concatenate([first.unit, unit])))
+    chosen = []
+    for rows in best.values():
+        rows.sort(key=lambda row: -row[0])
+        chosen += rows[: POINTS if len(rows[0][2].second.effect.parameters) > 1 else 1]
+    return [row[1:] for row in sorted(chosen, key=lambda row: -row[0])]
 
 
 def least_added(gain, threshold):
