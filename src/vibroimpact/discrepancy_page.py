@@ -7,7 +7,7 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from vibroimpact.discrepancy_results import best_places
+from vibroimpact.discrepancy_results import best_places, shown_effects
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.shown_units import shown_unit
@@ -33,7 +33,6 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS):
     tests = [f"{test}, {TESTS[test]}" if test in TESTS else str(test) for test in verdict["broken_invariances"]]
     return template.render(
         name=name, verdict=verdict, floor=floor, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
-        sets=sets_in_words(verdict["ambiguity_set"]),
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
         figures=embedded(figures),
@@ -65,7 +64,8 @@ def verdict_sentence(verdict):
         "named": f"The model lacks {named}.{shrinks}{others}",
         "partly_explained": f"The model lacks {named}, and something else that the catalogue does not hold: the remaining difference is more than "
                             f"chance.{shrinks}{others}",
-        "ambiguous": f"One of these is missing, and this campaign can not tell which: {sets_in_words(verdict['ambiguity_set'])}.",
+        "ambiguous": f"One of these is missing, and this campaign can not tell which: {sets_in_words(verdict['ambiguity_set'])}."
+                     + shrinks.replace("Adding it", "Adding the most probable of them"),
         "unknown": f"The model and the measurement disagree, and no effect of the catalogue explains it: the map says where to look.{nearest}",
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
@@ -92,7 +92,7 @@ def _with_parameters(effect):
 
 
 def _effect_rows(verdict):
-    for effect in verdict["effects"]:
+    for effect in shown_effects(verdict):
         known = EFFECTS.get(effect["id"])
         head = {"effect": in_words([effect["id"]]), "explanation": known.explanation if known else "", "location": effect.get("location") or "all"}
         for name, value in [(name, _for_reading(row)) for name, row in effect["parameters"].items()] or [("", None)]:

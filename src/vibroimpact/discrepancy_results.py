@@ -34,6 +34,11 @@ def read_results(folder):
     return Results(verdict, _map(folder / "map.nc"), _map(folder / "map_after.nc"), ranking, candidates)
 
 
+def shown_effects(verdict):
+    """Return the effects of a verdict; where it can not tell which of several, the most probable ones, which its completed model holds."""
+    return verdict["effects"] or (verdict.get("most_probable", []) if verdict["verdict"] == "ambiguous" else [])
+
+
 NO_VALUE = ("None", "", "nan")
 
 

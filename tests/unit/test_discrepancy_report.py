@@ -126,6 +126,14 @@ def test_what_came_nearest_is_told_where_nothing_is_named():
     assert "nearest" not in verdict_sentence(made_up_verdict("unknown"))
 
 
+def test_of_several_the_most_probable_is_shown_with_its_parameters():
+    named = made_up_verdict()["effects"]
+    page = discrepancy_page("campaign", made_up_verdict("ambiguous") | {"most_probable": named}, [])
+    assert "The most probable of them" in page and "0.149" in page and "Adding the most probable of them closes" in page
+    assert "The most probable of them" not in discrepancy_page("campaign", made_up_verdict("ambiguous"), [])
+    assert "0.149" not in discrepancy_page("campaign", made_up_verdict("unknown") | {"most_probable": named}, [])
+
+
 def test_an_effect_that_was_screened_at_many_places_is_shown_at_the_best():
     rows = [{"ids": ids, "location": place, "heldout_score": score} for ids, place, score in
             (("clearance", "leg", 40.0), ("clearance", "apex", 20.0), ("clearance", "shaker", ""), (["gap"], "all", None), ("gap", "left", np.nan))]  # fmt: skip

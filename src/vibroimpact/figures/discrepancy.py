@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from vibroimpact.discrepancy_results import shown_effects
 from vibroimpact.figures.discrepancy_map import map_figure
 from vibroimpact.figures.discrepancy_ranking import levels_figure, profiles_figure, ranking_figure
 from vibroimpact.figures.discrepancy_spectra import spectra_figure
@@ -9,7 +10,7 @@ from vibroimpact.figures.discrepancy_spectra import spectra_figure
 
 def discrepancy_figures(results):
     """Return the Sheets of Results, in the order of the page; those that have nothing to show say so and hold no table."""
-    effects = results.verdict["effects"]
+    effects = shown_effects(results.verdict)
     named = [effect["id"] for effect in effects]
     return [*map_figure(results.before, results.after), *spectra_figure(results.before, results.after, results.verdict["regions"]),
             *ranking_figure(results.ranking, named), *profiles_figure(results.candidates, effects), *levels_figure(results.candidates, effects)]

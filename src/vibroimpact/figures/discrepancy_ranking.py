@@ -24,7 +24,7 @@ def ranking_figure(ranking, named=()):
                "the model as given or, where the lowest record shows a linear effect, the model with it. "
                "Red line: the best that chance does on campaigns with nothing hidden (98 % of them lie below). Text: share of the distance beyond "
                "chance that the candidate closes, on all records. Pale bars were judged by the emulator alone, dark ones by direct simulation; the named "
-               "effect is orange.")
+               "effect, or the most probable of several, is orange.")
     sheet = Sheet("discrepancy_ranking", "Which effect explains it", caption, size=(9.0, 1.5 + 0.3 * max(len(rows), 4)))
     axes = sheet.axes["main"]
     if not rows:
