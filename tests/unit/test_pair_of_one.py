@@ -1,5 +1,6 @@
 """A pair of which one effect explains as much alone becomes that effect, looked at closely where the pair led."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +19,7 @@ START = -400.0  # log likelihood of the bare model
 def looked_at(monkeypatch):
     """Return the function (total of the pair, of its parts) -> [(name, unit) of every close look], the file's name last."""
 
-    def run(total, parts, least=100.0):
+    def run(total, parts, least=100.0, elsewhere=None):
         looks, saved = [], []
 
         def refine(bench, null, measured, candidate, known, *_, **__):
@@ -26,6 +27,8 @@ def looked_at(monkeypatch):
             return Finalist(candidate, UNIT, None, np.array([total]), 0.0, None, None, [], None)
 
         monkeypatch.setattr(jobs, "refine", refine)
+        monkeypatch.setattr(jobs, "looked_for_elsewhere", lambda *_: elsewhere is not None)
+        monkeypatch.setattr(jobs, "at_another_place", lambda bench, null, measured, found, *_: replace(found, candidate=candidate_named(elsewhere)))
         monkeypatch.setattr(jobs, "started", lambda bench, null, candidate, unit, *_, **__: np.asarray(unit).tolist())
         monkeypatch.setattr(jobs, "with_parts", lambda bench, null, measured, found, _: Finalist(found.candidate, found.unit, None, found.scores, 0.0, None, None, [], None, np.array(parts)))
         monkeypatch.setattr(jobs, "gain_of_part", lambda bench, null, measured, found: found.parts.max() - START)
@@ -49,3 +52,17 @@ def test_a_pair_of_two_remains_one(looked_at):
 
 def test_an_effect_that_is_known_to_explain_more_is_not_looked_at_again(looked_at):
     assert looked_at(550.0, [-330.0, 570.0], least=980.0) == [(PAIR.name, UNIT.tolist()), PAIR.name]
+
+
+def test_a_pair_may_end_at_another_place(looked_at):
+    assert looked_at(550.0, [-330.0, 500.0], elsewhere="hertz@all+clearance@apex")[-1] == "hertz@all+clearance@apex"
+
+
+@pytest.mark.parametrize(("name", "gain", "left", "leads", "expected"), [
+    (PAIR.name, 120.0, -9.0, False, True), (PAIR.name, 90.0, -9.0, False, False), (PAIR.name, 120.0, -2.0, False, False),
+    ("clearance@apex", 120.0, -9.0, False, False), ("clearance@apex", 90.0, -9.0, True, True), ("clearance@apex", 90.0, -2.0, True, False)])  # fmt: skip
+def test_other_places_are_for_what_leads_or_adds_enough_and_leaves_something(monkeypatch, name, gain, left, leads, expected):
+    monkeypatch.setattr(jobs, "gains_of", lambda *_: np.array([0.0, gain]))
+    monkeypatch.setattr(jobs.naming, "explained", lambda *_: np.array([1.0, left]))
+    found = SimpleNamespace(candidate=candidate_named(name), path=None, mean=None, own=lambda null: null)
+    assert bool(jobs.looked_for_elsewhere(None, None, None, found, leads, 100.0)) is expected

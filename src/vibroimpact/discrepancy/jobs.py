@@ -97,8 +97,7 @@ def finalist(run, name, chosen, path, quick=False):
     if places and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
         candidate, known = placed(bench, null, measured, candidate, known, places, sizes, fit)
     found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
-    leads = leads or not single and found is not None and gains_of(bench, null, measured, found.path, found.own(null)).max() > least
-    if leads and not quick and found is not None and second.needed(naming.explained(bench, found.own(null), found.mean, measured)):
+    if found is not None and not quick and looked_for_elsewhere(bench, null, measured, found, leads, least):
         found = at_another_place(bench, null, measured, found, sizes, fit, least)
     if found is not None and not single:
         found = with_parts(bench, null, measured, found, sizes)
@@ -108,6 +107,13 @@ def finalist(run, name, chosen, path, quick=False):
             known = started(bench, null, candidate, unit, sizes, first_seed=9000)
             found = refine(bench, null, measured, candidate, known, sizes, fit, least=chosen["least"], seeds=seeds, first_seed=10000)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
+
+
+def looked_for_elsewhere(bench, null, measured, found, leads, least):
+    """Return whether other places of a Finalist are worth their runs: it leaves something, and leads, or is a pair that adds enough to count."""
+    own = found.own(null)
+    adds = isinstance(found.candidate, Pair) and gains_of(bench, null, measured, found.path, own).max() > least
+    return (leads or adds) and second.needed(naming.explained(bench, own, found.mean, measured))
 
 
 def at_another_place(bench, null, measured, found, sizes, fit, least):
