@@ -56,8 +56,8 @@ def pairs(bench, null, measured, found, paths, prepared, first_seed=25000):
 
     firsts, best = [*found[:FIRSTS], *told(bench, null, prepared)], set(found[0].candidate.ids)
     order = proposed(bench, null, measured, firsts, paths)
-    leading = [row for row in order if isinstance(row[0], Told) or best <= set(row[1].ids)]
-    others = [row for row in order if not (isinstance(row[0], Told) or best <= set(row[1].ids))]
+    leads = [isinstance(first, Told) or best <= set(pair.ids) for first, pair, unit in order]
+    leading, others = ([row for row, leading in zip(order, leads, strict=True) if leading is wanted] for wanted in (True, False))
     rows = _one_each([simulated(*row) for row in leading + others[:WITHOUT_FIRST]])
     for number, row in enumerate(rows[:LEAST_PAIRS]):
         rows[number] = max([row, *(simulated(row.first, pair, row.unit) for pair in _at_other_places(row.pair, paths))], key=lambda row: row.gain)
