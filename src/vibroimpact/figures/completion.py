@@ -16,16 +16,17 @@ from vibroimpact.steady import steady_elements
 KINDS = (("error_linear", "linear, lowest level", ORANGE), ("error_refitted", "linear, identified again", BLUE), ("error_completed", "completed", GREEN))
 LOOP_PERIODS = 4
 LOOPS = {ELSEWHERE: ("own_displacement", "own_force")}  # the participation of a hidden place has no scale of its own
+RESPONSES = {"acceleration": "(m/s²)/N", "velocity": "(m/s)/N", "displacement": "m/N", "contact_force": "N/N"}
 COLUMNS = {"stiffness": "support_stiffness_change_N_per_m", "damping": "support_damping_change_N_s_per_m"}
 
 
 def sheets(campaign, study, linear, completed, verdict, mounting, prediction):
     """Return the sheets of a completion; arguments as the workflow's files hold them. Sheets that would be empty are left out."""
-    levels, names, _ = levels_of(campaign)
+    levels, names, kinds = levels_of(campaign)
     trial = trial_of(completed["trial"])
     records = Records(tuple(levels), study.band_Hz, study.mean)
     predicted = records.predict(trial, LOOP_PERIODS)
-    return [frf_overlay(study, levels, names, linear, records, predicted if trial.terms else None), prediction_errors(study, prediction),
+    return [frf_overlay(study, levels, names, kinds, linear, records, predicted if trial.terms else None), prediction_errors(study, prediction),
             *([equivalent_support(study, mounting)] if mounting else []), where(study, levels, names, linear, verdict),
             *([restoring_force(study, trial, records)] if trial.terms else [])]  # fmt: skip
 
@@ -39,7 +40,7 @@ def saved_sheets(folder, campaign, study, linear, completed, verdict, mounting, 
     return [Path(folder) / f"{sheet.name}.png" for sheet in drawn]
 
 
-def frf_overlay(study, levels, names, linear, records, predicted):
+def frf_overlay(study, levels, names, kinds, linear, records, predicted):
     """Responses per force of every level: measured, linear and, where predicted is no None, completed."""
     columns = min(2, len(levels))
     shown = sorted({0, len(levels) - 1, *np.linspace(0, len(levels) - 1, 4).round().astype(int)})
@@ -64,8 +65,11 @@ def frf_overlay(study, levels, names, linear, records, predicted):
             sheet.line(axes, ("frequency_Hz", frequency), ("response_per_force", np.abs(values)), name, tags={"level": level.name, "channel": names[channel]},
                        color=colour, label=name, **style)  # fmt: skip
         axes.set_yscale("log")
-        axes.set_ylabel("V/V" if study.units.get("N") == "V" else "response / force (SI)")
+        unit = RESPONSES.get(kinds[channel], f"{study.unit('m')}/{study.unit('N')}")
+        axes.set_ylabel(f"Response per force\n({unit})")
         axes.set_title(f"{names[channel]}, {level.name} ({level.split})", fontsize=8)
+    for key in keys[len(panels) - columns : len(panels)]:
+        sheet.axes[key].tick_params(labelbottom=True)  # the last of a column, where the last row is not full
     sheet.legend(sheet.axes[grid[0][0]], fontsize=7)
     return sheet
 
@@ -120,8 +124,9 @@ def equivalent_support(study, rows):
         axes.axhline(0.0, color="0.7", linewidth=0.8)
         axes.set_xlabel(f"Load ({unit} RMS)")
     if study.units:
-        sheet.axes["stiffness"].set_ylabel("Change of k (-)")
-        sheet.axes["damping"].set_ylabel("Change of c (s)")
+        stiffness = study.unit("N/m")
+        sheet.axes["stiffness"].set_ylabel(f"Change of k ({stiffness})" if stiffness != "1" else "Change of k (-)")
+        sheet.axes["damping"].set_ylabel(f"Change of c ({stiffness} s)" if stiffness != "1" else "Change of c (s)")
     sheet.legend(sheet.axes["stiffness"], fontsize=7)
     return sheet
 
@@ -144,6 +149,8 @@ def where(study, levels, names, linear, verdict):
                 if region["channel"] == name and abs(region["load_rms_N"] - level.load_rms) < 1e-6 * level.load_rms:
                     axes.plot(region["band_Hz"], [-0.06 - 0.05 * place] * 2, color=colour, linewidth=3, solid_capstyle="butt")
         axes.set_title(name, fontsize=9)
+        axes.set_ylabel("Share of error (-)")
+    sheet.axes[names[0]].plot([], [], color="0.5", linewidth=3, label="holds most of it")
     sheet.legend(sheet.axes[names[0]], fontsize=7)
     return sheet
 
