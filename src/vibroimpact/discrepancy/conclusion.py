@@ -100,7 +100,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     write_record(mapping.map_dataset(whole, after.features, after.shown), folder / "map_after.nc")
     levels = {} if decision.chosen is None else {decision.chosen.candidate.name: by_level(bench, null, measured, decision.chosen, prepared.scales)}
     write_candidates(found, prepared, totals, folder / "candidates", levels)
-    write_text(updated_model(bench, decision, prepared), folder / "model_updated.yaml")
+    write_text(updated_model(bench if decision.chosen is None else bench.corrected_by(decision.chosen.nuisance), decision, prepared), folder / "model_updated.yaml")
 
 
 SHOWN = 8
@@ -123,6 +123,7 @@ def completed(run, decision, before, seeds):
     whole, chosen = run.whole_bench, decision.chosen
     if chosen is None:
         return verified(whole, whole.model(), seeds, run.bench)
+    whole = whole.corrected_by(chosen.nuisance)
     try:
         return verified(whole, whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, run.prepared.scales))), seeds, run.bench)
     except IntegrationError:
@@ -182,9 +183,10 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
             ids = [*([] if candidate.alone else prefix), *candidate.ids]
             rows.append({"ids": "+".join(ids), "location": where(row["name"]), "fit_score": row["score"], "heldout_score": None,
                          "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
+    known = 0.0 if prepared.adopted is None else prepared.adopted["gain"]  # against the model with it, as all others
     for row in prepared.linear[:SHOWN]:
         if prepared.adopted is None or row["name"] != prepared.adopted["name"]:
-            rows.append({"ids": "+".join(candidate_named(row["name"]).ids), "location": where(row["name"]), "fit_score": row["gain"], "heldout_score": None,
+            rows.append({"ids": "+".join(candidate_named(row["name"]).ids), "location": where(row["name"]), "fit_score": row["gain"] - known, "heldout_score": None,
                          "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True})  # fmt: skip
     return [{key: row[key] for key in COLUMNS} for row in rows]
 

@@ -32,7 +32,8 @@ IMAGED = 2  # rounds that try other signs as well
 class Finalist:
     """A candidate after direct simulation: unit (parameter,) normalised; interval (parameter, 2); scores (record,) and low: log likelihoods by direct
     simulation; mean (record, feature) over `features` (record, seed, feature); path: all that was simulated; profile: see screening.Calibrated; free: see
-    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one."""
+    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one; nuisance: Nuisance
+    told beside it, None for that of the bare model."""
 
     candidate: object
     unit: np.ndarray
@@ -44,6 +45,7 @@ class Finalist:
     profile: list
     free: np.ndarray
     parts: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    nuisance: object = None
 
     @property
     def total(self):

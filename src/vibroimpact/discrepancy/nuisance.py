@@ -12,6 +12,7 @@ from scipy import linalg
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.linearised import same_modes
 
+CREDIBLE = 4.0  # of chi-square per value: beyond it, readings differ by more than nuisances
 SEEN = 0.05  # of a mode's largest participation among the channels: below it a channel says nothing of the mode
 
 
@@ -104,6 +105,22 @@ def nuisance_of(pulls, modes, channels):
     count = len(modes)
     return Nuisance(modes, np.exp(priors.FREQUENCY_SD * limited[:count]), np.exp(priors.DAMPING_SD * limited[count : 2 * count]),
                     1.0 + priors.GAIN_SD * limited[2 * count : 2 * count + channels])  # fmt: skip
+
+
+def neutral(modes, channels):
+    """Return the Nuisance that corrects nothing."""
+    return Nuisance(np.asarray(modes), np.ones(len(modes)), np.ones(len(modes)), np.ones(channels))
+
+
+def cost(nuisance):
+    """Return what a Nuisance costs in log likelihood: half the squares of its corrections in sigma of their priors."""
+    pulls = np.concatenate([np.log(nuisance.frequency) / priors.FREQUENCY_SD, np.log(nuisance.damping) / priors.DAMPING_SD, (nuisance.gain - 1.0) / priors.GAIN_SD])
+    return 0.5 * float(pulls @ pulls)
+
+
+def credible(measured, simulated, error, times=1.0):
+    """Return whether a Reading is so near to another that nuisances may be what they differ by, or within so many times that; error: see difference."""
+    return likelihood(measured, simulated, error)[1] < times * CREDIBLE * len(difference(measured, simulated, error)[0])
 
 
 def without(reading, nuisance):

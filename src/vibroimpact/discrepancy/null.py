@@ -63,11 +63,11 @@ class Null:
 
 
 def unseen_damping(bench, values, factor):
-    """Return the model of a configuration in plain values with another damping of the structure's modes that the lowest record does not show."""
+    """Return the model of a configuration in plain values with another damping of the structure's modes that the lowest record does not tell of."""
     model = bench.model(values)
     plates = [np.sqrt(support["plate"]["stiffness_N_per_m"] / support["plate"]["mass_kg"]) for support in values["supports"] if support.get("plate")]
     unseen = ~np.isin(model.omega, plates)
-    if bench.linear_stage:
+    if bench.linear_stage and bench.modes_told:
         unseen[same_modes(model, bench.measured_fit.modes, bench.bare)] = False
     return replace(model, damping=np.where(unseen, factor, 1.0) * model.damping)
 

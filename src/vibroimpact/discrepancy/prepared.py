@@ -10,12 +10,13 @@ from vibroimpact.campaign_checks import check_file, refused, usable_signals
 from vibroimpact.campaign_model_checks import compare_with_model
 from vibroimpact.campaign_signals import measured_signals, transfer
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named, local_candidates, not_testable
+from vibroimpact.discrepancy.candidates import candidate_named, in_place_of_adopted, local_candidates, not_testable
 from vibroimpact.discrepancy.linear_fit import LinearChanges
 from vibroimpact.discrepancy.linear_rows import held, linear_rows, nameable, nearest_linear
 from vibroimpact.discrepancy.linear_stage import ModalFit, left
 from vibroimpact.discrepancy.measuring import Measuring
 from vibroimpact.discrepancy.nearest_model import fit_from_nearest, translated
+from vibroimpact.discrepancy.nuisance import credible, neutral
 from vibroimpact.discrepancy.null import driven_channels
 from vibroimpact.discrepancy.scales import scales
 from vibroimpact.discrepancy.windows import compared_s, screened_s
@@ -53,6 +54,11 @@ class Prepared:
     for_all: bool = False
     draw: int = 0
 
+    def room(self, candidate):
+        """Return whether a Candidate or Pair may still be missing beside what was adopted, or in its place: no more than MOST effects are named."""
+        adopted = [] if self.adopted is None or candidate.alone else candidate_named(self.adopted["name"]).ids
+        return len(adopted) + len(candidate.ids) <= MOST
+
     def write(self, path):
         """Write as JSON."""
         write_text(json.dumps(asdict(self), indent=1), path)
@@ -61,6 +67,9 @@ class Prepared:
     def read(cls, path):
         """Return the Prepared of a file."""
         return cls(**json.loads(read_text(path)))
+
+
+MOST = 2  # effects in all: with three, what two codes of the first differ by finds a name
 
 
 def usable_campaign(path, checks):
@@ -101,6 +110,9 @@ def workbench(config, campaign_path, prepared, seconds):
         if prepared.fit is not None:
             bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
         bench.nuisance = corrected_nuisance(bench)[0]
+        if bench.nonlinear_low and bench.nuisance is not None and not credible(bench.measured_reading, bench.bare_reading, bench.measured_fit.covariance):
+            # what bends the record would be taken for nuisances, all at their limits: they are told beside a candidate alone
+            bench.nuisance, bench.modes_told = neutral(bench.measured_fit.modes, len(bench.signals.names)), False
     return bench
 
 
@@ -151,7 +163,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
         read_lowest(bench, lambda: Workbench(config, campaign, seconds), out, {} if tables is None else tables, without)
     modes = (out.fit["modes"] if out.fit else bench.measured_fit.modes) if out.linear_stage and not for_all else None
     candidates = local_candidates(bench.given, held(campaign), modes, quick)
-    out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids)]
+    out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids) and (out.room(candidate) or in_place_of_adopted(out, candidate))]
     if out.linear_stage and out.nonlinear_low:  # a linear effect may be what makes it touch: those that come nearest are simulated as well
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out

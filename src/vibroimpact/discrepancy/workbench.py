@@ -1,5 +1,6 @@
 """All that a campaign and a model give to every job: signals, features of the measurement, the corrected model, and runs of any variant of it."""
 
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
@@ -38,8 +39,18 @@ class Workbench:
         self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
         self.nonlinear_low = False  # whether the lowest record, though its modes are seen, is not that of a linear structure
+        self.modes_told = True  # whether its modes tell nuisances all the same
         self.followed = False  # whether the model holds what moved its modes: no resonances are looked for without it then
         self.values = self.given = config.model_dump(mode="json")
+
+    def corrected_by(self, nuisance):
+        """Return a Workbench of the same campaign with the corrections of a Nuisance, which the lowest record's modes tell; itself where it is None."""
+        if nuisance is None:
+            return self
+        out = copy(self)
+        out.nuisance, out.modes_told = nuisance, True
+        out.__dict__.pop("low_response", None)
+        return out
 
     def rebase(self, values):
         """Take another configuration, in plain values, for the bare model: an effect that was found belongs to it from here on."""

@@ -11,6 +11,7 @@ from vibroimpact.shown_units import shown_unit
 
 MOST_BARS = 16
 MOST_PROFILES = 6
+WIDE = 3000.0  # of log likelihood: scores beyond it are drawn on a logarithmic scale, or what decides near zero is lost
 NO_UNIT = ("", "1", "-")
 
 
@@ -44,12 +45,15 @@ def ranking_figure(ranking, named=()):
     _thresholds(axes, rows, places)
     closed = [_value(row.get("closed_fraction")) for row in rows]
     right = max(np.nanmax([*held, *fit, 0.0]), *(_value(row.get("threshold")) for row in rows if np.isfinite(_value(row.get("threshold")))), 0.0)
-    left = np.nanmin([*held, 0.0])
+    left = np.nanmin([*held, *fit, 0.0])
     for place, fraction in enumerate(closed):
         if np.isfinite(fraction):
             axes.text(right + 0.02 * (right - left), place, f"closes {100 * fraction:.0f} %", va="center", fontsize=8,
                       color=GREY if fraction <= 0 else BLACK)
     axes.set_xlim(left - 0.02 * (right - left), right + 0.2 * (right - left))
+    if np.nanmax(np.abs([*held, *fit])) > WIDE:
+        axes.set_xscale("symlog", linthresh=100.0)
+        axes.set_xlim(min(2.0 * left, -50.0), max(20.0 * right, 1000.0))
     axes.set_yticks(places, [_label(row, names) for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlabel(label_of("heldout_score"))

@@ -1,0 +1,77 @@
+"""Nuisances beside a candidate: a lowest record that is not that of a linear structure tells of modes and gains only once what bends it is in the model."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.contraction import IntegrationError
+from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.finalists import own, refine, with_parts
+
+STEPS = 2  # from no nuisances to those that the record tells: with them, what bends it acts a little otherwise
+FAR = 25.0  # times a credible chi-square: farther off, nuisances are not why
+ROUNDS = 3  # of the search that begins anew, where it was found
+TURNS = 2  # nuisances and parameters in turn
+MOVED = 0.5  # sigma of the prior: nuisances that move less leave the candidate as it is
+
+
+def nuisance_beside(bench, candidate, physical):
+    """Return the Nuisance that the lowest record tells beside a candidate of parameters {name: value}, None where its modes tell none.
+
+    Measurement and simulation are fitted by the same modes: what the candidate does to the fit, it does to both.
+    """
+    fit, nuisance = bench.measured_fit, linear.neutral(bench.measured_fit.modes, len(bench.signals.names))
+    for _ in range(STEPS):
+        reading = _reading(bench.corrected_by(nuisance), candidate, physical)
+        if reading is None or not linear.credible(bench.measured_reading, reading, fit.covariance, FAR):
+            return None
+        pulls = linear.likelihood(bench.measured_reading, reading, fit.covariance)[2]
+        nuisance = linear.nuisance_of(pulls, fit.modes, len(bench.signals.names))
+    return nuisance if linear.credible(bench.measured_reading, reading, fit.covariance) else None
+
+
+def _reading(bench, candidate, physical):
+    """Return the Reading of the lowest record with a candidate, nuisances taken out, None where it changes nothing or is thrown off."""
+    try:
+        response = bench.respond(bench.model(bench.variant(candidate, physical)), bench.runs([bench.signals.lowest], 1), candidate.measuring(physical, bench.signals.names))[0]
+    except IntegrationError:
+        return None
+    return None if np.isnan(response).any() else bench.low_reading(response / bench.gains[:, None].astype(np.float32))
+
+
+def charged(found, nuisance, bare):
+    """Return the Finalist of runs with a Nuisance, for what that costs beyond the bare model's."""
+    return replace(found, nuisance=nuisance, low=found.low - linear.cost(nuisance) + linear.cost(bare))
+
+
+def with_parts_beside(bench, null, measured, found, scales):
+    """Return finalists.with_parts of a Finalist with the nuisances beside it, its parts charged as it is; bench: with those of the bare model."""
+    found = with_parts(bench.corrected_by(found.nuisance), null, measured, found, scales)
+    return found if found.nuisance is None else replace(found, parts=found.parts - linear.cost(found.nuisance) + linear.cost(bench.nuisance))
+
+
+def refined_beside(bench, null, measured, found, scales, fit, least, seeds, first_seed=30000):
+    """Return the Finalist searched again with the nuisances beside it, as often as they move; the one found where none are told, or where it explains less.
+
+    bench: with the nuisances of the bare model; other arguments as of finalists.refine.
+    """
+    for turn in range(TURNS):
+        told = nuisance_beside(bench, found.candidate, found.candidate.physical(found.unit, scales))
+        if told is None or not moved(told, found.nuisance or bench.nuisance):
+            break
+        there = bench.corrected_by(told)
+        path = own(there, null, measured, found.candidate, found.path, found.unit, scales, fit, first_seed + 5000 * turn)
+        other = None if path is None else refine(there, null, measured, found.candidate, path, scales, fit, ROUNDS, least, seeds, first_seed + 5000 * turn + 1000)
+        other = None if other is None else charged(other, told, bench.nuisance)
+        if other is None or other.total < found.total:
+            break
+        found = other
+    return found
+
+
+def moved(nuisance, before):
+    """Return whether a Nuisance differs from another by more than MOVED in any of its corrections."""
+    steps = [(np.log(nuisance.frequency / before.frequency), priors.FREQUENCY_SD), (np.log(nuisance.damping / before.damping), priors.DAMPING_SD),
+             (nuisance.gain - before.gain, priors.GAIN_SD)]  # fmt: skip
+    return any(np.abs(step).max(initial=0.0) > MOVED * sigma for step, sigma in steps)

@@ -1,0 +1,68 @@
+"""Nuisances beside a candidate: a record that a cubic spring bends tells of frequencies, damping and gains once the spring is in the model."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.campaign import Channel, Level, campaign_dataset
+from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy.attach import attach, with_channel_points
+from vibroimpact.discrepancy.beside import moved, nuisance_beside
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
+from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.config import check_config
+from vibroimpact.excitation import band_limited_noise
+
+RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
+PLACES = {"apex_y": (0.0, 0.0, 1.0), "bend_y": (0.2121, 0.0, 0.9121), "leg_y": (-0.3, 0.0, 0.55)}
+SPRING, COEFFICIENT = candidate_named("cubic_stiffness@left_leg"), {"coefficient": 6.0e10}
+TRUE = linear.Nuisance(np.array([0, 2]), np.array([1.003, 0.998]), np.array([1.15, 0.88]), np.array([1.03, 0.98, 1.0]))
+
+
+@pytest.fixture(scope="module")
+def bench(study_config):
+    """Workbench of a tube with a cubic spring at a leg, whose modes and gains are not the model's, with noise."""
+    samples = int(RATE * SECONDS)
+    force = (np.array([[0.5], [5.0]]) * band_limited_noise(np.random.default_rng(3), samples, RATE, (5.0, 200.0)))[:, None]
+    drive = Channel("shaker", (-0.2121, 0.0, 0.9121), (0.0, 1.0, 0.0), "N", "generic")
+
+    def campaign(response):
+        channels = [Channel(name, point, (0.0, 1.0, 0.0), "m s-2", "acceleration") for name, point in PLACES.items()]
+        return campaign_dataset(force, response, channels, [drive], [Level("low", GAP), Level("high", GAP)], RATE, start_up="rest")
+
+    blank = campaign(np.zeros((2, len(PLACES), samples)))
+    config = with_channel_points(study_config, blank)
+    model = attach(check_config(SPRING.variant(config.model_dump(mode="json"), COEFFICIENT), "model"), blank)
+    schedule = schedule_of(blank, study_config.integration, SECONDS)
+    response = simulate_records(linear.corrected(model, TRUE), schedule, Forces(force, schedule), [(0, GAP, 0)], ["acceleration"] * 3)[0] * TRUE.gain[:, None]
+    response = response + 0.01 * np.random.default_rng(4).standard_normal(response.shape) * response.std(axis=-1).max()
+    return Workbench(study_config, campaign(np.stack([response, response])), SECONDS)
+
+
+def test_alone_the_record_is_no_reading_of_the_bare_modes(bench):
+    assert bench.measured_fit.residual.max() > 3.0
+    assert not linear.credible(bench.measured_reading, bench.bare_reading, bench.measured_fit.covariance)
+
+
+def test_beside_the_spring_its_modes_and_gains_are_told(bench):
+    told = nuisance_beside(bench, SPRING, COEFFICIENT)
+    for mode in TRUE.modes:
+        here, there = list(told.modes).index(mode), list(TRUE.modes).index(mode)
+        assert told.frequency[here] == pytest.approx(TRUE.frequency[there], abs=0.0012)
+        assert told.damping[here] == pytest.approx(TRUE.damping[there], abs=0.06)
+    np.testing.assert_allclose(told.gain / told.gain[2], TRUE.gain / TRUE.gain[2], atol=0.015)
+
+
+def test_beside_a_spring_that_bends_nothing_nothing_is_told(bench):
+    assert nuisance_beside(bench, SPRING, {"coefficient": 6.0e6}) is None
+
+
+def test_what_is_told_costs_its_sigmas():
+    assert linear.cost(TRUE) == pytest.approx(0.5 * sum(np.square([0.99850, -0.66733, 1.39762, -1.27833, 1.5, -1.0])), rel=1e-4)
+    assert linear.cost(linear.neutral([0, 2], 3)) == 0.0
+
+
+def test_a_nuisance_has_moved_by_half_a_sigma_of_any_correction():
+    none = linear.neutral([0], 1)
+    assert not moved(linear.Nuisance(none.modes, np.array([1.001]), np.array([1.04]), np.array([0.995])), none)
+    assert moved(linear.Nuisance(none.modes, none.frequency, np.array([1.06]), none.gain), none)

@@ -1,0 +1,18 @@
+"""No more than two effects are named, those of the lowest record included."""
+
+import pytest
+
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.prepared import Prepared
+
+PAIR = "added_mass@apex+modal_damping@structure"
+
+
+@pytest.mark.parametrize(("adopted", "candidate", "expected"), [
+    (None, "gap@all", True), (None, "gap@all+hertz@all", True),
+    ("added_mass@apex", "gap@all", True), ("added_mass@apex", "gap@all+hertz@all", False),
+    (PAIR, "gap@all", False), (PAIR, "gap@all+hertz@all", False),
+    (PAIR, "coulomb_friction@apex@alone", True), (PAIR, "coulomb_friction@apex@alone+hertz@all", True)])  # fmt: skip
+def test_room_beside_or_in_place_of_what_the_lowest_record_told(adopted, candidate, expected):
+    prepared = Prepared([], adopted=None if adopted is None else {"name": adopted})
+    assert prepared.room(candidate_named(candidate)) is expected
