@@ -57,6 +57,12 @@ def test_beside_a_spring_that_bends_nothing_nothing_is_told(bench):
     assert nuisance_beside(bench, SPRING, {"coefficient": 6.0e6}) is None
 
 
+def test_nuisances_are_few_beyond_their_limit_and_what_bends_a_record_pulls_many():
+    faulty_gain, bent = [1.4, 0.0, 0.8, -1.7, 0.6, 1.8, 0.6, 0.2, 0.1, 0.0, 0.4, 0.3, 0.0, -1.2, -70.8], [2.9, 1.6, 1.0, -0.3, 2.6, -1.6, 1.6, 0.9, 3.3, 0.0, -0.3, 0.4, 0.0, -1.1, -1.0]
+    assert linear.plausible(faulty_gain)
+    assert not linear.plausible(bent)
+
+
 def test_what_is_told_costs_its_sigmas():
     assert linear.cost(TRUE) == pytest.approx(0.5 * sum(np.square([0.99850, -0.66733, 1.39762, -1.27833, 1.5, -1.0])), rel=1e-4)
     assert linear.cost(linear.neutral([0, 2], 3)) == 0.0

@@ -12,6 +12,7 @@ from scipy import linalg
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.linearised import same_modes
 
+FEW = 0.15  # of all nuisances
 CREDIBLE = 4.0  # of chi-square per value: beyond it, readings differ by more than nuisances
 SEEN = 0.05  # of a mode's largest participation among the channels: below it a channel says nothing of the mode
 
@@ -116,6 +117,11 @@ def cost(nuisance):
     """Return what a Nuisance costs in log likelihood: half the squares of its corrections in sigma of their priors."""
     pulls = np.concatenate([np.log(nuisance.frequency) / priors.FREQUENCY_SD, np.log(nuisance.damping) / priors.DAMPING_SD, (nuisance.gain - 1.0) / priors.GAIN_SD])
     return 0.5 * float(pulls @ pulls)
+
+
+def plausible(pulls):
+    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the limit of a correction, as a faulty channel's gain may be."""
+    return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= FEW
 
 
 def credible(measured, simulated, error, times=1.0):
