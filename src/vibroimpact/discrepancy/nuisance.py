@@ -12,8 +12,6 @@ from scipy import linalg
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.linearised import same_modes
 
-FEW = 0.15  # of all nuisances
-CREDIBLE = 4.0  # of chi-square per value: beyond it, readings differ by more than nuisances
 SEEN = 0.05  # of a mode's largest participation among the channels: below it a channel says nothing of the mode
 
 
@@ -121,12 +119,12 @@ def cost(nuisance):
 
 def plausible(pulls):
     """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the limit of a correction, as a faulty channel's gain may be."""
-    return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= FEW
+    return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= priors.FEW_PULLED
 
 
 def credible(measured, simulated, error, times=1.0):
     """Return whether a Reading is so near to another that nuisances may be what they differ by, or within so many times that; error: see difference."""
-    return likelihood(measured, simulated, error)[1] < times * CREDIBLE * len(difference(measured, simulated, error)[0])
+    return likelihood(measured, simulated, error)[1] < times * priors.CREDIBLE * len(difference(measured, simulated, error)[0])
 
 
 def without(reading, nuisance):

@@ -55,9 +55,9 @@ class Prepared:
     draw: int = 0
 
     def room(self, candidate):
-        """Return whether a Candidate or Pair may still be missing beside what was adopted, or in its place: no more than MOST effects are named."""
+        """Return whether a Candidate or Pair may still be missing beside what was adopted, or in its place: no more than priors.MOST_EFFECTS are named."""
         adopted = [] if self.adopted is None or candidate.alone else candidate_named(self.adopted["name"]).ids
-        return len(adopted) + len(candidate.ids) <= MOST
+        return len(adopted) + len(candidate.ids) <= priors.MOST_EFFECTS
 
     def write(self, path):
         """Write as JSON."""
@@ -67,9 +67,6 @@ class Prepared:
     def read(cls, path):
         """Return the Prepared of a file."""
         return cls(**json.loads(read_text(path)))
-
-
-MOST = 2  # effects in all: with three, what two codes of the first differ by finds a name
 
 
 def usable_campaign(path, checks):

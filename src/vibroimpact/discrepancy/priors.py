@@ -2,6 +2,7 @@
 
 Ninth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, and the
 seventh and eighth of noise that impacts hide and of pairs, which do not add and are looked at closely only where they gain.
+Changed since: MOST_EFFECTS, FEW_PULLED, CREDIBLE.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
@@ -12,6 +13,8 @@ NINETY_SD = 1.645  # sigma: half of the interval of 90 % of a normal law
 SHAPE_SD = 0.003  # of a mode shape, relative to its largest value among the channels
 SHAPE_LAW_SD = 0.01  # of what an effect changes of a mode shape: frequencies that scatter before it acts mix its modes otherwise
 CORRECTION_LIMIT = 2.0  # sigma: a nuisance is not corrected beyond it, so that it can not hide an effect
+FEW_PULLED = 0.15  # of all nuisances beyond that limit: a lowest record that is not linear and pulls more tells the bare model none
+CREDIBLE = 4.0  # of chi-square per value: readings of the lowest record that differ by more, differ by more than nuisances
 NAMED_BEYOND = 2.0  # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their interval outside
 
 # What two codes of the same physics differ by in a feature, one sigma, beside the scatter of seeds.
@@ -35,6 +38,7 @@ UNREAD = 0.5  # of the responses that the force drives: where modes leave more, 
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
 LINEAR_SECOND = 8.0  # the same of two over the better of them
 SECOND_SHARE = 0.1  # of the first effect's gain: a second effect that adds less may be what two codes of the first differ by
+MOST_EFFECTS = 2  # in all, those of the lowest record included: with more, what two codes of the first differ by finds a name
 GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside the threshold from null seeds
 PARAMETER_COST = 3.0  # of log likelihood per parameter beyond the first
 AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart
