@@ -113,6 +113,7 @@ def finalist(run, name, chosen, path, quick=False):
             candidate, unit = found.candidate.parts(found.unit)[int(np.argmax(found.parts))]
             known = started(bench, null, candidate, unit, sizes, first_seed=9000)
             found = refine(bench, null, measured, candidate, known, sizes, fit, least=chosen["least"], seeds=seeds, first_seed=10000)
+            found = found if found is None or given is None else charged(found, given, run.bench.nuisance)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
@@ -187,7 +188,7 @@ def pairs(run, files, screened, path, quick=False):
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             nuisance = found[0].nuisance
-            beside = second.pairs(bench.corrected_by(nuisance), null, measured, found, paths, run.prepared) if run.prepared.room(Pair(found[0].candidate, found[0].candidate)) else []
+            beside = second.pairs(bench.corrected_by(nuisance), null, measured, found, paths, run.prepared) if run.prepared.room(found[0].candidate, more=1) else []
             out |= {pair.name: unit.tolist() for pair, unit, gain in beside}
     told = None if nuisance is None else {name: value.tolist() for name, value in asdict(nuisance).items()}
     write_text(json.dumps({"pairs": out, "least": least, "threshold": threshold, "nuisance": told}, indent=1), path)

@@ -54,10 +54,10 @@ class Prepared:
     for_all: bool = False
     draw: int = 0
 
-    def room(self, candidate):
-        """Return whether a Candidate or Pair may still be missing beside what was adopted, or in its place: no more than priors.MOST_EFFECTS are named."""
+    def room(self, candidate, more=0):
+        """Return whether a Candidate or Pair, with so many more effects, may be missing beside what was adopted, or in its place: no more than priors.MOST_EFFECTS are named."""
         adopted = [] if self.adopted is None or candidate.alone else candidate_named(self.adopted["name"]).ids
-        return len(adopted) + len(candidate.ids) <= priors.MOST_EFFECTS
+        return len(adopted) + len(candidate.ids) + more <= priors.MOST_EFFECTS
 
     def write(self, path):
         """Write as JSON."""
