@@ -23,6 +23,8 @@ class LinearRecord:
         kept = self.length // self.every // 2 + 1
         self.omega = 2.0 * np.pi * fft.rfftfreq(self.length, 1.0 / rate)[:kept]
         self.spectrum = fft.rfft(force[..., :samples], self.length)[..., :kept]
+        self.squared = self.omega**2
+        self.accelerating = -self.squared * self.spectrum
         frequency = fft.rfftfreq(samples - self.first, 1.0 / rate)
         self.lines = np.flatnonzero((frequency >= band_Hz[0]) & (frequency <= band_Hz[1]))
         self.frequency = frequency[self.lines]
@@ -36,11 +38,11 @@ class LinearRecord:
 
         kinds: acceleration or displacement, of all of them.
         """
-        force = drive_shapes @ self.spectrum
-        transfer = 1.0 / (omega[:, None] ** 2 - self.omega**2 + 1j * damping[:, None] * self.omega)
-        if kinds == "acceleration":
-            transfer = -(self.omega**2) * transfer
-        return self.short_spectra(force * transfer)
+        lines = drive_shapes @ (self.accelerating if kinds == "acceleration" else self.spectrum)
+        stiffness = np.empty((len(omega), self.omega.size), complex)
+        stiffness.real = omega[:, None] ** 2 - self.squared
+        stiffness.imag = damping[:, None] * self.omega
+        return self.short_spectra(lines / stiffness)
 
     def short_spectra(self, lines):
         """Return (..., line): the lines in the band of responses given by their spectra over the whole length, cut to the record."""

@@ -141,9 +141,10 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
             bench = Workbench(config, campaign, seconds)
             mixed = mixed_up(bench)
             if mixed:
-                checks = [*checks, *mixed]
+                before, checks = campaign.sizes, [*checks, *mixed]
                 campaign, refusal = usable_campaign(campaign_path, checks)
-                bench = bench if refusal else Workbench(config, campaign, seconds)
+                if refusal is None and campaign.sizes != before:  # something was left out
+                    bench = Workbench(config, campaign, seconds)
         except CampaignError as error:
             checks = [*checks, {"check": "places", "level": "refuse", "record": None, "channel": None, "message": str(error)}]
             refusal = str(error)

@@ -1,8 +1,8 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Ninth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, and the
-seventh and eighth of noise that impacts hide and of pairs, which do not add and are looked at closely only where they gain.
-Changed since: MOST_EFFECTS, FEW_PULLED, CREDIBLE.
+Tenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise that
+impacts hide and of pairs, which do not add and are looked at closely only where they gain, and the ninth of effects in excess of two and of
+nuisances beside what bends the lowest record.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.

@@ -9,6 +9,7 @@ from scipy import linalg, optimize
 
 SPACING = 2.0e-3  # of ln frequency between the resonances that are tried
 BESIDE = 6  # of them: nearer ones are the same mode
+AT_ONCE = 32
 FAR = 0.3  # of ln frequency: as bad a match as another shape altogether
 
 
@@ -19,14 +20,14 @@ def pursued(record, measured, weights, count, zeta, kind):
     """
     logs = np.arange(np.log(2.0 * np.pi * record.frequency[0]), np.log(2.0 * np.pi * record.frequency[-1]), SPACING)
     omega = np.exp(logs)
-    drive = np.zeros((len(omega), record.spectrum.shape[0]))
-    drive[:, 0] = 1.0
-    basis = record.responses(omega, 2.0 * zeta * omega, drive, kind).astype(np.complex64)  # the largest array of the linear stage
-    power = np.stack([np.sum(np.abs(row * basis) ** 2, axis=-1) for row in weights])
+    drive = np.eye(1, record.spectrum.shape[0])
+    # the largest array of the linear stage: in single precision, and not at once from one of double precision and several times its length
+    basis = np.concatenate([record.responses(part, 2.0 * zeta * part, drive, kind).astype(np.complex64) for part in np.array_split(omega, len(omega) // AT_ONCE + 1)])
+    power = (np.abs(basis) ** 2 @ (weights**2).astype(np.float32).T).T.astype(float)
     open_, chosen, rest = np.ones(len(omega), bool), [], measured
     shapes = np.zeros((len(measured), 0))
     for _ in range(count):
-        gain = sum(np.real(basis @ (row**2 * left).conj()) ** 2 / norm for row, left, norm in zip(weights, rest, power, strict=True))
+        gain = np.sum(np.real(basis @ (weights**2 * rest).conj().T.astype(np.complex64)).T.astype(float) ** 2 / power, axis=0)
         best = int(np.argmax(np.where(open_, gain, -1.0)))
         chosen.append(best)
         open_[max(0, best - BESIDE) : best + BESIDE + 1] = False
