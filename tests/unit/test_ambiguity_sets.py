@@ -27,6 +27,11 @@ def test_an_alias_far_behind_joins_only_where_it_leaves_nothing():
     assert not_told_apart(rows, "gap@all+hunt_crossley@all", {"gap@all+contact_damping@all"}) == ["gap@all+contact_damping@all"]
 
 
+def test_a_spring_is_an_alias_of_one_that_never_saturates():
+    rows = gains({"saturation_stiffness@shaker+quadratic_drag@tube": 3500.0, "lateral_stinger@along_y+quadratic_drag@tube": 3425.0})
+    assert not_told_apart(rows, "saturation_stiffness@shaker+quadratic_drag@tube", set(rows)) == ["lateral_stinger@along_y+quadratic_drag@tube"]
+
+
 def test_pairs_that_differ_by_both_effects_are_no_aliases():
     rows = {"gap@all+hunt_crossley@all": 1755.0, "contact_damping@all+dry_friction@all": 1725.0}
     assert not_told_apart(gains(rows), "gap@all+hunt_crossley@all") == []

@@ -159,6 +159,14 @@ def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
     assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [["sensor_gain"]]
 
 
+def test_what_held_out_records_contradict_is_not_added_to_what_the_lowest_record_told(decided):
+    """Though the model still misses something: a loss beyond what tells candidates apart is none of chance."""
+    adopted = {"name": "modal_damping@all", "gain": 125.0, "unit": [0.66]}
+    lost, kept = (decided([finalist("quadratic_stiffness@left_leg", 28.0, held_out=held_out)], adopted=adopted, linear=[adopted]) for held_out in (-13.0, -5.0))
+    assert (lost.verdict, lost.ambiguity, lost.chosen) == ("partly_explained", [["modal_damping"]], None)
+    assert (kept.verdict, kept.ambiguity) == ("named", [["modal_damping", "quadratic_stiffness"]])
+
+
 def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided):
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
     assert verdict.refuted(part, 0.5, -2.8) and not verdict.refuted(part, 0.5, 0.4) and not verdict.refuted(part, 0.5, None)

@@ -4,8 +4,7 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from vibroimpact.discrepancy.dag import QUICK_S
-from vibroimpact.discrepancy.suite_check import CHECKS, SECONDS, SEED
+from vibroimpact.discrepancy.suite_check import CHECKS, COMPARED_S, SECONDS, SEED
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign
 
@@ -14,5 +13,5 @@ name, verdict = snakemake.wildcards.check, Path(snakemake.output.verdict)
 plan = Plan((SEED, list(CHECKS).index(name)), CHECKS[name].hidden, levels=LEVELS, duration=SECONDS)
 with TemporaryDirectory(dir=verdict.parent) as work:
     make_campaign(plan, Path(work, "campaign.nc"), Path(work, "truth.json"), False)
-    run_campaign(CHECKS[name].values(snakemake.params.config), Path(work, "campaign.nc"), work, {}, longest_s=QUICK_S, quick=True)
+    run_campaign(CHECKS[name].values(snakemake.params.config), Path(work, "campaign.nc"), work, {}, longest_s=COMPARED_S, quick=True)
     Path(work, "verdict.json").rename(verdict)

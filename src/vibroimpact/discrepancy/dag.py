@@ -5,7 +5,7 @@ import json
 import re
 from pathlib import Path
 
-QUICK_S = 10.0  # records are cut to it where the run must be quick
+QUICK_S = 16.0  # records are cut to it where the run must be quick
 NULL_PARTS = 4  # jobs; each runs its share of the seeds with and without the damping of unseen modes
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
-from vibroimpact.discrepancy.beside import charged, refined_beside, with_parts_beside
+from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside, with_parts_beside
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, gain_of_part, gains_of, own, placed, placed_again, refine, started
@@ -63,7 +63,7 @@ def screening(run, path, quick=False):
                            "ranked": [{"name": row.candidate.name, "score": row.score, "unit": row.unit.tolist()} for row in ranked]}, indent=1), path)  # fmt: skip
 
 
-QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS = 3, 1, 4
+QUICK_FINALISTS, QUICK_ROUNDS, QUICK_SEEDS = 3, 4, 4
 
 
 def least_gain(name, chosen):
@@ -100,7 +100,11 @@ def finalist(run, name, chosen, path, quick=False):
     leads, places = single and leading(candidate, chosen), [other for other in other_places(candidate, bench.values) if other.name not in run.prepared.screened] if single else []
     if places and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
         candidate, known = placed(bench, null, measured, candidate, known, places, sizes, fit)
-    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
+    found = None
+    if single and not quick and bench.nonlinear_low and not bench.modes_told:
+        found = begun_beside(bench, null, measured, candidate, known, sizes, fit, least, seeds)
+    if found is None:
+        found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
     if found is not None and not quick and looked_for_elsewhere(bench, null, measured, found, leads, least):
         found = at_another_place(bench, null, measured, found, sizes, fit, least)
     if found is not None and not quick and bench.nonlinear_low:

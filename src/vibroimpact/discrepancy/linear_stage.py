@@ -18,6 +18,7 @@ LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far ab
 RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 LARGEST_LOG_DAMPING = 3.0
+IDLE = 1.0e-9  # of the change with the logarithm that changes most
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S = 2.0e-5
@@ -224,8 +225,10 @@ def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise,
             if damp > 1.0e3:
                 break
         jacobian = _jacobian(weights, columns, best, seen)
-        normal = jacobian.T @ jacobian
-        step = linalg.solve(normal + damp * np.diag(np.diag(normal) + 1.0e-30), jacobian.T @ _real(best[3]).ravel(), assume_a="pos")
+        length = np.linalg.norm(jacobian, axis=0)
+        length = np.where(length > IDLE * length.max(), length, np.inf)  # a mode that takes no part stays where it is, and spoils no equation
+        jacobian /= length
+        step = linalg.solve(jacobian.T @ jacobian + damp * np.eye(2 * count), jacobian.T @ _real(best[3]).ravel(), assume_a="pos") / length
         logs = best[0] + step * min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
         logs[count:] = np.clip(logs[count:], -LARGEST_LOG_DAMPING, LARGEST_LOG_DAMPING)
     return _result(best, weights, visible, drive, noise, columns, measured, delay, seen)

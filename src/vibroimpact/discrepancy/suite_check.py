@@ -49,6 +49,7 @@ CHECKS = {
     "swapped": Check((), (("gap",), ("sensor_gain",)), model={"gap": {"gap_factor": 1.6}}, within={"gap_factor": (0.5, 0.8)}),
 }  # fmt: skip
 SEED, SECONDS = 77, 20.0
+COMPARED_S = 10.0  # of each record: from rest, all of it counts
 
 
 def table(verdicts):

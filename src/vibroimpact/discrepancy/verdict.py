@@ -49,7 +49,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     share = closure(bench, null, best, measured)
     contradicted = vetoed(totals[best.candidate.name], share)
     if left.min() < priors.EXPLAINED_Z or contradicted:
-        if share <= priors.PARTLY or contradicted and without.verdict not in ("unknown", "partly_explained"):
+        if share <= priors.PARTLY or contradicted and (prepared.adopted is not None or without.verdict != "unknown"):
             return without  # what the lowest record told, and no more
         if isinstance(best.candidate, Pair):  # a pair that does not suffice either is not established over its first effect alone
             together += whole_sets(linear, [(singles[0].candidate.ids, singles[0].candidate.alone)])
@@ -122,7 +122,7 @@ def closure(bench, null, found, measured):
 
 def vetoed(total, share):
     """Return whether what was held out contradicts what was fitted: a loss there, or next to nothing closed."""
-    return total[2] < -priors.GAIN or share < priors.LEAST_CLOSED
+    return total[2] < -priors.AMBIGUOUS or share < priors.LEAST_CLOSED
 
 
 def effects_of(prepared, decision, sizes):

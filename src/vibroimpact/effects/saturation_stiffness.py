@@ -21,6 +21,6 @@ EFFECT = Effect(
     apply=apply,
     below_contact=True,
     broken=("T1", "T2"),
-    aliases=("coulomb_friction",),
+    aliases=("coulomb_friction", "lateral_stinger"),
     locations=places.masses_and_springs,
 )
