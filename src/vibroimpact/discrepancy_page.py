@@ -22,17 +22,18 @@ SEEDS = "that between two seeds of the completed model"
 NOISE = "what the measurement itself scatters by, from period to period or from average to average"
 
 
-def discrepancy_page(name, verdict, figures, floor=SEEDS):
+def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
     """Return the HTML page.
 
     name: of the campaign; verdict: content of verdict.json; figures: PNG files in their order, each with its caption beside it as .txt;
-    floor: what the floor of the misfit is, SEEDS or NOISE.
+    floor: what the floor of the misfit is, SEEDS or NOISE; quick_s: what a quick look kept of every record, None for a whole run.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     tests = [f"{test}, {TESTS[test]}" if test in TESTS else str(test) for test in verdict["broken_invariances"]]
     return template.render(
-        name=name, verdict=verdict, floor=floor, sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
+        name=name, verdict=verdict, floor=floor, quick_s=None if quick_s is None else digits(quick_s),
+        sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
         figures=embedded(figures),

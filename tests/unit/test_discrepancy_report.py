@@ -140,6 +140,11 @@ def test_an_effect_that_was_screened_at_many_places_is_shown_at_the_best():
     assert [row["location"] for row in best_places(rows)] == ["leg", "apex", "all"]  # what was looked at closely stays
 
 
+def test_a_quick_look_says_what_it_gives_up():
+    assert "at 16 s of every record" in discrepancy_page("campaign", made_up_verdict("unknown"), [], quick_s=16.0)
+    assert "quick" not in discrepancy_page("campaign", made_up_verdict("unknown"), [])
+
+
 def test_a_run_without_map_or_candidates_says_so(tmp_path):
     (tmp_path / "verdict.json").write_text(json.dumps(made_up_verdict("not_testable")))
     sheets = discrepancy_figures(read_results(tmp_path))

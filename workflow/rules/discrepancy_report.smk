@@ -38,6 +38,7 @@ rule discrepancy_report:
         figures=[f"{DISCREPANCY}/figures/{name}.{suffix}" for name in DISCREPANCY_FIGURES for suffix in ("png", "pdf", "csv", "txt")],
     params:
         name=LOOKED_AT,
+        quick=QUICK,
     log:
         f"{DISCREPANCY}/logs/discrepancy_report.log",
     benchmark:

@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy_page import discrepancy_page
 from vibroimpact.discrepancy_results import read_results
 from vibroimpact.figures.discrepancy import discrepancy_figures
@@ -15,5 +16,5 @@ sheets = discrepancy_figures(results)
 for sheet in sheets:
     sheet.save(folder / "figures")
 shown = [folder / "figures" / f"{sheet.name}.png" for sheet in sheets if sheet.tables]
-write_text(discrepancy_page(snakemake.params.name, results.verdict, shown), snakemake.output.page)
+write_text(discrepancy_page(snakemake.params.name, results.verdict, shown, quick_s=QUICK_S if snakemake.params.quick else None), snakemake.output.page)
 print(f"{snakemake.output.page} written, {len(shown)} figures")
