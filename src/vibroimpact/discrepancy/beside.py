@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.config import ConfigError
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import priors
@@ -34,10 +35,10 @@ def nuisance_beside(bench, candidate, physical):
 
 
 def _reading(bench, candidate, physical):
-    """Return the Reading of the lowest record with a candidate, nuisances taken out, None where it changes nothing or is thrown off."""
+    """Return the Reading of the lowest record with a candidate, nuisances taken out, None where it changes nothing, is thrown off, or is none that a model may have."""
     try:
         response = bench.respond(bench.model(bench.variant(candidate, physical)), bench.runs([bench.signals.lowest], 1), candidate.measuring(physical, bench.signals.names))[0]
-    except IntegrationError:
+    except (IntegrationError, ConfigError):
         return None
     return None if np.isnan(response).any() else bench.low_reading(response / bench.gains[:, None].astype(np.float32))
 
