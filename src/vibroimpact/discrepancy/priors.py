@@ -1,8 +1,8 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Tenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise that
-impacts hide and of pairs, which do not add and are looked at closely only where they gain, and the ninth of effects in excess of two and of
-nuisances beside what bends the lowest record.
+Eleventh freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
+that impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two and of nuisances
+beside what bends the lowest record, and the tenth of where such an effect is searched from and of effects that held-out records contradict.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
@@ -41,7 +41,7 @@ SECOND_SHARE = 0.1  # of the first effect's gain: a second effect that adds less
 MOST_EFFECTS = 2  # in all, those of the lowest record included: with more, what two codes of the first differ by finds a name
 GAIN = 15.0  # of log likelihood: least gain of an effect that is named, beside the threshold from null seeds
 PARAMETER_COST = 3.0  # of log likelihood per parameter beyond the first
-AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart
+AMBIGUOUS = 8.0  # of log likelihood: candidates nearer than this to the best are not told apart; an effect that held-out records lose more by is vetoed
 ALIAS_AMBIGUOUS = 40.0  # the same for effects that the catalogue lists as aliases of the best
 SAME_QUANTITY = 0.75  # of the best gain: other laws of the same quantity (of the contact's stiffness, of its damping) above it are not told apart
 NULL_SIGMA = 2.054  # of the best gains of null seeds above their mean: the 98th percentile of a normal law
