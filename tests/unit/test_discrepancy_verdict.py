@@ -8,6 +8,7 @@ import pytest
 from vibroimpact.discrepancy import by_level as levels
 from vibroimpact.discrepancy import naming, verdict
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.effects.places import STOP
 
 THRESHOLD, EXPLAINED, LEFT = 15.0, np.array([0.3, -1.0]), np.array([0.3, -9.0])
 SCALES = {"gap": 2.0e-4, "one": 1.0, "contact_stiffness": 4.0e6, "hertz": 2.0e8}
@@ -106,12 +107,23 @@ def test_two_linear_effects_are_one_set(decided):
     assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass", "sensor_gain"], ["added_mass", "modal_damping"]])
     beside = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
     assert beside.ambiguity == [["added_mass", "dry_friction", "sensor_gain"]]
-    prepared = SimpleNamespace(adopted=adopted)
-    told = verdict.effects_of(prepared, alone, SCALES | {"mass": 1.0})
+    told = verdict.effects_of(SimpleNamespace(adopted=adopted, scales=SCALES | {"mass": 1.0}), alone, None)
     assert [(row["id"], row["location"], list(row["parameters"])) for row in told] == [("added_mass", "apex", ["mass"]), ("sensor_gain", "apex_y", ["factor"])]
     gain = told[1]["parameters"]["factor"]
     assert gain["value"] == pytest.approx(0.25 * 16.0**0.6)
     assert gain["low"] < gain["value"] < gain["high"]
+
+
+@pytest.mark.parametrize(("location", "nominal"), [("left", 3.0e-4), ("right", 5.0e-4), ("all", None)])
+def test_a_gap_is_told_in_metres_of_the_clearance_that_the_model_has(decided, location, nominal):
+    laws = SimpleNamespace(gap=np.array([np.nan, np.nan, 5.0e-4, 9.0e-4]))
+    model = SimpleNamespace(support_names=("left", "right", STOP), support_of_point=np.array([0, 0, 1, 2]), gap_factor=np.array([1.5, 1.5, 1.0, 1.0]), contact_laws=laws)
+    decision = decided([finalist(f"gap@{location}", 300.0)])
+    (row,) = verdict.effects_of(SimpleNamespace(adopted=None, scales=SCALES), decision, model)
+    factor = row["parameters"]["gap_factor"]["value"]
+    assert ("gap" in row["parameters"]) == (nominal is not None)
+    if nominal is not None:
+        assert row["parameters"]["gap"]["value"] == pytest.approx(nominal * factor)
 
 
 def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_the_linear_one(decided):

@@ -65,7 +65,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     if prepared.adopted is not None:
         before_bench = workbench(run.config, run.campaign, replace(prepared, adopted=None, fit=None), prepared.longest_s)
     before = verified(before_bench, before_bench.model(), seeds, bench)
-    most_probable = verdict.effects_of(prepared, decision, prepared.scales)
+    most_probable = verdict.effects_of(prepared, decision, bench.bare)
     after = completed(run, decision, before, seeds)
     gaps = None if after is None else misfits(whole, before, after)
     if gaps is None or verdict.refuted(decision, *(gaps[split]["closed_fraction"] for split in ("fit", "holdout"))):  # nothing is added then
@@ -81,7 +81,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured, decision)
     content = {
         "verdict": decision.verdict,
-        "effects": verdict.effects_of(prepared, decision, prepared.scales) if decision.verdict in ("named", "partly_explained") else [],
+        "effects": verdict.effects_of(prepared, decision, bench.bare) if decision.verdict in ("named", "partly_explained") else [],
         "ambiguity_set": decision.ambiguity if decision.verdict in ("named", "ambiguous", "partly_explained") else [],
         "ranking": [{"ids": row["ids"].split("+"), "heldout_score": row["heldout_score"], "closed_fraction": row["closed_fraction"], "location": row["location"]}
                     for row in ranking],

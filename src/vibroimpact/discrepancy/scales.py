@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from vibroimpact.effects.places import STOP
 
 def scales(model, signals, null):
     """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at the drive of the highest fit record, m and m/s."""
@@ -28,3 +29,11 @@ def scales(model, signals, null):
         "damping_per_length": damping / length, "cubic": stiffness / displacement**2, "quadratic": stiffness / displacement,
         "drag": damping / length / speed,
     }  # fmt: skip
+
+
+def clearance(model, gap, location):
+    """Return the radial clearance in m that a model's supports at a location (a name, or all) have at a nominal gap, None where they differ."""
+    names = np.array(model.support_names)[model.support_of_point]
+    there = names == location if location != "all" else names != STOP
+    own = np.where(np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap)[there]
+    return float(own[0]) if own.size and np.allclose(own, own[0], rtol=1.0e-6) else None

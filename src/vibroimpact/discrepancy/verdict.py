@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.scales import clearance
 from vibroimpact.discrepancy.second import least_added
 
 
@@ -125,8 +126,8 @@ def vetoed(total, share):
     return total[2] < -priors.AMBIGUOUS or share < priors.LEAST_CLOSED
 
 
-def effects_of(prepared, decision, sizes):
-    """Return the rows of `effects` of verdict.json."""
+def effects_of(prepared, decision, model):
+    """Return the rows of `effects` of verdict.json; model: the bare one, whose clearances a gap_factor multiplies."""
     found, rows = [], []
     if prepared.adopted is not None and not (decision.chosen is not None and decision.chosen.candidate.alone):
         found.append((candidate_named(prepared.adopted["name"]), np.array(prepared.adopted["unit"]), np.atleast_2d(prepared.adopted["interval"])))
@@ -135,16 +136,16 @@ def effects_of(prepared, decision, sizes):
     for whole, unit, interval in found:
         ends = zip(whole.parts(interval[:, 0]), whole.parts(interval[:, 1]), strict=True)
         for (candidate, own), ((_, low), (_, high)) in zip(whole.parts(unit), ends, strict=True):
-            rows.append(_effect(candidate, own, np.stack([low, high], axis=1), sizes))
+            rows.append(_effect(candidate, own, np.stack([low, high], axis=1), prepared.scales, model))
     return rows
 
 
-def _effect(candidate, unit, interval, sizes):
+def _effect(candidate, unit, interval, sizes, model):
     """Return {id, location, parameters: {name: {value, unit, low, high}}}."""
     estimate = candidate.estimate(unit, interval, sizes)
     parameters = {parameter.name: dict(zip(("value", "low", "high"), estimate[parameter.name], strict=True)) | {"unit": parameter.unit}
                   for parameter in candidate.effect.parameters}  # fmt: skip
-    if candidate.effect_id == "gap":
-        nominal = sizes["gap"]
+    nominal = clearance(model, sizes["gap"], candidate.location) if candidate.effect_id == "gap" else None
+    if nominal is not None:
         parameters["gap"] = {"unit": "m", **{key: nominal * parameters["gap_factor"][key] for key in ("value", "low", "high")}}
     return {"id": candidate.effect.reported, "location": candidate.location, "parameters": parameters}
