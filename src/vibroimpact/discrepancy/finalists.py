@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import Pair, other_places
-from vibroimpact.discrepancy.neighbourhood import NEAR, NEW, apart, around, box_round, images, near, nearest, unknown
+from vibroimpact.discrepancy.neighbourhood import NEAR, NEW, apart, around, box_round, images, near, nearest, unknown, within_simulated
 from vibroimpact.discrepancy.null import free_at
 from vibroimpact.discrepancy.screening import LAW_TURNS, Path, calibrate, direct_scores, linear_score, null_scores, path_emulator, simulate_path
 from vibroimpact.discrepancy.survivors import of_survivors
@@ -32,8 +32,7 @@ IMAGED = 2  # rounds that try other signs as well
 class Finalist:
     """A candidate after direct simulation: unit (parameter,) normalised; interval (parameter, 2); scores (record,) and low: log likelihoods by direct
     simulation; mean (record, feature) over `features` (record, seed, feature); path: all that was simulated; profile: see screening.Calibrated; free: see
-    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one; nuisance: Nuisance
-    told beside it, None for that of the bare model."""
+    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one."""
 
     candidate: object
     unit: np.ndarray
@@ -45,7 +44,6 @@ class Finalist:
     profile: list
     free: np.ndarray
     parts: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    nuisance: object = None
 
     @property
     def total(self):
@@ -67,12 +65,12 @@ def started(bench, null, candidate, unit, scales, first_seed=2000):
     return simulate_path(bench, candidate, around(unit, START_STEP, candidate.periodic), scales, null.records, first_seed=first_seed)
 
 
-def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=2000):
-    """Return the Path of a candidate at the points of a Path that was moved here, from another campaign or shorter records, that look best, and at unit."""
-    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:STARTS]
+def own(bench, null, measured, candidate, path, unit, scales, fit, first_seed=2000, starts=STARTS):
+    """Return the Path of a candidate at the points of a Path that was moved here, from another campaign or shorter records, so many that look best, and at unit."""
+    order = np.argsort(_scores(bench, null, measured, path, fit))[::-1][:starts]
     points = path.parameters[order]
     if not any(np.allclose(unit, point, atol=NEW) for point in points):
-        points = np.vstack([unit, points[: STARTS - 1]])
+        points = np.vstack([unit, points[: starts - 1]])
     return simulate_path(bench, candidate, points, scales, null.records, first_seed=first_seed)
 
 
@@ -114,15 +112,16 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
     looked = _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed)
     looked = _with_other_signs(bench, null, measured, candidate, looked, scales, fit, least, first_seed + 20000)
     path, found, free, simulated = looked.path, looked.found, looked.free, looked.path.parameters[np.argmax(looked.scores)]
+    found = replace(found, unit=within_simulated(found.unit, path, simulated, candidate.periodic))
     if looked.losing:
         units, free, seeds = [simulated], np.zeros((0, *null.mean.shape)), min(seeds, FEW_SEEDS)
     else:
         units = _to_judge(candidate, found.unit, simulated, scales)
-        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
-        near_enough = len(free) and len(again) and apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
-        free = 0.5 * (free + again) if near_enough else again
+        near_enough = len(free) and apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
+        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000, free[1:] if near_enough else None)
+        free = 0.5 * (free + again) if near_enough and len(again) else again
     own = null.freed(free)
-    law, best, judgement = law_at(bench, own, candidate, path, found.unit), -np.inf, None
+    law, best, judgement = law_at(bench, own, candidate, path, simulated), -np.inf, None
     safer = path.parameters[np.argsort(_scores(bench, null, measured, path, fit))[::-1][:SAFER]]
     for number, unit in enumerate([*units, *safer]):
         if number >= len(units) and judgement is not None:
@@ -165,7 +164,7 @@ def _with_other_signs(bench, null, measured, candidate, looked, scales, fit, lea
 
 def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed, level=0):
     """Return the _Searched of a candidate, its first star one of STEPS[level]; other arguments as of `refine`."""
-    centre, at, free, own = path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, None, null
+    centre, at, free, own = path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, np.zeros((0, *null.mean.shape)), null
     gain = gains_of(bench, null, measured, path).max()
     losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):
@@ -179,7 +178,7 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
         losing = losing or fresh is not None and gain + (rounds - 1 - number) * max(0.0, gain - before) < least
         if not losing and (at is None or apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[nearest(path, centre, candidate.periodic)]
-            free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
+            free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number, free[1:] if len(free) > 1 else None)
             own = null.freed(free)
             gain = gains_of(bench, null, measured, path, own).max()
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
@@ -208,10 +207,10 @@ def gain_of_part(bench, null, measured, found):
     return found.parts.max() - null_scores(bench, null, measured).sum() - linear_score(bench, None)
 
 
-def _free(bench, null, candidate, unit, scales, first_seed):
+def _free(bench, null, candidate, unit, scales, first_seed, nuisances=None):
     """Return null.free_at of a point, nothing where it can not be simulated."""
     try:
-        return free_at(bench, candidate, unit, scales, null.records, first_seed)
+        return free_at(bench, candidate, unit, scales, null.records, first_seed, nuisances)
     except IntegrationError:
         return np.zeros((0, *null.mean.shape))
 

@@ -41,6 +41,12 @@ def unknown(points, path, periodic):
     return np.array([unit for unit in points if not any(np.all(apart(unit, other, periodic) < NEW) for other in path.parameters)])
 
 
+def within_simulated(unit, path, best, periodic):
+    """Return unit (parameter,) no farther out than the points of a path near `best` (parameter,) are, an angle as it is: outside them nothing was simulated."""
+    known = path.parameters[near(path, best, periodic)]
+    return np.where(np.isin(np.arange(len(unit)), periodic), unit, np.clip(unit, known.min(axis=0), known.max(axis=0)))
+
+
 def images(unit, signed):
     """Return [(parameter,)]: unit with other signs of the parameters that have one. Powers are alike there, and only what is odd tells them apart: a star does not reach them."""
     points = []
