@@ -1,8 +1,8 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Eleventh freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
-that impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two and of nuisances
-beside what bends the lowest record, and the tenth of where such an effect is searched from and of effects that held-out records contradict.
+Twelfth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise that
+impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two, the tenth of effects that
+held-out records contradict, and the eleventh of nuisances where something bends the lowest record, which are left free now, and of searches beside a mass.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
