@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 from scipy import linalg
 
 from vibroimpact.discrepancy import nuisance as linear
@@ -14,7 +15,8 @@ ROUNDS = 3  # of the search that begins anew, where it was found
 
 
 def told_by(bench, null, measured, found):
-    """Return the Nuisance that the lowest record tells beside a Finalist: the most probable along its directions (see nuisance_directions), limited; None where it has none.
+    """Return the Nuisance that the lowest record tells beside a Finalist: the most probable along its directions (see nuisance_directions), limited, on top of those of the
+    bare model; None where it has none.
 
     null: the Null; measured (record, feature).
     """
@@ -25,7 +27,9 @@ def told_by(bench, null, measured, found):
     change, residual = (compressed((one - other)[lowest], bench.layout) for one, other in ((found.mean, null.mean), (measured, found.mean)))
     solved = linalg.solve(with_law(found.own(null).covariance[lowest], change, null.groups), residual, assume_a="pos")
     pulls = found.free[1:, lowest] @ solved
-    return linear.nuisance_of([*pulls[: 2 * len(modes)], *pulls[-channels:]], modes, channels)  # to first order
+    more = linear.nuisance_of(np.array([*pulls[: 2 * len(modes)], *pulls[-channels:]]), modes, channels)  # to first order
+    known = bench.nuisance
+    return replace(more, frequency=known.frequency * more.frequency, damping=known.damping * more.damping, gain=known.gain * more.gain)
 
 
 def refined_beside(bench, null, measured, found, scales, first_seed=30000):
@@ -39,6 +43,6 @@ def refined_beside(bench, null, measured, found, scales, first_seed=30000):
     there, fit = bench.corrected_by(told), fit_mask(bench, null)
     path = own(there, null, measured, found.candidate, found.path, found.unit, scales, fit, first_seed)
     other = None if path is None else refine(there, null, measured, found.candidate, path, scales, fit, ROUNDS, first_seed=first_seed + 1000)
-    if other is None or other.total - linear.cost(told) < found.total:
+    if other is None or other.total - linear.cost(told) + linear.cost(bench.nuisance) < found.total:
         return found, None
     return replace(other, parts=found.parts), told

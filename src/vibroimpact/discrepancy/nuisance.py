@@ -117,6 +117,11 @@ def cost(nuisance):
     return 0.5 * float(pulls @ pulls)
 
 
+def plausible(pulls):
+    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the limit of a correction, as a faulty channel's gain may be."""
+    return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= priors.FEW_PULLED
+
+
 def without(reading, nuisance):
     """Return the Reading of a corrected model as that of the model without the corrections."""
     return replace(reading, log_frequency=reading.log_frequency - np.log(nuisance.frequency), log_damping=reading.log_damping - np.log(nuisance.damping))

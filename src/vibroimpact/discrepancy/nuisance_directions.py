@@ -12,7 +12,6 @@ import numpy as np
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
-from vibroimpact.discrepancy.nuisance import neutral
 
 SIGMAS = (("frequency", priors.FREQUENCY_SD), ("damping", priors.DAMPING_SD))
 
@@ -28,7 +27,7 @@ def nuisance_directions(bench, values, records, first_seed, measuring=None):
     if not bench.nonlinear_low or bench.signals.lowest not in records:
         return nothing
     lowest, runs = list(records).index(bench.signals.lowest), bench.runs([bench.signals.lowest], 1, first_seed)
-    start = bench.nuisance or neutral(bench.measured_fit.modes, len(bench.signals.names))
+    start = bench.nuisance
     told = [replace(start, **{name: getattr(start, name) * np.exp(side * (np.arange(len(start.modes)) == mode))})
             for name, sigma in SIGMAS for mode in range(len(start.modes)) for side in (sigma, -sigma)]  # fmt: skip
     try:

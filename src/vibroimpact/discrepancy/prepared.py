@@ -16,7 +16,7 @@ from vibroimpact.discrepancy.linear_rows import held, linear_rows, nameable, nea
 from vibroimpact.discrepancy.linear_stage import ModalFit, left
 from vibroimpact.discrepancy.measuring import Measuring
 from vibroimpact.discrepancy.nearest_model import fit_from_nearest, translated
-from vibroimpact.discrepancy.nuisance import neutral
+from vibroimpact.discrepancy.nuisance import neutral, plausible
 from vibroimpact.discrepancy.null import driven_channels
 from vibroimpact.discrepancy.scales import scales
 from vibroimpact.discrepancy.windows import compared_s, screened_s
@@ -106,8 +106,9 @@ def workbench(config, campaign_path, prepared, seconds):
     elif prepared.linear_stage:
         if prepared.fit is not None:
             bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
-        # what bends the record would be taken for nuisances: they are left free then, and told beside a candidate alone
-        bench.nuisance = neutral(bench.measured_fit.modes, len(bench.signals.names)) if bench.nonlinear_low else corrected_nuisance(bench)[0]
+        bench.nuisance, _, _, pulls = corrected_nuisance(bench)
+        if bench.nonlinear_low and not plausible(pulls):  # what bends the record would be taken for nuisances: they are told beside a candidate alone
+            bench.nuisance = neutral(bench.measured_fit.modes, len(bench.signals.names))
     return bench
 
 

@@ -13,6 +13,7 @@ NINETY_SD = 1.645  # sigma: half of the interval of 90 % of a normal law
 SHAPE_SD = 0.003  # of a mode shape, relative to its largest value among the channels
 SHAPE_LAW_SD = 0.01  # of what an effect changes of a mode shape: frequencies that scatter before it acts mix its modes otherwise
 CORRECTION_LIMIT = 2.0  # sigma: a nuisance is not corrected beyond it, so that it can not hide an effect
+FEW_PULLED = 0.15  # of all nuisances beyond that limit: a lowest record that is not linear and pulls more tells the bare model none
 NAMED_BEYOND = 2.0  # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their interval outside
 
 # What two codes of the same physics differ by in a feature, one sigma, beside the scatter of seeds.
