@@ -42,7 +42,7 @@ def test_a_correction_goes_to_the_mode_and_not_to_its_number(study_model, with_p
 
 
 def test_free_damping_leaves_plates_and_seen_modes_alone(values, study_model, with_plates):
-    bench = SimpleNamespace(model=lambda variant: with_plates, bare=study_model, linear_stage=True, measured_fit=SimpleNamespace(modes=SEEN))
+    bench = SimpleNamespace(model=lambda variant: with_plates, bare=study_model, linear_stage=True, modes_told=True, measured_fit=SimpleNamespace(modes=SEEN))
     damped = unseen_damping(bench, values, 0.6)
     changed = np.flatnonzero(damped.damping != with_plates.damping)
     assert not set(changed) & {0, 2, 8, 9} and not set(changed) & {3, 4, 5, 6}

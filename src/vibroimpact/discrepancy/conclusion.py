@@ -9,7 +9,6 @@ import xarray as xr
 
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import jobs, mapping, misfit, naming, power_balance, priors, verdict
-from vibroimpact.discrepancy.beside import refined_beside
 from vibroimpact.discrepancy.by_level import by_level
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.completed_model import updated_model
@@ -58,11 +57,9 @@ def conclude(run, screening, final_files, provenance, quick=False):
     p_before = mapping.global_p(bench, null, measured)
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
     if decision.chosen is not None:
-        chosen, nuisance = (decision.chosen, None) if quick else refined_beside(bench, null, measured, decision.chosen, prepared.scales)
-        chosen = with_scatter(bench, null, measured, chosen)
+        chosen = with_scatter(bench, null, measured, decision.chosen)
         found = [chosen if row is decision.chosen else row for row in found]
-        explained = naming.explained(bench, chosen.own(null), chosen.mean, measured)
-        decision = replace(decision, chosen=chosen, nuisance=nuisance or bench.nuisance, explained=explained)
+        decision = replace(decision, chosen=chosen)
     whole = before_bench = run.whole_bench
     seeds = LEAST_FRESH if quick else max(LEAST_FRESH, min(priors.FINAL_SEEDS, FRESH_RUNS // len(bench.signals.load)))
     if prepared.adopted is not None:
@@ -103,7 +100,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     write_record(mapping.map_dataset(whole, after.features, after.shown), folder / "map_after.nc")
     levels = {} if decision.chosen is None else {decision.chosen.candidate.name: by_level(bench, null, measured, decision.chosen, prepared.scales)}
     write_candidates(found, prepared, totals, folder / "candidates", levels)
-    write_text(updated_model(bench if decision.chosen is None else bench.corrected_by(decision.nuisance), decision, prepared), folder / "model_updated.yaml")
+    write_text(updated_model(bench if decision.chosen is None else bench.corrected_by(decision.chosen.nuisance), decision, prepared), folder / "model_updated.yaml")
 
 
 SHOWN = 8
@@ -126,7 +123,7 @@ def completed(run, decision, before, seeds):
     whole, chosen = run.whole_bench, decision.chosen
     if chosen is None:
         return verified(whole, whole.model(), seeds, run.bench)
-    whole = whole.corrected_by(decision.nuisance)
+    whole = whole.corrected_by(chosen.nuisance)
     try:
         return verified(whole, whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, run.prepared.scales))), seeds, run.bench)
     except IntegrationError:

@@ -32,7 +32,8 @@ IMAGED = 2  # rounds that try other signs as well
 class Finalist:
     """A candidate after direct simulation: unit (parameter,) normalised; interval (parameter, 2); scores (record,) and low: log likelihoods by direct
     simulation; mean (record, feature) over `features` (record, seed, feature); path: all that was simulated; profile: see screening.Calibrated; free: see
-    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one."""
+    null.free_at; parts (part,): log likelihood, the lowest record's included, of each effect of a pair without the other, nothing of a single one; nuisance: Nuisance
+    told beside it, None for that of the bare model."""
 
     candidate: object
     unit: np.ndarray
@@ -44,6 +45,7 @@ class Finalist:
     profile: list
     free: np.ndarray
     parts: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    nuisance: object = None
 
     @property
     def total(self):
@@ -117,9 +119,9 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         units, free, seeds = [simulated], np.zeros((0, *null.mean.shape)), min(seeds, FEW_SEEDS)
     else:
         units = _to_judge(candidate, found.unit, simulated, scales)
-        near_enough = len(free) and apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
-        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000, free[1:] if near_enough else None)
-        free = 0.5 * (free + again) if near_enough and len(again) else again
+        again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
+        near_enough = len(free) and len(again) and apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
+        free = 0.5 * (free + again) if near_enough else again
     own = null.freed(free)
     law, best, judgement = law_at(bench, own, candidate, path, simulated), -np.inf, None
     safer = path.parameters[np.argsort(_scores(bench, null, measured, path, fit))[::-1][:SAFER]]
@@ -164,7 +166,7 @@ def _with_other_signs(bench, null, measured, candidate, looked, scales, fit, lea
 
 def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least, first_seed, level=0):
     """Return the _Searched of a candidate, its first star one of STEPS[level]; other arguments as of `refine`."""
-    centre, at, free, own = path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, np.zeros((0, *null.mean.shape)), null
+    centre, at, free, own = path.parameters[np.argmax(_scores(bench, null, measured, path, fit))], None, None, null
     gain = gains_of(bench, null, measured, path).max()
     losing = gain < min(least, HOPELESS * least)
     for number in range(rounds):
@@ -178,7 +180,7 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
         losing = losing or fresh is not None and gain + (rounds - 1 - number) * max(0.0, gain - before) < least
         if not losing and (at is None or apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[nearest(path, centre, candidate.periodic)]
-            free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number, free[1:] if len(free) > 1 else None)
+            free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
             own = null.freed(free)
             gain = gains_of(bench, null, measured, path, own).max()
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
@@ -207,10 +209,10 @@ def gain_of_part(bench, null, measured, found):
     return found.parts.max() - null_scores(bench, null, measured).sum() - linear_score(bench, None)
 
 
-def _free(bench, null, candidate, unit, scales, first_seed, nuisances=None):
+def _free(bench, null, candidate, unit, scales, first_seed):
     """Return null.free_at of a point, nothing where it can not be simulated."""
     try:
-        return free_at(bench, candidate, unit, scales, null.records, first_seed, nuisances)
+        return free_at(bench, candidate, unit, scales, null.records, first_seed)
     except IntegrationError:
         return np.zeros((0, *null.mean.shape))
 

@@ -1,16 +1,18 @@
 """The jobs of a discrepancy run, each from files to a file: null parts, candidates, finalists, pairs."""
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
+from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside, with_parts_beside
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, STARTS, gain_of_part, gains_of, own, placed, placed_again, refine, started, with_parts
-from vibroimpact.discrepancy.nuisance_directions import nuisance_directions
+from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, STARTS, gain_of_part, gains_of, own, placed, placed_again, refine, started
+from vibroimpact.discrepancy.nuisance import Nuisance
+from vibroimpact.discrepancy.nuisance_directions import nuisances_free
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.discrepancy.verdict import idle
@@ -32,9 +34,6 @@ def null_part(run, part, path):
         responses = bench.respond(model, runs)
         for prefix, window in (("", bench), ("screened_", run.screening_bench)):
             arrays[prefix + name] = window.noisy_features(runs, responses).reshape(len(records), seeds, -1)
-    if part == 0:
-        arrays[store.NUISANCES] = nuisance_directions(bench, bench.values, records, 950)
-        arrays["screened_" + store.NUISANCES] = arrays[store.NUISANCES] if run.screened_as_compared else nuisance_directions(run.screening_bench, bench.values, records, 950)
     store.save(path, records=records, **described(bench, records), **arrays)
 
 
@@ -85,7 +84,8 @@ def least_gain(name, chosen):
 
 def finalist(run, name, chosen, path, quick=False):
     """Refine one finalist by direct simulation, or a pair from its start; chosen: content of the file that named it."""
-    bench, null, paths, sizes = run.bench, run.null, run.paths, run.prepared.scales
+    given = None if chosen.get("nuisance") is None else Nuisance(**{key: np.array(value) for key, value in chosen["nuisance"].items()})
+    bench, null, paths, sizes = run.bench.corrected_by(given), run.null, run.paths, run.prepared.scales
     candidate, measured = candidate_named(name), bench.measured_features[null.records]
     unit, least = np.array(chosen["pairs" if "pairs" in chosen else "finalists"][name]), least_gain(name, chosen)
     fit, known = naming.fit_mask(bench, null), paths.get(candidate) if isinstance(candidate, Candidate) else None
@@ -102,16 +102,25 @@ def finalist(run, name, chosen, path, quick=False):
     leads, places = single and leading(candidate, chosen), [other for other in other_places(candidate, bench.values) if other.name not in run.prepared.screened] if single else []
     if places and not quick and gains_of(bench, null, measured, known).max() > PLACED_FROM * least:
         candidate, known = placed(bench, null, measured, candidate, known, places, sizes, fit)
-    found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
+    found = None
+    if single and not quick and bench.nonlinear_low and not bench.modes_told:
+        found = begun_beside(bench, null, measured, candidate, known, sizes, fit, least, seeds)
+    if found is None:
+        found = refine(bench, null, measured, candidate, known, sizes, fit, rounds=QUICK_ROUNDS if quick else ROUNDS, least=least, seeds=seeds)
     if found is not None and not quick and looked_for_elsewhere(bench, null, measured, found, leads, least):
         found = at_another_place(bench, null, measured, found, sizes, fit, least)
+    if found is not None and not quick and bench.nonlinear_low:
+        found = found if given is None else charged(found, given, run.bench.nuisance)
+        found = refined_beside(run.bench, null, measured, found, sizes, fit, least, seeds)
+        found = nuisances_free(run.bench, null, measured, found, sizes)
     if found is not None and not single:
-        found = with_parts(bench, null, measured, found, sizes)
+        found = with_parts_beside(run.bench, null, measured, found, sizes)
         if idle(found, chosen["threshold"]) and gain_of_part(bench, null, measured, found) > chosen["least"]:
             # one of the two explains it where its own search never was: it is looked at closely there, and no pair is left
             candidate, unit = found.candidate.parts(found.unit)[int(np.argmax(found.parts))]
             known = started(bench, null, candidate, unit, sizes, first_seed=9000)
             found = refine(bench, null, measured, candidate, known, sizes, fit, least=chosen["least"], seeds=seeds, first_seed=10000)
+            found = found if found is None or given is None else charged(found, given, run.bench.nuisance)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
@@ -171,8 +180,8 @@ def ordered(bench, null, found):
 
 
 def pairs(run, files, screened, path, quick=False):
-    """Write the pairs to simulate, {pairs: {name: unit}, least, threshold}: none where one effect explains the measurement, or none is found at all."""
-    out, least, found, threshold = {}, None, known_finalists(files), screened["threshold"]
+    """Write the pairs to simulate, {pairs: {name: unit}, least, threshold, nuisance of the best single effect}: none where one effect explains the measurement, or none is found at all."""
+    out, least, found, threshold, nuisance = {}, None, known_finalists(files), screened["threshold"], None
     if quick or not found:
         write_text(json.dumps({"pairs": out, "least": None, "threshold": threshold}), path)
         return
@@ -185,9 +194,11 @@ def pairs(run, files, screened, path, quick=False):
             least = float(gains_of(bench, null, measured, found[0].path, found[0].own(null)).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
-            beside = second.pairs(bench, null, measured, found, paths, run.prepared) if run.prepared.room(found[0].candidate, more=1) else []
+            nuisance = found[0].nuisance
+            beside = second.pairs(bench.corrected_by(nuisance), null, measured, found, paths, run.prepared) if run.prepared.room(found[0].candidate, more=1) else []
             out |= {pair.name: unit.tolist() for pair, unit, gain in beside}
-    write_text(json.dumps({"pairs": out, "least": least, "threshold": threshold}, indent=1), path)
+    told = None if nuisance is None else {name: value.tolist() for name, value in asdict(nuisance).items()}
+    write_text(json.dumps({"pairs": out, "least": least, "threshold": threshold, "nuisance": told}, indent=1), path)
 
 
 def read_json(path):

@@ -56,7 +56,7 @@ def log_likelihood(residual, covariance, change=None, groups=None, more_variance
     covariance (feature, feature): of seeds and of what two codes differ by; change (feature,): what the effect changes, of which LAW_SD is uncertain feature
     by feature and LAW_COMMON_SD in each group of features of groups (feature,); more_variance (feature,): of the mean.
     """
-    total = np.array(covariance) if change is None else with_law(covariance, change, groups)
+    total = np.array(covariance) if change is None else _with_law(covariance, change, groups)
     if more_variance is not None:
         total.reshape(-1)[:: len(residual) + 1] += more_variance
     factor, failed = lapack.dpotrf(total.T, lower=1, overwrite_a=1)  # called thousands of times a run: without the wrapper's checks and copies
@@ -72,7 +72,7 @@ class LawLikelihood:
 
     def __init__(self, covariance, change, groups, spread):
         self.scale = np.sqrt(np.maximum(spread, LEAST_SPREAD * max(spread.mean(), LEAST_SPREAD)))
-        self.values, turn = linalg.eigh(with_law(covariance, change, groups) / np.outer(self.scale, self.scale), check_finite=False)
+        self.values, turn = linalg.eigh(_with_law(covariance, change, groups) / np.outer(self.scale, self.scale), check_finite=False)
         self.turn = turn.T / self.scale
         self.log_scale = float(np.sum(np.log(self.scale)))
 
@@ -85,8 +85,8 @@ class LawLikelihood:
 LEAST_SPREAD = 1.0e-6  # of the mean over features
 
 
-def with_law(covariance, change, groups):
-    """Return covariance (feature, feature) with what two laws of one effect differ by; change (feature,), groups (feature,): see log_likelihood."""
+def _with_law(covariance, change, groups):
+    """Return covariance (feature, feature) with what two laws of one effect differ by."""
     common = np.array([np.where(groups == group, priors.LAW_COMMON_SD * change, 0.0) for group in np.unique(groups)])
     total = covariance + common.T @ common
     total.reshape(-1)[:: len(change) + 1] += (priors.LAW_SD * change) ** 2

@@ -122,6 +122,11 @@ def plausible(pulls):
     return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= priors.FEW_PULLED
 
 
+def credible(measured, simulated, error, times=1.0):
+    """Return whether a Reading is so near to another that nuisances may be what they differ by, or within so many times that; error: see difference."""
+    return likelihood(measured, simulated, error)[1] < times * priors.CREDIBLE * len(difference(measured, simulated, error)[0])
+
+
 def without(reading, nuisance):
     """Return the Reading of a corrected model as that of the model without the corrections."""
     return replace(reading, log_frequency=reading.log_frequency - np.log(nuisance.frequency), log_damping=reading.log_damping - np.log(nuisance.damping))

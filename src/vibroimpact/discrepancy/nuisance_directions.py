@@ -12,6 +12,7 @@ import numpy as np
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
+from vibroimpact.discrepancy.screening import direct_scores
 
 SIGMAS = (("frequency", priors.FREQUENCY_SD), ("damping", priors.DAMPING_SD))
 
@@ -40,3 +41,17 @@ def nuisance_directions(bench, values, records, first_seed, measuring=None):
     gained = 20.0 * np.log10(1.0 + priors.GAIN_SD) * (layout.kind == "power")
     gains = [np.tile(np.where(layout.channel == channel, gained, 0.0), (len(records), 1)) for channel in range(len(bench.signals.names))]
     return np.concatenate([modes, gains]) if np.isfinite(modes).all() else nothing
+
+
+def nuisances_free(bench, null, measured, found, scales, first_seed=35000):
+    """Return a Finalist judged with its nuisance_directions free, as it is where it was given up or has none.
+
+    It is only judged so: in a search, directions of a point far from the answer forgive what is not theirs. bench: with the nuisances of the bare model.
+    """
+    if not len(found.free):
+        return found
+    there, physical = bench.corrected_by(found.nuisance), found.candidate.physical(found.unit, scales)
+    directions = nuisance_directions(there, bench.variant(found.candidate, physical), null.records, first_seed, found.candidate.measuring(physical, bench.signals.names))
+    free = np.concatenate([found.free, directions])
+    scores = direct_scores(bench, null.freed(free).scattered(found.features), measured, found.mean)
+    return replace(found, free=free, scores=scores) if len(directions) else found

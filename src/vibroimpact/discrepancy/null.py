@@ -8,7 +8,6 @@ from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
 from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, log_likelihood, scatter_of
 from vibroimpact.discrepancy.linearised import same_modes
-from vibroimpact.discrepancy.nuisance_directions import nuisance_directions
 from vibroimpact.discrepancy.survivors import of_survivors
 
 UNSEEN = (priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)  # times the damping of modes that the lowest record does not show
@@ -68,14 +67,13 @@ def unseen_damping(bench, values, factor):
     model = bench.model(values)
     plates = [np.sqrt(support["plate"]["stiffness_N_per_m"] / support["plate"]["mass_kg"]) for support in values["supports"] if support.get("plate")]
     unseen = ~np.isin(model.omega, plates)
-    if bench.linear_stage:
+    if bench.linear_stage and bench.modes_told:
         unseen[same_modes(model, bench.measured_fit.modes, bench.bare)] = False
     return replace(model, damping=np.where(unseen, factor, 1.0) * model.damping)
 
 
-def null_of(bench, records, nuisances, features, *others):
-    """Return the Null of (record, seed, feature) of the bare model and of others, the same with less and with more damping of unseen modes; nuisances: their
-    directions (nuisance, record, feature)."""
+def null_of(bench, records, features, *others):
+    """Return the Null of (record, seed, feature) of the bare model and of others, the same with less and with more damping of unseen modes."""
     driven = driven_channels(bench)
     common, own = free_directions(bench.layout, driven), np.diag(feature_sd(bench.layout) ** 2)
     means, apart, bursts = [], [], bursting(bench, records, driven)
@@ -85,7 +83,6 @@ def null_of(bench, records, nuisances, features, *others):
         apart.append(scatter.covariance * (1.0 + 1.0 / len(nominal)) + own + np.diag((burst * bench.layout.blend) ** 2) + common.T @ common)
     means, apart = np.array(means), np.array(apart)
     directions = np.array([compressed(other.mean(axis=1) - means, bench.layout) for other in others])
-    directions = np.concatenate([directions.reshape(-1, *means.shape), nuisances])
     return Null(np.asarray(records), features, means, apart, apart, driven[bench.layout.channel].astype(int), bench.layout.blend).freed(directions)
 
 
@@ -106,9 +103,9 @@ def driven_channels(bench):
     return size > 1.0e-3 * size.max()
 
 
-def free_at(bench, candidate, unit, scales, records, first_seed, nuisances=None):
-    """Return (1 + nuisance, record, compressed feature): half of what less and more damping of unseen modes differ by at normalised parameters (parameter,) of a
-    candidate, times sqrt(2): the two directions that the null has apart, as one of their common size; then the nuisance_directions there, or those given.
+def free_at(bench, candidate, unit, scales, records, first_seed):
+    """Return (1, record, compressed feature): half of what less and more damping of unseen modes differ by at normalised parameters (parameter,) of a candidate, times
+    sqrt(2): the two directions that the null has apart, as one of their common size.
 
     By runs of its own: against a point of the candidate's path, the scatter of that point's few seeds would be free as well, and it alone would
     look right. Whether motion across the force breaks out in a record, and when, hangs on that damping near the onset, and the onset
@@ -119,5 +116,4 @@ def free_at(bench, candidate, unit, scales, records, first_seed, nuisances=None)
     runs = bench.runs(records, seeds, first_seed)
     less, more = (of_survivors(bench.features(unseen_damping(bench, values, factor), runs, measuring).reshape(len(records), seeds, -1)).mean(axis=1)
                   for factor in UNSEEN)  # fmt: skip
-    unseen = compressed(less - more, bench.layout)[None] / np.sqrt(2.0)
-    return np.concatenate([unseen, nuisance_directions(bench, values, records, first_seed, measuring) if nuisances is None else nuisances])
+    return compressed(less - more, bench.layout)[None] / np.sqrt(2.0)

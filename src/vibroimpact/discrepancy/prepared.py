@@ -108,7 +108,7 @@ def workbench(config, campaign_path, prepared, seconds):
             bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
         bench.nuisance, _, _, pulls = corrected_nuisance(bench)
         if bench.nonlinear_low and not plausible(pulls):  # what bends the record would be taken for nuisances: they are told beside a candidate alone
-            bench.nuisance = neutral(bench.measured_fit.modes, len(bench.signals.names))
+            bench.nuisance, bench.modes_told = neutral(bench.measured_fit.modes, len(bench.signals.names)), False
     return bench
 
 

@@ -1,8 +1,9 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Twelfth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise that
-impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two, the tenth of effects that
-held-out records contradict, and the eleventh of nuisances where something bends the lowest record, which are left free now, and of searches beside a mass.
+Thirteenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
+that impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two and of nuisances
+beside what bends the lowest record, the tenth of where such an effect is searched from and of effects that held-out records contradict, the eleventh of
+nuisances that are free where such an effect is judged, and of searches beside a mass.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
@@ -14,6 +15,7 @@ SHAPE_SD = 0.003  # of a mode shape, relative to its largest value among the cha
 SHAPE_LAW_SD = 0.01  # of what an effect changes of a mode shape: frequencies that scatter before it acts mix its modes otherwise
 CORRECTION_LIMIT = 2.0  # sigma: a nuisance is not corrected beyond it, so that it can not hide an effect
 FEW_PULLED = 0.15  # of all nuisances beyond that limit: a lowest record that is not linear and pulls more tells the bare model none
+CREDIBLE = 4.0  # of chi-square per value: readings of the lowest record that differ by more, differ by more than nuisances
 NAMED_BEYOND = 2.0  # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their interval outside
 
 # What two codes of the same physics differ by in a feature, one sigma, beside the scatter of seeds.

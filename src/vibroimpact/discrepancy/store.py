@@ -9,12 +9,11 @@ import numpy as np
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.finalists import Finalist
 from vibroimpact.discrepancy.null import null_of
-from vibroimpact.discrepancy.nuisance import Reading
+from vibroimpact.discrepancy.nuisance import Nuisance, Reading
 from vibroimpact.discrepancy.screening import Path
 
 ALONE = "alone_"  # before the names of arrays of a path without the linear effect that was adopted
 UNSEEN = ("less_damped", "more_damped")  # names of the null's arrays with other damping of unseen modes
-NUISANCES = "nuisances"  # name of the null's directions, see nuisance_directions
 EMPTY = "empty"  # what a job writes where there is nothing to do
 
 
@@ -59,6 +58,7 @@ def finalist_arrays(finalist):
     profile = json.dumps([[np.asarray(part).tolist() for part in row] for row in finalist.profile])
     return {"name": np.array(finalist.candidate.name), "unit": finalist.unit, "interval": finalist.interval, "scores": finalist.scores,
             "low": np.array(finalist.low), "runs": finalist.features, "free": finalist.free, "parts": finalist.parts, "profile": np.array(profile),
+            **({} if finalist.nuisance is None else {f"nuisance_{name}": value for name, value in asdict(finalist.nuisance).items()}),
             **{f"path_{name}": value for name, value in path_arrays(finalist.path).items()}}  # fmt: skip
 
 
@@ -66,15 +66,14 @@ def finalist_of(arrays):
     """Return the finalists.Finalist of arrays."""
     path = path_of({name.removeprefix("path_"): value for name, value in arrays.items() if name.startswith("path_")})
     profile = [tuple(np.array(part) for part in row) for row in json.loads(str(arrays["profile"]))]
+    nuisance = Nuisance(**{name: arrays[f"nuisance_{name}"] for name in ("modes", "frequency", "damping", "gain")}) if "nuisance_modes" in arrays else None
     return Finalist(candidate_named(str(arrays["name"])), arrays["unit"], arrays["interval"], arrays["scores"], float(arrays["low"]), arrays["runs"], path, profile, arrays["free"],
-                    arrays["parts"])
+                    arrays["parts"], nuisance)
 
 
 def null_from(bench, files, prefix=""):
     """Return the Null of the files of its parts; prefix "screened_": of the seconds that are screened."""
-    parts = [load(file) for file in files]
-    nuisances = next(part[prefix + NUISANCES] for part in parts if prefix + NUISANCES in part)
-    return null_of(bench, parts[0]["records"], nuisances, *null_features(files, prefix))
+    return null_of(bench, load(files[0])["records"], *null_features(files, prefix))
 
 
 def null_features(files, prefix="", names=("features", *UNSEEN)):

@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.second import least_added
 
 @dataclass
 class Decision:
-    """verdict; chosen: the Finalist that completes the model, None; ambiguity: list of lists of ids; totals, explained; threshold; nuisance: that of the completed model."""
+    """verdict; chosen: the Finalist that completes the model, None; ambiguity: list of lists of ids; totals, explained; threshold."""
 
     verdict: str
     chosen: object
@@ -20,7 +20,6 @@ class Decision:
     totals: dict
     explained: np.ndarray
     threshold: float
-    nuisance: object = None
 
 
 def decide(bench, null, prepared, found, threshold, p_before):

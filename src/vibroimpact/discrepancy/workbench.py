@@ -39,6 +39,7 @@ class Workbench:
         self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
         self.nonlinear_low = False  # whether the lowest record, though its modes are seen, is not that of a linear structure
+        self.modes_told = True  # whether its modes tell nuisances all the same
         self.followed = False  # whether the model holds what moved its modes: no resonances are looked for without it then
         self.values = self.given = config.model_dump(mode="json")
 
@@ -47,7 +48,7 @@ class Workbench:
         if nuisance is None:
             return self
         out = copy(self)
-        out.nuisance = nuisance
+        out.nuisance, out.modes_told = nuisance, True
         out.__dict__.pop("low_response", None)
         return out
 
