@@ -190,8 +190,8 @@ def pairs(run, files, screened, path, quick=False):
     if totals[found[0].candidate.name][0] > threshold:
         measured = bench.measured_features[null.records]
         if second.needed(naming.explained(bench, found[0].own(null), found[0].mean, measured)):
-            # by as few seeds as the pairs' own runs: what is judged by more seeds scores higher
-            least = float(gains_of(bench, null, measured, found[0].path, found[0].own(null)).max())
+            # by as few seeds as the pairs' own runs, and with no nuisances free, as they are searched: what is judged otherwise scores higher
+            least = float(gains_of(bench, null, measured, found[0].path, null.freed(found[0].free[:1])).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             nuisance = found[0].nuisance
