@@ -121,6 +121,7 @@ def finalist(run, name, chosen, path, quick=False):
             known = started(bench, null, candidate, unit, sizes, first_seed=9000)
             found = refine(bench, null, measured, candidate, known, sizes, fit, least=chosen["least"], seeds=seeds, first_seed=10000)
             found = found if found is None or given is None else charged(found, given, run.bench.nuisance)
+            found = found if found is None or not bench.nonlinear_low else nuisances_free(run.bench, null, measured, found, sizes)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
