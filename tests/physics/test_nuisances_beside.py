@@ -16,7 +16,7 @@ from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.finalists import Finalist
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.null import UNSEEN, null_of, unseen_damping
-from vibroimpact.discrepancy.nuisance_directions import nuisance_directions, nuisances_free
+from vibroimpact.discrepancy.nuisance_directions import nuisance_directions, unknowns_free
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.excitation import band_limited_noise
 
@@ -152,14 +152,14 @@ def test_beside_another_spring_nuisances_are_not_what_is_left(bent, null, coeffi
     assert naming.explained(bent, found.own(null), found.mean, bent.measured_features)[0] < 3.0 * priors.EXPLAINED_Z
 
 
-def test_a_finalist_is_judged_again_with_nuisances_free(bent, null):
+def test_a_finalist_is_judged_again_with_unknowns_free(bent, null):
     scales, seeds = {"cubic": 8.0e10}, 4
     unit = SPRING.normalised(COEFFICIENT, scales)
     features = bent.features(bent.model(bent.variant(SPRING, COEFFICIENT)), bent.runs(null.records, seeds, 100)).reshape(2, seeds, -1)
     before = Finalist(SPRING, unit, None, np.zeros(2), -3.0, features, None, [], np.zeros((1, *null.mean.shape)), nuisance=bent.nuisance)
-    found = nuisances_free(bent, null, bent.measured_features, before, scales)
+    found = unknowns_free(bent, null, bent.measured_features, before, scales)
     assert naming.explained(bent, before.own(null), found.mean, bent.measured_features)[0] < priors.EXPLAINED_Z
     assert naming.explained(bent, found.own(null), found.mean, bent.measured_features)[0] > priors.EXPLAINED_Z
     assert found.low == before.low
     given_up = replace(before, free=before.free[:0])
-    assert nuisances_free(bent, null, bent.measured_features, given_up, scales) is given_up
+    assert unknowns_free(bent, null, bent.measured_features, given_up, scales) is given_up

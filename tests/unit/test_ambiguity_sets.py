@@ -47,3 +47,10 @@ def test_so_they_are_beside_another_effect():
     assert isinstance(best, Pair)
     sets = [ids for ids, _ in local_sets(best, gains(GAP_AND_DAMPING), set(GAP_AND_DAMPING))]
     assert sets == [["gap", "hunt_crossley"], ["contact_damping", "gap"], ["hunt_crossley", "sensor_gain"], ["contact_damping", "sensor_gain"]]
+
+
+def test_laws_of_one_quantity_are_compared_by_what_it_adds_to_the_other_effect():
+    """Two codes differ by a quarter of what a contact's law changes, whatever a gap changes beside it."""
+    rows, best = gains(GAP_AND_DAMPING | {"gap@all+contact_damping@all": 1600.0}), "gap@all+hunt_crossley@all"
+    assert not_told_apart(rows, best, added={"hunt_crossley": 650.0, "gap": 1200.0}) == ["gap@all+contact_damping@all"]
+    assert not_told_apart(rows, best, added={"hunt_crossley": 400.0, "gap": 1200.0}) == []

@@ -1,5 +1,6 @@
 """The verdict from scores: who is named, who is not told apart, when a pair is needed, and when nobody is named."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -182,7 +183,10 @@ def test_what_held_out_records_contradict_is_not_added_to_what_the_lowest_record
 def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided):
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
     assert verdict.refuted(part, 0.5, -2.8) and not verdict.refuted(part, 0.5, 0.4) and not verdict.refuted(part, 0.5, None)
-    assert not verdict.refuted(decided([finalist("gap@all", 300.0)]), 0.5, -2.8)
+    named = decided([finalist("gap@all", 300.0)])
+    # a record near an onset, of which the model goes both ways, is met by no mean: where the fitted ones gain, it is no witness alone
+    assert verdict.refuted(named, -0.2, -2.8) and not any(verdict.refuted(named, *shares) for shares in ((0.5, -2.8), (-0.2, -0.5), (-2.8, None), (None, -2.8)))
+    assert not verdict.refuted(replace(named, verdict="none", chosen=None), -0.2, -2.8)
 
 
 def test_a_part_that_makes_no_records_better_is_no_explanation(decided):

@@ -9,7 +9,7 @@ from vibroimpact.discrepancy import second
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.second import Told, pairs, told
 
-PREPARED = SimpleNamespace(scales={"mass": 1.0}, linear=[], nonlinear_low=False, adopted=None)
+PREPARED = SimpleNamespace(scales={"mass": 1.0}, linear=[], nonlinear_low=False, linear_stage=True, adopted=None)
 NULL = SimpleNamespace(records=np.arange(2), mean=np.zeros((2, 3)))
 
 
@@ -72,3 +72,16 @@ def test_a_lowest_record_that_is_not_quite_linear_tells_of_one_effect(monkeypatc
     rows = told(None, NULL, SimpleNamespace(**{"scales": {}, "linear": ROWS, "nonlinear_low": True, "adopted": None} | change))
     assert [row.candidate.name for row in rows] == names
     assert all(isinstance(row, Told) and row.mean[0, 0] == row.unit[0] == 0.86 for row in rows)
+
+
+@pytest.mark.parametrize(("name", "hidden", "units"), [("modal_damping@all", True, [0.4, 0.2, 0.8, 1.0]), ("modal_damping@all", False, [0.4]), ("gap@all", True, [0.4])])
+def test_a_linear_effect_that_no_lowest_record_tells_is_tried_at_every_value(monkeypatch, name, hidden, units):
+    """Nine times the damping, in a tube that is pressed to its hole, was simulated at six tenths alone, where the sum put it, and not found."""
+    monkeypatch.setattr(second, "direct_scores", lambda bench, null, measured, mean: mean[:, 0])
+    monkeypatch.setattr(second, "linear_score", lambda bench, reading: 0.0)
+    bench = SimpleNamespace(layout=SimpleNamespace(blend=np.full(3, 1.0e6)))
+    at, scores = np.array([[0.2], [0.4], [0.8], [1.0]]), np.array([30.0, 40.0, 20.0, 10.0])
+    path = SimpleNamespace(parameters=at, features=scores[:, None, None] * np.ones((1, 2, 3)), readings=[None] * 4)
+    first = SimpleNamespace(candidate=candidate_named("support_offset@all"), unit=np.array([0.7, 0.1]), mean=NULL.mean, low=0.0, own=lambda null: null)
+    rows = second.proposed(bench, NULL, None, [first], {candidate_named(name): path}, hidden)
+    assert [row[2][-1] for row in rows] == units

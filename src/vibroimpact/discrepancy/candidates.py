@@ -118,6 +118,10 @@ class Candidate:
         """Return the configuration in plain values with the effect; unchanged for a fault of the measuring chain."""
         return values if self.effect.measured else self.effect.apply(values, parameters, self.location)
 
+    def other_laws(self, values, parameters):
+        """Return [configuration] with the effect by each of its other laws."""
+        return [law(values, parameters, self.location) for law in self.effect.other_laws]
+
     def measuring(self, parameters, names):
         """Return the Measuring of a fault of the measuring chain, None for an effect of the model."""
         return measuring_of(self.effect_id, parameters, self.location, names) if self.effect.measured else None
@@ -202,6 +206,11 @@ class Pair:
     def variant(self, values, parameters):
         """Return the configuration in plain values with both effects."""
         return self.second.variant(self.first.variant(values, parameters[0]), parameters[1])
+
+    def other_laws(self, values, parameters):
+        """Return [configuration] with both effects, one of them by each of its other laws."""
+        firsts = [self.second.variant(other, parameters[1]) for other in self.first.other_laws(values, parameters[0])]
+        return firsts + self.second.other_laws(self.first.variant(values, parameters[0]), parameters[1])
 
     def measuring(self, parameters, names):
         """Return the Measuring of the one of the two that is a fault of the measuring chain, None where neither is."""

@@ -16,6 +16,7 @@ from vibroimpact.discrepancy.estimate_scatter import with_scatter
 from vibroimpact.discrepancy.invariances import broken_invariances
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.prepared import workbench
+from vibroimpact.discrepancy.same_quantity import by_other_laws
 from vibroimpact.discrepancy.survivors import survivors
 from vibroimpact.records import plain, read_text, write_record, write_table, write_text
 
@@ -54,6 +55,8 @@ def conclude(run, screening, final_files, provenance, quick=False):
     folder, prepared, bench, null, paths = run.folder, run.prepared, run.bench, run.null, run.paths
     found, totals = jobs.ordered(bench, null, jobs.known_finalists(final_files))
     measured = bench.measured_features[null.records]
+    if found and isinstance(found[0].candidate, Pair) and not quick:
+        found, totals = jobs.ordered(bench, null, jobs.best_of_each([*found, *by_other_laws(bench, null, measured, found[0], prepared)]))
     p_before = mapping.global_p(bench, null, measured)
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
     if decision.chosen is not None:

@@ -12,7 +12,7 @@ from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named,
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, STARTS, gain_of_part, gains_of, own, placed, placed_again, refine, started
 from vibroimpact.discrepancy.nuisance import Nuisance
-from vibroimpact.discrepancy.nuisance_directions import nuisances_free
+from vibroimpact.discrepancy.nuisance_directions import unknowns_free
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.discrepancy.verdict import idle
@@ -112,7 +112,8 @@ def finalist(run, name, chosen, path, quick=False):
     if found is not None and not quick and bench.nonlinear_low:
         found = found if given is None else charged(found, given, run.bench.nuisance)
         found = refined_beside(run.bench, null, measured, found, sizes, fit, least, seeds)
-        found = nuisances_free(run.bench, null, measured, found, sizes)
+    if found is not None and not quick:
+        found = unknowns_free(run.bench, null, measured, found, sizes)
     if found is not None and not single:
         found = with_parts_beside(run.bench, null, measured, found, sizes)
         if idle(found, chosen["threshold"]) and gain_of_part(bench, null, measured, found) > chosen["least"]:
@@ -121,7 +122,7 @@ def finalist(run, name, chosen, path, quick=False):
             known = started(bench, null, candidate, unit, sizes, first_seed=9000)
             found = refine(bench, null, measured, candidate, known, sizes, fit, least=chosen["least"], seeds=seeds, first_seed=10000)
             found = found if found is None or given is None else charged(found, given, run.bench.nuisance)
-            found = found if found is None or not bench.nonlinear_low else nuisances_free(run.bench, null, measured, found, sizes)
+            found = found if found is None else unknowns_free(run.bench, null, measured, found, sizes)
     store.save_empty(path) if found is None else store.save(path, **store.finalist_arrays(found))
 
 
@@ -154,6 +155,7 @@ def longer(bench, null, measured, path, screened):
     return float(np.clip(gains_of(bench, null, measured, path).max() / screened, 1.0, LONGER))
 
 
+SEARCHED = 2  # of what is left free of a finalist, the first: the damping of unseen modes, and what parts its runs
 LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
 ALIAS_LOSING = 0.35  # the same for its aliases: to name one alone is to say that it is not the other
 LONGER = 3.0
@@ -162,7 +164,11 @@ LONGER = 3.0
 def known_finalists(files):
     """Return [Finalist] of files, one of each name: an effect that was screened at two places may have ended at one."""
     arrays = [store.load(file) for file in files]
-    found = [store.finalist_of(row) for row in arrays if row is not None]
+    return best_of_each([store.finalist_of(row) for row in arrays if row is not None])
+
+
+def best_of_each(found):
+    """Return [Finalist], of each name the one that explains most."""
     return list({row.candidate.name: row for row in sorted(found, key=lambda row: row.scores.sum() + row.low)}.values())
 
 
@@ -192,7 +198,7 @@ def pairs(run, files, screened, path, quick=False):
         measured = bench.measured_features[null.records]
         if second.needed(naming.explained(bench, found[0].own(null), found[0].mean, measured)):
             # by as few seeds as the pairs' own runs, and with no nuisances free, as they are searched: what is judged otherwise scores higher
-            least = float(gains_of(bench, null, measured, found[0].path, null.freed(found[0].free[:1])).max())
+            least = float(gains_of(bench, null, measured, found[0].path, null.freed(found[0].free[:SEARCHED])).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             nuisance = found[0].nuisance

@@ -131,16 +131,20 @@ def bare_spread(null):
 SPREAD = 1.25  # right models of the development campaigns: 205 to 300 for 270 features
 
 
-def not_told_apart(total, best, sufficient=frozenset()):
+def not_told_apart(total, best, sufficient=frozenset(), added=None):
     """Return the names whose total gain is too near the best's: within AMBIGUOUS. An alias of the catalogue, of a pair's with the other effect the same, also within
     ALIAS_AMBIGUOUS, and wherever it leaves nothing to be explained (sufficient: names of those that do not): two laws of one kind differ by less than two codes of one
-    law. Laws of one quantity within SAME_QUANTITY: which of them another code, with other contact points, comes nearer to is no property of the structure."""
+    law. Laws of one quantity where they lose no more than the rest of SAME_QUANTITY of what it gains, of a pair's effect added {id: gain} beside the other: which of
+    them another code, with other contact points, comes nearer to is no property of the structure."""
     first, out = candidate_named(best), []
+    added = {first.effect_id: total[best][0]} if added is None else added
     for name, (gain, _, _) in total.items():
         other = candidate_named(name)
-        alias = any({*two.ids} & {*one.effect.aliases} or {*one.ids} & {*two.effect.aliases} for one, two in [_exchanged(first, other)] if one and two)
+        one, two = _exchanged(first, other)
+        alias = one and ({*two.ids} & {*one.effect.aliases} or {*one.ids} & {*two.effect.aliases})
         near = gain > total[best][0] - (priors.ALIAS_AMBIGUOUS if alias else priors.AMBIGUOUS) or alias and name in sufficient
-        same = first.effect.quantity and first.effect.quantity == other.effect.quantity and gain > priors.SAME_QUANTITY * total[best][0]
+        same = one and one.effect.quantity and one.effect.quantity == two.effect.quantity
+        same = same and total[best][0] - gain < (1.0 - priors.SAME_QUANTITY) * added.get(one.effect_id, 0.0)
         if sorted(other.ids) != sorted(first.ids) and (near or same):
             out.append(name)
     return out

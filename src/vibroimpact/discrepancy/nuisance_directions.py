@@ -12,6 +12,7 @@ import numpy as np
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
+from vibroimpact.discrepancy.law_directions import law_directions
 from vibroimpact.discrepancy.screening import direct_scores
 
 SIGMAS = (("frequency", priors.FREQUENCY_SD), ("damping", priors.DAMPING_SD))
@@ -43,15 +44,17 @@ def nuisance_directions(bench, values, records, first_seed, measuring=None):
     return np.concatenate([modes, gains]) if np.isfinite(modes).all() else nothing
 
 
-def nuisances_free(bench, null, measured, found, scales, first_seed=35000):
-    """Return a Finalist judged with its nuisance_directions free, as it is where it was given up or has none.
+def unknowns_free(bench, null, measured, found, scales, first_seed=35000):
+    """Return a Finalist judged with its nuisance_directions and law_directions free, as it is where it was given up or has none.
 
     It is only judged so: in a search, directions of a point far from the answer forgive what is not theirs. bench: with the nuisances of the bare model.
     """
     if not len(found.free):
         return found
     there, physical = bench.corrected_by(found.nuisance), found.candidate.physical(found.unit, scales)
-    directions = nuisance_directions(there, bench.variant(found.candidate, physical), null.records, first_seed, found.candidate.measuring(physical, bench.signals.names))
+    modes = nuisance_directions(there, bench.variant(found.candidate, physical), null.records, first_seed, found.candidate.measuring(physical, bench.signals.names))
+    directions = np.concatenate([modes, law_directions(there, found.candidate, physical, null.records, first_seed)])
+    if not len(directions):
+        return found
     free = np.concatenate([found.free, directions])
-    scores = direct_scores(bench, null.freed(free).scattered(found.features), measured, found.mean)
-    return replace(found, free=free, scores=scores) if len(directions) else found
+    return replace(found, free=free, scores=direct_scores(bench, null.freed(free).scattered(found.features), measured, found.mean))

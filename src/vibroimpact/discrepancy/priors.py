@@ -54,4 +54,5 @@ SIGNIFICANT = 0.01  # global p below which the bare model and the measurement di
 LINEAR_AMBIGUOUS, LINEAR_ALIAS = 3.0, 8.0  # of log likelihood on the lowest record: linear effects nearer than this to the best; aliases of the catalogue
 PARTLY = 0.5  # closed share above which an explanation that leaves something is still partly one
 WORSE = -0.25  # closed share of the held-out misfit below which what explained a part of the others is no explanation
+FAR_WORSE = -1.0  # the same where it explained all, yet closes nothing of those fitted: twice the misfit of the bare model is none, whatever its scatter forgives
 LEAST_CLOSED = 0.15  # closed share below which a gain of likelihood is no explanation

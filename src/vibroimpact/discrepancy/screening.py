@@ -31,28 +31,34 @@ WIDEST = 0.5  # of the searched range: no parameter is known worse
 @dataclass
 class Path:
     """What was simulated of a candidate: parameters (point, parameter) normalised; features (point, record, feature) means over seeds; seeds of
-    each; readings: list of the low-level Reading or None where it is the bare model's."""
+    each; readings: list of the low-level Reading or None where it is the bare model's; differences (point, record, feature): of the first two seeds, 0 where there is one."""
 
     parameters: np.ndarray
     features: np.ndarray
     seeds: np.ndarray
     readings: list
+    differences: np.ndarray = None
+
+    def __post_init__(self):
+        if self.differences is None:
+            self.differences = np.zeros_like(self.features)
 
     def of(self, chosen):
         """Return the path of the points chosen (point,) bool."""
-        return Path(self.parameters[chosen], self.features[chosen], self.seeds[chosen], [row for row, kept in zip(self.readings, chosen, strict=True) if kept])
+        readings = [row for row, kept in zip(self.readings, chosen, strict=True) if kept]
+        return Path(self.parameters[chosen], self.features[chosen], self.seeds[chosen], readings, self.differences[chosen])
 
     def joined(self, other):
         """Return both paths as one."""
         return Path(np.vstack([self.parameters, other.parameters]), np.concatenate([self.features, other.features]),
-                    np.concatenate([self.seeds, other.seeds]), self.readings + other.readings)  # fmt: skip
+                    np.concatenate([self.seeds, other.seeds]), self.readings + other.readings, np.concatenate([self.differences, other.differences]))  # fmt: skip
 
 
 def simulate_path(bench, candidate, parameters, scales, records, seeds=None, first_seed=100):
     """Return the Path of a candidate at normalised parameters (point, parameter)."""
     lowest, records = bench.signals.lowest, list(records)
     seeds = bench.seeds_of_a_batch({*records, lowest}) if seeds is None else seeds
-    kept, means, counts, readings = [], [], [], []
+    kept, means, counts, readings, differences = [], [], [], [], []
     for number, unit in enumerate(np.atleast_2d(parameters)):
         physical = candidate.physical(unit, scales)
         values = bench.variant(candidate, physical)
@@ -70,9 +76,10 @@ def simulate_path(bench, candidate, parameters, scales, records, seeds=None, fir
             continue
         kept.append(unit)
         means.append(features.mean(axis=1))
+        differences.append(features[:, 0] - features[:, min(1, features.shape[1] - 1)])
         counts.append(features.shape[1])
         readings.append(bench.low_reading(low_response / bench.gains[:, None]) if low else None)
-    return Path(np.array(kept), np.array(means), np.array(counts), readings) if kept else None
+    return Path(np.array(kept), np.array(means), np.array(counts), readings, np.array(differences)) if kept else None
 
 
 def linear_score(bench, reading):

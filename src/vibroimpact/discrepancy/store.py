@@ -40,7 +40,7 @@ def save_empty(path):
 def path_arrays(path):
     """Return the arrays of a screening.Path."""
     readings = [None if reading is None else {name: np.asarray(value).tolist() for name, value in asdict(reading).items()} for reading in path.readings]
-    return {"parameters": path.parameters, "features": path.features, "seeds": path.seeds, "readings": np.array(json.dumps(readings))}
+    return {"parameters": path.parameters, "features": path.features, "seeds": path.seeds, "differences": path.differences, "readings": np.array(json.dumps(readings))}
 
 
 def path_of(arrays, prefix=""):
@@ -50,7 +50,7 @@ def path_of(arrays, prefix=""):
     arrays = {name.removeprefix(prefix): value for name, value in arrays.items() if name.startswith(prefix)}
     readings = [None if row is None else Reading(*[np.array(row[name]) for name in ("modes", "log_frequency", "log_damping", "participation", "residual")])
                 for row in json.loads(str(arrays["readings"]))]  # fmt: skip
-    return Path(arrays["parameters"], arrays["features"], arrays["seeds"], readings)
+    return Path(arrays["parameters"], arrays["features"], arrays["seeds"], readings, arrays.get("differences"))
 
 
 def finalist_arrays(finalist):

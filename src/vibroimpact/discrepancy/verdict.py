@@ -46,7 +46,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     left = naming.explained(bench, best.own(null), best.mean, measured)
     alike = doubles if isinstance(best.candidate, Pair) else singles
     sufficient = {row.candidate.name for row in alike if naming.explained(bench, row.own(null), row.mean, measured).min() > priors.EXPLAINED_Z}
-    together = whole_sets(linear, local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient))
+    together = whole_sets(linear, local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient, added_by_each(best)))
     share = closure(bench, null, best, measured)
     contradicted = vetoed(totals[best.candidate.name], share)
     if left.min() < priors.EXPLAINED_Z or contradicted:
@@ -61,10 +61,11 @@ def decide(bench, null, prepared, found, threshold, p_before):
 
 
 def refuted(decision, fitted, held_out):
-    """Return whether a partial explanation makes the held-out records worse, or no records better: shares of the misfit that it closes on those fitted and on those
-    held out, None where there is none to close."""
+    """Return whether an explanation makes all records worse, or a partial one the held-out ones, or none better: shares of the misfit that it closes on those fitted and on
+    those held out, None where there is none to close."""
     if decision.verdict != "partly_explained":
-        return False
+        told = decision.chosen is not None and fitted is not None and held_out is not None
+        return told and fitted < 0.0 and held_out < priors.FAR_WORSE
     known = [share for share in (fitted, held_out) if share is not None]
     return held_out is not None and held_out < priors.WORSE or bool(known) and max(known) < priors.LEAST_CLOSED
 
@@ -82,6 +83,13 @@ def whole_sets(linear, sets):
     """Return [[ids]]: every set [([ids], alone)] of what contact levels tell, with every linear effect [[id]] of the lowest record, or in its place."""
     out = [sorted({*one, *ids}) for ids, alone in sets for one in ([[]] if alone or not linear else linear)]
     return [list(row) for row in dict.fromkeys(map(tuple, out))]
+
+
+def added_by_each(found):
+    """Return {effect id: log likelihood that each effect of a Finalist of a Pair adds to the other}, None of a single one."""
+    if not isinstance(found.candidate, Pair):
+        return None
+    return {found.candidate.first.effect_id: found.total - found.parts[1], found.candidate.second.effect_id: found.total - found.parts[0]}
 
 
 def idle(found, threshold):
@@ -103,9 +111,9 @@ def linear_sets(prepared):
     return out
 
 
-def local_sets(best, totals, names, sufficient=frozenset()):
-    """Return [([ids], alone)] of what the contact levels can not tell apart, the best first; sufficient: names of those that leave nothing to be explained."""
-    alike = naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient)
+def local_sets(best, totals, names, sufficient=frozenset(), added=None):
+    """Return [([ids], alone)] of what the contact levels can not tell apart, the best first; other arguments as of naming.not_told_apart."""
+    alike = naming.not_told_apart({name: totals[name] for name in names}, best.name, sufficient, added)
     out = [(sorted(candidate.ids), candidate.alone) for candidate in (best, *map(candidate_named, alike))]
     # force and all responses scaled alike are a gap scaled: an exact alias, also beside another effect
     scaled = [candidate.ids for candidate, _ in best.parts(()) if candidate.effect_id == "gap" and candidate.location == "all"]

@@ -61,7 +61,15 @@ class Workbench:
 
     def variant(self, candidate, physical):
         """Return the configuration in plain values with a candidate: on what was adopted, or in its place."""
-        return candidate.variant(self.given if candidate.alone else self.values, physical)
+        return candidate.variant(self._without(candidate), physical)
+
+    def other_laws(self, candidate, physical):
+        """Return [configuration in plain values] of a candidate by other laws than its own, see effects.effect.Effect."""
+        return candidate.other_laws(self._without(candidate), physical)
+
+    def _without(self, candidate):
+        """Return the configuration that a candidate changes: with what was adopted, or in its place."""
+        return self.given if candidate.alone else self.values
 
     @property
     def gains(self):

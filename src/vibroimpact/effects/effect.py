@@ -38,7 +38,8 @@ class Effect:
     {name: value in SI}. locations(values) -> names of the places that the effect may sit at. broken: the invariances it breaks;
     aliases: ids of effects that look alike; source: where the law is from; linear: it acts in the linear structure below contact too, and keeps
     it linear; below_contact: it is not linear, yet acts where nothing touches, and may be taken for a linear effect there; measured: it changes what was measured, not the model (see measurement.py); needs: what the campaign must hold;
-    law_of: id of the effect of the catalogue that it is another law of, under which it is reported; quantity: what several effects of the catalogue are laws of.
+    law_of: id of the effect of the catalogue that it is another law of, under which it is reported; quantity: what several effects of the catalogue are laws of;
+    other_laws: what may stand in the place of apply, the same effect by laws that differ from it in what no measurement of a structure in use tells.
     """
 
     id: str
@@ -54,6 +55,7 @@ class Effect:
     measured: bool = False
     needs: tuple[str, ...] = ()
     law_of: str = ""
+    other_laws: tuple[Callable, ...] = ()
     quantity: str = ""
 
     @property

@@ -1,0 +1,50 @@
+"""A pair by another law of one of its quantities: a contact's stiffness is linear or Hertz's, and pairs that differ in that alone are compared where each is at its best.
+
+Proposed from a sum, one law may start where the search never leaves, and lose by that alone: an obstacle with a soft contact was looked for from half a lobe away, and its
+twin with Hertz's law, found where it was, was named alone.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.discrepancy import naming, priors
+from vibroimpact.discrepancy.beside import charged, with_parts_beside
+from vibroimpact.discrepancy.candidates import Candidate, Pair
+from vibroimpact.discrepancy.finalists import gains_of, refine
+from vibroimpact.discrepancy.nuisance_directions import unknowns_free
+from vibroimpact.discrepancy.screening import simulate_path
+from vibroimpact.effects.registry import EFFECTS
+
+ROUNDS = 4
+
+
+def exchanged(pair):
+    """Return [(Pair, number of the part)] of a Pair with one of its two effects by another law of the same quantity."""
+    out, parts = [], (pair.first, pair.second)
+    for number, (part, rest) in enumerate(zip(parts, parts[::-1], strict=True)):
+        others = [id for id, effect in EFFECTS.items() if part.effect.quantity and effect.quantity == part.effect.quantity and id not in (part.effect_id, rest.effect_id)]
+        for other in (replace(part, effect_id=id) for id in others):
+            out.append((Pair(other, rest) if number == 0 else Pair(rest, other), number))
+    return out
+
+
+def starts(pair, number, found):
+    """Return (point, parameter): a Finalist's own with the exchanged part, of that number in a Pair, at every point of its design."""
+    rest = found.candidate.parts(found.unit)[1 - number][1]
+    design = (pair.first, pair.second)[number].design()
+    return np.array([np.concatenate([point, rest] if number == 0 else [rest, point]) for point in design])
+
+
+def by_other_laws(bench, null, measured, found, prepared, first_seed=45000):
+    """Return [Finalist] of the pair of a Finalist by other laws, searched from where it is; bench: with the nuisances of the bare model."""
+    there, fit, out = bench.corrected_by(found.nuisance), naming.fit_mask(bench, null), []
+    least = priors.SAME_QUANTITY * gains_of(there, null, measured, found.path, found.own(null)).max()
+    for turn, (pair, number) in enumerate(exchanged(found.candidate)):
+        seed = first_seed + 10000 * turn
+        path = simulate_path(there, pair, starts(pair, number, found), prepared.scales, null.records, first_seed=seed)
+        other = None if path is None else refine(there, null, measured, pair, path, prepared.scales, fit, ROUNDS, least, found.features.shape[1], seed + 1000)
+        if other is not None:
+            other = other if found.nuisance is None else charged(other, found.nuisance, bench.nuisance)
+            out.append(with_parts_beside(bench, null, measured, unknowns_free(bench, null, measured, other, prepared.scales), prepared.scales))
+    return out

@@ -1,0 +1,64 @@
+"""What parts two ways that a record may go: told from pairs of runs, along the jump and as long as it, and from no scatter."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy.branches import branch_direction, with_branch
+from vibroimpact.discrepancy.likelihood import log_likelihood
+from vibroimpact.discrepancy.screening import Path
+
+SIZE, POINTS, UNIT = 120, 10, np.array([0.5])
+JUMP = np.where(np.arange(SIZE) < 20, -5.0, 0.0)  # of every seed's scatter, in a sixth of the features
+
+
+@pytest.fixture
+def runs():
+    """Return the function (share of runs that jump, seed) -> (Null, Path): two records, only the second of which has two ways."""
+
+    def draw(share, seed=5, at=0.5):
+        rng = np.random.default_rng(seed)
+        both = rng.standard_normal((2, POINTS, 2, SIZE))
+        both[:, :, 1] += (rng.random((2, POINTS)) < share)[..., None] * JUMP
+        null = SimpleNamespace(apart=np.tile(np.eye(SIZE), (2, 1, 1)), blend=np.full(SIZE, 1.0e6))
+        path = Path(np.full((POINTS, 1), at), both.mean(axis=0), np.full(POINTS, 2), [None] * POINTS, both[0] - both[1])
+        return null, path
+
+    return draw
+
+
+def test_scatter_alone_parts_nothing(runs):
+    null, path = runs(0.0)
+    assert not branch_direction(null, path, UNIT, ()).any()
+
+
+def test_the_jump_is_found_with_its_length_in_its_record_alone(runs):
+    null, path = runs(0.3)
+    first, second = branch_direction(null, path, UNIT, ())[0]
+    assert not first.any()
+    assert abs(second @ JUMP) / np.linalg.norm(second) / np.linalg.norm(JUMP) > 0.8
+    assert np.linalg.norm(second) == pytest.approx(np.linalg.norm(JUMP), rel=0.25)
+
+
+def test_a_run_that_went_the_other_way_is_no_evidence_against_it(runs):
+    null, path = runs(0.3)
+    direction = branch_direction(null, path, UNIT, ())[0, 1]
+    measured = JUMP + np.random.default_rng(9).standard_normal(SIZE)
+    free = np.eye(SIZE) + np.outer(direction, direction)
+    assert log_likelihood(measured, np.eye(SIZE))[1] > SIZE + 100.0
+    assert log_likelihood(measured, free)[1] < SIZE + 0.15 * JUMP @ JUMP
+    other = np.roll(JUMP, 60) + np.random.default_rng(9).standard_normal(SIZE)
+    assert log_likelihood(other, free)[1] > SIZE + 100.0
+
+
+def test_points_far_away_tell_nothing_here(runs):
+    null, path = runs(0.3, at=0.9)
+    assert not branch_direction(null, path, UNIT, ()).any()
+
+
+def test_where_nothing_is_free_nothing_becomes_so(runs):
+    null, path = runs(0.3)
+    nothing = np.zeros((0, 2, SIZE))
+    assert with_branch(nothing, null, path, UNIT, ()) is nothing
+    assert with_branch(np.zeros((1, 2, SIZE)), null, path, UNIT, ()).shape == (2, 2, SIZE)
