@@ -11,17 +11,19 @@ from vibroimpact.discrepancy.screening import Path
 
 SIZE, POINTS, UNIT = 120, 10, np.array([0.5])
 JUMP = np.where(np.arange(SIZE) < 20, -5.0, 0.0)  # of every seed's scatter, in a sixth of the features
+MEASURED, NOTHING = np.tile(JUMP, (2, 1)), np.zeros((0, 2, SIZE))
 
 
 @pytest.fixture
 def runs():
     """Return the function (share of runs that jump, seed) -> (Null, Path): two records, only the second of which has two ways."""
 
-    def draw(share, seed=5, at=0.5):
+    def draw(share, seed=5, at=0.5, jump=JUMP):
         rng = np.random.default_rng(seed)
         both = rng.standard_normal((2, POINTS, 2, SIZE))
-        both[:, :, 1] += (rng.random((2, POINTS)) < share)[..., None] * JUMP
-        null = SimpleNamespace(apart=np.tile(np.eye(SIZE), (2, 1, 1)), blend=np.full(SIZE, 1.0e6))
+        both[:, :, 1] += (rng.random((2, POINTS)) < share)[..., None] * jump
+        null = SimpleNamespace(covariance=np.tile(np.eye(SIZE), (2, 1, 1)), blend=np.full(SIZE, 1.0e6))
+        null.freed = lambda free: null
         path = Path(np.full((POINTS, 1), at), both.mean(axis=0), np.full(POINTS, 2), [None] * POINTS, both[0] - both[1])
         return null, path
 
@@ -30,12 +32,12 @@ def runs():
 
 def test_scatter_alone_parts_nothing(runs):
     null, path = runs(0.0)
-    assert not branch_direction(null, path, UNIT, ()).any()
+    assert not branch_direction(NOTHING, null, MEASURED, path, UNIT, ()).any()
 
 
 def test_the_jump_is_found_with_its_length_in_its_record_alone(runs):
     null, path = runs(0.3)
-    first, second = branch_direction(null, path, UNIT, ())[0]
+    first, second = branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0]
     assert not first.any()
     assert abs(second @ JUMP) / np.linalg.norm(second) / np.linalg.norm(JUMP) > 0.8
     assert np.linalg.norm(second) == pytest.approx(np.linalg.norm(JUMP), rel=0.25)
@@ -43,7 +45,7 @@ def test_the_jump_is_found_with_its_length_in_its_record_alone(runs):
 
 def test_a_run_that_went_the_other_way_is_no_evidence_against_it(runs):
     null, path = runs(0.3)
-    direction = branch_direction(null, path, UNIT, ())[0, 1]
+    direction = branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0, 1]
     measured = JUMP + np.random.default_rng(9).standard_normal(SIZE)
     free = np.eye(SIZE) + np.outer(direction, direction)
     assert log_likelihood(measured, np.eye(SIZE))[1] > SIZE + 100.0
@@ -52,13 +54,20 @@ def test_a_run_that_went_the_other_way_is_no_evidence_against_it(runs):
     assert log_likelihood(other, free)[1] > SIZE + 100.0
 
 
+def test_a_jump_that_scatter_would_hide_is_found_towards_the_measurement(runs):
+    null, path = runs(0.3, jump=0.4 * JUMP)
+    assert np.sum(path.differences[:, 1] ** 2 / 2.0, axis=1).max() < SIZE + 90.0
+    assert abs(branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0, 1] @ JUMP) > 0.5 * 0.4 * JUMP @ JUMP
+    elsewhere = np.roll(MEASURED, 60, axis=1)
+    assert not branch_direction(NOTHING, null, elsewhere, path, UNIT, ()).any()
+
+
 def test_points_far_away_tell_nothing_here(runs):
     null, path = runs(0.3, at=0.9)
-    assert not branch_direction(null, path, UNIT, ()).any()
+    assert not branch_direction(NOTHING, null, MEASURED, path, UNIT, ()).any()
 
 
 def test_where_nothing_is_free_nothing_becomes_so(runs):
     null, path = runs(0.3)
-    nothing = np.zeros((0, 2, SIZE))
-    assert with_branch(nothing, null, path, UNIT, ()) is nothing
-    assert with_branch(np.zeros((1, 2, SIZE)), null, path, UNIT, ()).shape == (2, 2, SIZE)
+    assert with_branch(NOTHING, null, MEASURED, path, UNIT, ()) is NOTHING
+    assert with_branch(np.zeros((1, 2, SIZE)), null, MEASURED, path, UNIT, ()).shape == (2, 2, SIZE)

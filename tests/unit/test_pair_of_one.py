@@ -24,13 +24,13 @@ def looked_at(monkeypatch):
 
         def refine(bench, null, measured, candidate, known, *_, **__):
             looks.append((candidate.name, known))
-            return Finalist(candidate, UNIT, None, np.array([total]), 0.0, None, None, [], None)
+            return Finalist(candidate, UNIT, None, np.array([total]), 0.0, None, None, [], np.zeros((0, 1, 1)))
 
         monkeypatch.setattr(jobs, "refine", refine)
         monkeypatch.setattr(jobs, "looked_for_elsewhere", lambda *_: elsewhere is not None)
         monkeypatch.setattr(jobs, "at_another_place", lambda bench, null, measured, found, *_: replace(found, candidate=candidate_named(elsewhere)))
         monkeypatch.setattr(jobs, "started", lambda bench, null, candidate, unit, *_, **__: np.asarray(unit).tolist())
-        monkeypatch.setattr(jobs, "with_parts_beside", lambda bench, null, measured, found, _: Finalist(found.candidate, found.unit, None, found.scores, 0.0, None, None, [], None, np.array(parts)))
+        monkeypatch.setattr(jobs, "with_parts_beside", lambda bench, null, measured, found, _: Finalist(found.candidate, found.unit, None, found.scores, 0.0, None, None, [], np.zeros((0, 1, 1)), np.array(parts)))
         monkeypatch.setattr(jobs, "gain_of_part", lambda bench, null, measured, found: found.parts.max() - START)
         monkeypatch.setattr(jobs.naming, "fit_mask", lambda *_: None)
         monkeypatch.setattr(jobs.store, "finalist_arrays", lambda found: {"name": found.candidate.name})

@@ -122,7 +122,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         units = _to_judge(candidate, found.unit, simulated, scales)
         again = _free(bench, null, candidate, found.unit, scales, first_seed + 4000)
         near_enough = len(free) and len(again) and apart(found.unit, looked.at, candidate.periodic).max() <= MOVED
-        free = with_branch(0.5 * (free + again) if near_enough else again, null, path, found.unit, candidate.periodic)
+        free = with_branch(0.5 * (free + again) if near_enough else again, null, measured, path, found.unit, candidate.periodic)
     own = null.freed(free)
     law, best, judgement = law_at(bench, own, candidate, path, simulated), -np.inf, None
     safer = path.parameters[np.argsort(_scores(bench, null, measured, path, fit))[::-1][:SAFER]]
@@ -182,8 +182,8 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
         if not losing and (at is None or apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
-            gain = gains_of(bench, null, measured, path, null.freed(with_branch(free, null, path, at, candidate.periodic))).max()
-        own = own if free is None else null.freed(with_branch(free, null, path, at, candidate.periodic))
+            gain = gains_of(bench, null, measured, path, null.freed(with_branch(free, null, measured, path, at, candidate.periodic))).max()
+        own = own if free is None else null.freed(with_branch(free, null, measured, path, at, candidate.periodic))
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
         scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY

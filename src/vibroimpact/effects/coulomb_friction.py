@@ -5,7 +5,6 @@ from vibroimpact.effects.effect import Effect, Parameter
 
 
 STICK_PER_FORCE = 1.0e5  # 1/m: it slips after 10 micrometres
-LIMITS = (0.0625, 0.1875, 0.3125, 0.4375)  # of the force: sliders side by side, evenly weaker and stronger, all equally stiff
 
 
 def apply(values, parameters, location):
@@ -23,10 +22,8 @@ def stiff(values, parameters, location):
 def gradual(values, parameters, location):
     """Return the configuration with sliders that give way one after another, as stiff and as strong in all: a joint slips here before it slips there, and loses energy
     before it slips as a whole (W.D. Iwan, J. Appl. Mech. 33 (1966) 893-900)."""
-    for number, share in enumerate(LIMITS):
-        laws = {"slip_limit_N": share * parameters["force"], "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"] / len(LIMITS)}
-        values = places.with_element(values, f"coulomb_friction_{number + 1}", location, places.across(values, location), **laws)
-    return values
+    laws = {"slip_limit_N": parameters["force"], "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"]}
+    return places.side_by_side(values, "coulomb_friction", location, places.across(values, location), **laws)
 
 
 EFFECT = Effect(

@@ -6,6 +6,7 @@ from vibroimpact.centreline import build_centreline, transverse_directions
 from vibroimpact.config_structure import Path, UTube
 
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
+SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of a limit
 TUBES = {"u_tube": UTube, "path": Path}
 
 
@@ -47,6 +48,18 @@ def with_element(values, name, point, direction, **laws):
         return values
     element = {"name": name, "point": point, "direction": list(direction), **laws}
     return values | {"elements": [*values["elements"], element]}
+
+
+def side_by_side(values, name, point, direction, **laws):
+    """Return the configuration with SHARES of a local element side by side, all equally stiff: a law that bends at once, as it is where it bends little by little.
+
+    laws: keys of an element, its limit in N and its stiffness.
+    """
+    limits = {key for key in laws if key.endswith("limit_N")}
+    for number, share in enumerate(SHARES):
+        parts = {key: value * share if key in limits else value / len(SHARES) for key, value in laws.items()}
+        values = with_element(values, f"{name}_{number + 1}", point, direction, **parts)
+    return values
 
 
 def across(values, point):

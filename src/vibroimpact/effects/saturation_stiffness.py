@@ -10,6 +10,12 @@ def apply(values, parameters, location):
     return places.with_element(values, "saturation_stiffness", location, places.across(values, location), **laws)
 
 
+def rounded(values, parameters, location):
+    """Return the configuration with a spring that saturates little by little: the limit of a grip, or of a clamp that opens, has no corner."""
+    laws = {"saturation_stiffness_N_per_m": parameters["stiffness"], "saturation_limit_N": parameters["limit"]}
+    return places.side_by_side(values, "saturation_stiffness", location, places.across(values, location), **laws)
+
+
 EFFECT = Effect(
     id="saturation_stiffness",
     explanation="a spring holds up to a limit only",
@@ -23,4 +29,5 @@ EFFECT = Effect(
     broken=("T1", "T2"),
     aliases=("coulomb_friction", "lateral_stinger"),
     locations=places.masses_and_springs,
+    other_laws=(rounded,),
 )
