@@ -17,6 +17,7 @@ from vibroimpact.discrepancy.finalists import Finalist
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.null import UNSEEN, null_of, unseen_damping
 from vibroimpact.discrepancy.nuisance_directions import nuisance_directions, unknowns_free
+from vibroimpact.discrepancy.screening import Path
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.excitation import band_limited_noise
 
@@ -156,7 +157,8 @@ def test_a_finalist_is_judged_again_with_unknowns_free(bent, null):
     scales, seeds = {"cubic": 8.0e10}, 4
     unit = SPRING.normalised(COEFFICIENT, scales)
     features = bent.features(bent.model(bent.variant(SPRING, COEFFICIENT)), bent.runs(null.records, seeds, 100)).reshape(2, seeds, -1)
-    before = Finalist(SPRING, unit, None, np.zeros(2), -3.0, features, None, [], np.zeros((1, *null.mean.shape)), nuisance=bent.nuisance)
+    path = Path(unit[None], features.mean(axis=1)[None], np.array([seeds]), [None])
+    before = Finalist(SPRING, unit, None, np.zeros(2), -3.0, features, path, [], np.zeros((1, *null.mean.shape)), nuisance=bent.nuisance)
     found = unknowns_free(bent, null, bent.measured_features, before, scales)
     assert naming.explained(bent, before.own(null), found.mean, bent.measured_features)[0] < priors.EXPLAINED_Z
     assert naming.explained(bent, found.own(null), found.mean, bent.measured_features)[0] > priors.EXPLAINED_Z

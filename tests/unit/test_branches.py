@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.branches import branch_direction, with_branch
+from vibroimpact.discrepancy.branches import branch_direction, deviations, pair_deviations, searched_by, with_branch
 from vibroimpact.discrepancy.likelihood import log_likelihood
+from vibroimpact.discrepancy.null import Null
 from vibroimpact.discrepancy.screening import Path
 
 SIZE, POINTS, UNIT = 120, 10, np.array([0.5])
@@ -71,3 +72,30 @@ def test_where_nothing_is_free_nothing_becomes_so(runs):
     null, path = runs(0.3)
     assert with_branch(NOTHING, null, MEASURED, path, UNIT, ()) is NOTHING
     assert with_branch(np.zeros((1, 2, SIZE)), null, MEASURED, path, UNIT, ()).shape == (2, 2, SIZE)
+
+
+def test_runs_of_a_path_are_deviations_of_one_run_each(runs):
+    null, path = runs(0.0)
+    features = np.random.default_rng(3).standard_normal((2, 8, SIZE))
+    rows = deviations(null, features, path, UNIT, ())
+    assert rows.shape == (2, 8 + POINTS, SIZE)
+    assert np.mean(rows[:, :8] ** 2) == pytest.approx(1.0, rel=0.1)
+    assert np.mean(rows[:, 8:] ** 2) == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_point_of_one_run_is_no_pair(runs):
+    null, path = runs(0.0)
+    path.differences[3:] = 0.0
+    assert pair_deviations(null, path, UNIT, ()).shape == (2, 3, SIZE)
+
+
+def test_a_search_compares_points_by_how_far_its_runs_lie_apart(runs):
+    _, path = runs(0.3)
+    features = np.random.default_rng(4).standard_normal((2, 16, SIZE))
+    covariance = np.tile(2.0 * np.eye(SIZE), (2, 1, 1))
+    null = Null(np.arange(2), features, features.mean(axis=1), covariance, covariance, np.zeros(SIZE, int), np.full(SIZE, 1.0e6))
+    assert searched_by(null, MEASURED, path, UNIT, (), NOTHING) is null
+    own = searched_by(null, MEASURED, path, UNIT, (), np.zeros((1, 2, SIZE)))
+    along = JUMP / np.linalg.norm(JUMP)
+    first, second = (along @ one @ along for one in own.covariance)
+    assert first < 4.0 < 100.0 < second

@@ -245,13 +245,17 @@ def test_where_no_band_counts_nothing_is_closed():
     assert closed_fraction(0.0, 0.0, 0.0) is None
 
 
-def test_scatter_of_a_models_own_seeds_counts_where_it_is_clearly_larger():
-    rng = np.random.default_rng(8)
-    null = Null(np.array([1]), rng.standard_normal((1, 16, 3)), np.zeros((1, 3)), np.eye(3)[None], np.eye(3)[None], np.zeros(3, int), np.full(3, 1.0e6))
-    seeds = rng.standard_normal((1, 8, 3)) * [1.0, 1.0, 10.0]
-    wider = null.scattered(seeds).covariance[0]
-    assert np.diag(wider)[:2].tolist() == [1.0, 1.0]
-    assert wider[2, 2] == pytest.approx(1.0 + seeds[0, :, 2].var(ddof=1) - null.features[0, :, 2].var(ddof=1))
+def test_scatter_of_a_models_own_runs_counts_where_it_is_clearly_larger():
+    rng, size = np.random.default_rng(8), 40
+    null = Null(np.array([1]), rng.standard_normal((1, 16, size)), np.zeros((1, size)), 2.0 * np.eye(size)[None], np.eye(size)[None], np.zeros(size, int), np.full(size, 1.0e6))
+    along = np.ones(size) / np.sqrt(size)
+    alike = rng.standard_normal((1, 20, size))
+    apart = alike + 8.0 * rng.standard_normal((1, 20, 1)) * along
+    assert along @ null.scattered(alike).covariance[0] @ along < 4.0
+    wider = null.scattered(apart).covariance[0]
+    assert 20.0 < along @ wider @ along < 100.0  # 64 more, shrunk
+    across = np.where(np.arange(size) < size // 2, 1.0, -1.0) / np.sqrt(size)
+    assert across @ wider @ across < 8.0
 
 
 def test_chi_squares_of_a_record_of_bursts_scatter_more():

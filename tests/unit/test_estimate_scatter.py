@@ -10,6 +10,8 @@ from vibroimpact.discrepancy.finalists import Finalist
 from vibroimpact.discrepancy.neighbourhood import near, offset
 from vibroimpact.discrepancy.screening import Path
 
+NULL = SimpleNamespace(blend=np.ones(1), freed=lambda free: SimpleNamespace(scattered=lambda rows: None))
+
 
 def path_at(*points):
     """A Path of points of one parameter that holds nothing else."""
@@ -27,7 +29,7 @@ def widened(monkeypatch):
         monkeypatch.setattr(estimate_scatter, "fit_mask", lambda *_: None)
         candidate = SimpleNamespace(periodic=())
         found = Finalist(candidate, np.array([0.5]), np.array([[0.49, 0.51]]), None, 0.0, np.zeros((1, len(estimates), 1)), path_at(*points), [], np.zeros((0, 1, 1)))
-        return estimate_scatter.with_scatter(None, SimpleNamespace(freed=lambda free: SimpleNamespace(scattered=lambda features: None)), None, found).interval[0]
+        return estimate_scatter.with_scatter(None, NULL, None, found).interval[0]
 
     return run
 
@@ -47,7 +49,7 @@ def test_seeds_are_looked_for_near_the_estimate(monkeypatch, widened):
     widened([0.5], [0.0, 100.0, 0.0, 0.0])  # the other parts of the interval are made up from here on
     monkeypatch.setattr(estimate_scatter, "calibrate", calibrate)
     found = Finalist(SimpleNamespace(periodic=()), np.array([0.1]), np.array([[0.0, 0.2]]), None, 0.0, np.zeros((1, 2, 1)), path_at(0.1, 0.2, 0.3, 0.4), [], np.zeros((0, 1, 1)))
-    estimate_scatter.with_scatter(None, SimpleNamespace(freed=lambda free: SimpleNamespace(scattered=lambda features: None)), None, found)
+    estimate_scatter.with_scatter(None, NULL, None, found)
     assert boxes == [[[0.0, pytest.approx(0.3)]]] * 2
 
 

@@ -1,4 +1,4 @@
-"""Records that go one of two ways with the same force and the same model: what parts the ways is left free.
+"""Runs of one model with the same force: how far they lie apart, and records that go one of two ways, where what parts the ways is left free.
 
 Where impacts are few a motion may jump, and stay, so that of eight runs six have a resonance that two have not. A measurement is one run. That it went the other way than
 the mean of the runs is no evidence against a model that goes both.
@@ -25,6 +25,28 @@ def branch_direction(free, null, measured, path, unit, periodic):
 def with_branch(free, null, measured, path, unit, periodic):
     """Return directions free (direction, record, compressed feature) and the branch_direction of a path there, as they are where there are none."""
     return np.concatenate([free, branch_direction(free, null, measured, path, unit, periodic)]) if len(free) else free
+
+
+def deviations(null, features, path, unit, periodic):
+    """Return (record, run, compressed feature): how far runs lie off the mean of a model's, each with the variance of one: of features (record, seed, feature), and of
+    pairs of runs of a path near unit (parameter,)."""
+    seeds = features.shape[1]
+    own = compressed(features - features.mean(axis=1, keepdims=True), null) * np.sqrt(seeds / max(seeds - 1, 1))
+    return np.concatenate([own, pair_deviations(null, path, unit, periodic)], axis=1)
+
+
+def pair_deviations(null, path, unit, periodic):
+    """Return the deviations of pairs of runs of a path near unit (parameter,) alone."""
+    pairs = path.differences[near(path, unit, periodic)]
+    return np.swapaxes(compressed(pairs[pairs.any(axis=(1, 2))], null), 0, 1) / np.sqrt(2.0)
+
+
+def searched_by(null, measured, path, unit, periodic, free):
+    """Return the Null that points of a path near unit (parameter,) are compared by: with directions free (direction, record, compressed feature), with what parts its
+    runs, and with how far they lie apart; as it is where nothing is free."""
+    if not len(free):
+        return null
+    return null.freed(with_branch(free, null, measured, path, unit, periodic)).scattered(pair_deviations(null, path, unit, periodic))
 
 
 def _parting(rows, left, covariance):

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.branches import with_branch
+from vibroimpact.discrepancy.branches import deviations, pair_deviations, searched_by, with_branch
 from vibroimpact.discrepancy.candidates import Pair, other_places
 from vibroimpact.discrepancy.neighbourhood import NEAR, NEW, apart, around, box_round, images, near, nearest, unknown, within_simulated
 from vibroimpact.discrepancy.null import free_at
@@ -60,7 +60,7 @@ class Finalist:
 
     def own(self, null):
         """Return the Null with what the damping of unseen modes changes of this finalist left free, and its own seeds' scatter."""
-        return null.freed(self.free).scattered(self.features)
+        return null.freed(self.free).scattered(deviations(null, self.features, self.path, self.unit, self.candidate.periodic))
 
 
 def started(bench, null, candidate, unit, scales, first_seed=2000):
@@ -125,6 +125,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
         free = with_branch(0.5 * (free + again) if near_enough else again, null, measured, path, found.unit, candidate.periodic)
     own = null.freed(free)
     law, best, judgement = law_at(bench, own, candidate, path, simulated), -np.inf, None
+    common = own.scattered(pair_deviations(null, path, found.unit, candidate.periodic))  # one for all points that are judged
     safer = path.parameters[np.argsort(_scores(bench, null, measured, path, fit))[::-1][:SAFER]]
     for number, unit in enumerate([*units, *safer]):
         if number >= len(units) and judgement is not None:
@@ -133,7 +134,7 @@ def refine(bench, null, measured, candidate, path, scales, fit, rounds=ROUNDS, l
             row = judged(bench, own, measured, candidate, unit, path, found, free, scales, seeds, first_seed + 5000)
         except IntegrationError:
             continue  # where few runs stayed, of more of them too many may be thrown off: the next best
-        score = direct_scores(bench, own, measured, row.mean, law)[fit].sum() + row.low
+        score = direct_scores(bench, common, measured, row.mean, law)[fit].sum() + row.low
         if judgement is None or score > best + CLEARLY:
             judgement, best = row, score
     return judgement
@@ -182,8 +183,8 @@ def _searched(bench, null, measured, candidate, path, scales, fit, rounds, least
         if not losing and (at is None or apart(centre, at, candidate.periodic).max() > MOVED):
             at = path.parameters[nearest(path, centre, candidate.periodic)]
             free = _free(bench, null, candidate, at, scales, first_seed + 400 + 50 * number)
-            gain = gains_of(bench, null, measured, path, null.freed(with_branch(free, null, measured, path, at, candidate.periodic))).max()
-        own = own if free is None else null.freed(with_branch(free, null, measured, path, at, candidate.periodic))
+            gain = gains_of(bench, null, measured, path, searched_by(null, measured, path, at, candidate.periodic, free)).max()
+        own = own if free is None else searched_by(null, measured, path, at, candidate.periodic, free)
         found = _calibrated_near(bench, own, measured, candidate, path, fit)
         scores = scores_along(bench, own, measured, candidate, path, fit)
         better = scores.max() > scores[:known].max() + CLEARLY
@@ -288,7 +289,8 @@ def judged(bench, null, measured, candidate, unit, path, found, free, scales, se
     model = bench.model(bench.variant(candidate, physical))
     runs = bench.runs(null.records, seeds, first_seed)
     features = of_survivors(bench.features(model, runs, candidate.measuring(physical, bench.signals.names)).reshape(len(null.records), seeds, -1))
-    scores = direct_scores(bench, null.scattered(features), measured, features.mean(axis=1))
+    own = null.scattered(deviations(null, features, path, unit, candidate.periodic))
+    scores = direct_scores(bench, own, measured, features.mean(axis=1))
     reading = path.readings[nearest(path, unit, candidate.periodic)]
     interval = np.stack([np.minimum(found.interval[:, 0], unit), np.maximum(found.interval[:, 1], unit)], axis=1)
     return Finalist(candidate, unit, interval, scores, linear_score(bench, reading), features, path, found.profile, free)

@@ -8,6 +8,7 @@ import numpy as np
 from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside, with_parts_beside
+from vibroimpact.discrepancy.branches import pair_deviations
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, STARTS, gain_of_part, gains_of, own, placed, placed_again, refine, started
@@ -198,7 +199,8 @@ def pairs(run, files, screened, path, quick=False):
         measured = bench.measured_features[null.records]
         if second.needed(naming.explained(bench, found[0].own(null), found[0].mean, measured)):
             # by as few seeds as the pairs' own runs, and with no nuisances free, as they are searched: what is judged otherwise scores higher
-            least = float(gains_of(bench, null, measured, found[0].path, null.freed(found[0].free[:SEARCHED])).max())
+            own = null.freed(found[0].free[:SEARCHED]).scattered(pair_deviations(null, found[0].path, found[0].unit, found[0].candidate.periodic))
+            least = float(gains_of(bench, null, measured, found[0].path, own).max())
             # an effect at one support alone comes before a second effect
             out = {other.name: found[0].unit.tolist() for other in elsewhere(found[0].candidate, bench.values)}
             nuisance = found[0].nuisance

@@ -19,20 +19,22 @@ class Scatter:
 
 
 def scatter_of(features, layout):
-    """Return the Scatter of (seed, feature): covariance shrunk towards its diagonal (O. Ledoit, M. Wolf, J. Multivariate Anal. 88, 2004)."""
-    count, size = features.shape
+    """Return the Scatter of (seed, feature)."""
     mean = features.mean(axis=0)
-    centred = compressed(features - mean, layout)
-    variance = np.sum(centred**2, axis=0) / max(count - 1, 1)
-    sd = np.sqrt(np.maximum(variance, 1.0e-12))
-    unit = centred / sd
-    correlation = unit.T @ unit / max(count - 1, 1)
+    return Scatter(mean, shrunk(compressed(features - mean, layout), max(len(features) - 1, 1)))
+
+
+def shrunk(rows, freedom):
+    """Return the covariance (feature, feature) of compressed deviations rows (run, feature) with as many degrees of freedom, shrunk towards its diagonal (O. Ledoit, M.
+    Wolf, J. Multivariate Anal. 88, 2004)."""
+    sd = np.sqrt(np.maximum(np.sum(rows**2, axis=0) / freedom, 1.0e-12))
+    unit = rows / sd
+    correlation = unit.T @ unit / freedom
     off = correlation - np.diag(np.diag(correlation))
-    spread = sum(np.sum((np.outer(row, row) - correlation) ** 2) for row in unit) / count**2
-    shrink = min(1.0, spread / max(np.sum(off**2), 1.0e-12))
-    correlation = (1.0 - shrink) * off + np.eye(size)
-    # a variance from few seeds is itself uncertain: halfway to the median of its neighbours it is less so
-    return Scatter(mean, correlation * np.outer(sd, sd))
+    # sum over runs of |their outer product less the correlation|^2
+    squares = np.sum(np.sum(unit**2, axis=1) ** 2) - 2.0 * np.sum((unit @ correlation) * unit) + len(rows) * np.sum(correlation**2)
+    shrink = min(1.0, squares / len(rows) ** 2 / max(np.sum(off**2), 1.0e-12))
+    return ((1.0 - shrink) * off + np.eye(len(sd))) * np.outer(sd, sd)
 
 
 def feature_sd(layout):

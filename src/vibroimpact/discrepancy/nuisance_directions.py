@@ -56,5 +56,5 @@ def unknowns_free(bench, null, measured, found, scales, first_seed=35000):
     directions = np.concatenate([modes, law_directions(there, found.candidate, physical, null.records, first_seed)])
     if not len(directions):
         return found
-    free = np.concatenate([found.free, directions])
-    return replace(found, free=free, scores=direct_scores(bench, null.freed(free).scattered(found.features), measured, found.mean))
+    found = replace(found, free=np.concatenate([found.free, directions]))
+    return replace(found, scores=direct_scores(bench, found.own(null), measured, found.mean))

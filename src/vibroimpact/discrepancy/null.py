@@ -3,15 +3,17 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import linalg
 
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.features import compressed
-from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, log_likelihood, scatter_of
+from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, log_likelihood, scatter_of, shrunk
 from vibroimpact.discrepancy.linearised import same_modes
 from vibroimpact.discrepancy.survivors import of_survivors
 
 UNSEEN = (priors.UNSEEN_DAMPING, 1.0 / priors.UNSEEN_DAMPING)  # times the damping of modes that the lowest record does not show
-SCATTERED = 4.0  # times the variance of the null's seeds: 8 seeds of the same law exceed it in one of a hundred features
+SCATTERED = 0.5  # of the covariance: what a model's runs scatter by more than the null's along a direction counts from there; below it, it is that of few runs
+LEAST_RUNS = 4  # that a scatter is told from
 
 
 @dataclass(frozen=True)
@@ -52,14 +54,25 @@ class Null:
         """Return the Null with directions (direction, record, compressed feature) left free, one sigma each, in place of its own; itself where there are none."""
         return replace(self, covariance=self.apart + np.einsum("drf,drg->rfg", directions, directions)) if len(directions) else self
 
-    def scattered(self, features):
-        """Return the Null with the scatter of a model's own seeds, features (record, seed, feature), where that is clearly larger than without it.
+    def scattered(self, rows):
+        """Return the Null with the scatter of a model's own runs, rows (record, run, compressed feature) of deviations, along directions in which it is clearly larger; as
+        it is where there are too few.
 
-        Near the onset of motion across the force some seeds hold it and others do not, though none, or all, of the bare model's do.
+        A soft contact, or one near the onset of motion across the force, is thrown about more than the bare model's: what one run is off by is no more than that.
         """
-        here, there = (compressed(rows - rows.mean(axis=1, keepdims=True), self).var(axis=1, ddof=1) for rows in (features, self.features))
-        more = np.where(here > SCATTERED * there, here - there, 0.0)
-        return replace(self, covariance=self.covariance + more[:, :, None] * np.eye(more.shape[1]))
+        if rows.shape[1] < LEAST_RUNS:
+            return self
+        own = [scatter_of(features, self).covariance for features in self.features]
+        return replace(self, covariance=np.array([_wider(*row) for row in zip(self.covariance, map(shrunk, rows, map(len, rows)), own, strict=True)]))
+
+
+def _wider(covariance, here, there):
+    """Return covariance (feature, feature) and what `here` has more than `there`, along directions in which that is more than SCATTERED of it."""
+    factor = linalg.cholesky(covariance, lower=True)
+    white = linalg.solve_triangular(factor, linalg.solve_triangular(factor, here - there, lower=True).T, lower=True)
+    more, along = linalg.eigh(0.5 * (white + white.T))
+    along = factor @ along[:, more > SCATTERED]
+    return covariance + (along * more[more > SCATTERED]) @ along.T
 
 
 def unseen_damping(bench, values, factor):
