@@ -176,8 +176,9 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
                      "gain": np.inf if row is decision.chosen else gain})  # fmt: skip
         seen.add(row.candidate.name)
     if prefix:
+        alone = decision.chosen is None and decision.verdict != "unknown"
         only = {"ids": "+".join(prefix), "location": where(prepared.adopted["name"]), "fit_score": 0.0, "heldout_score": 0.0,  # all others are scored against it
-                "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True, "gain": screening["threshold"]}  # fmt: skip
+                "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True, "gain": np.inf if alone else screening["threshold"]}  # fmt: skip
         rows.append(only)
     rows.sort(key=lambda row: -row["gain"])
     for row in screening["ranked"]:
