@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.beside import charged, with_parts_beside
-from vibroimpact.discrepancy.candidates import Candidate, Pair
+from vibroimpact.discrepancy.candidates import Pair
 from vibroimpact.discrepancy.finalists import gains_of, refine
 from vibroimpact.discrepancy.nuisance_directions import unknowns_free
 from vibroimpact.discrepancy.screening import simulate_path
@@ -23,8 +23,8 @@ def exchanged(pair):
     """Return [(Pair, number of the part)] of a Pair with one of its two effects by another law of the same quantity."""
     out, parts = [], (pair.first, pair.second)
     for number, (part, rest) in enumerate(zip(parts, parts[::-1], strict=True)):
-        others = [id for id, effect in EFFECTS.items() if part.effect.quantity and effect.quantity == part.effect.quantity and id not in (part.effect_id, rest.effect_id)]
-        for other in (replace(part, effect_id=id) for id in others):
+        others = [name for name, effect in EFFECTS.items() if part.effect.quantity and effect.quantity == part.effect.quantity and name not in (part.effect_id, rest.effect_id)]
+        for other in (replace(part, effect_id=name) for name in others):
             out.append((Pair(other, rest) if number == 0 else Pair(rest, other), number))
     return out
 
