@@ -5,7 +5,6 @@ import pytest
 
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
-from vibroimpact.discrepancy.dag import shard_of
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import COARSE, FeatureLayout, compressed, record_features, uncompressed
 from vibroimpact.discrepancy.likelihood import LawLikelihood, log_likelihood, scatter_of
@@ -168,10 +167,6 @@ def test_names_of_candidates_come_back():
         assert candidate_named(name).name == name
     pair = Pair(Candidate("gap", "all"), Candidate("foliate_obstacle", "all"))
     assert pair.split == 1 and pair.periodic == (2,) and len(pair.effect.parameters) == 3
-
-
-def test_shards_add_up():
-    assert sorted([*shard_of(11, "0/3"), *shard_of(11, "1/3"), *shard_of(11, "2/3")]) == list(range(11))
 
 
 def test_the_exact_alias_is_told_how_to_break():

@@ -217,6 +217,16 @@ def test_a_quick_run_is_one_job_and_a_full_one_a_job_per_candidate(study, tmp_pa
     assert run.returncode == 1 and "quick = 'yes'" in run.stdout + run.stderr and "leave it out" in run.stdout + run.stderr
 
 
+def test_a_suite_judges_its_shard_without_what_was_judged_elsewhere(study, tmp_path):
+    asked = ["--dry-run", "suite", "--config", "suite_seed=5", "count=9", "shard=1/3"]  # campaigns 1, 4 and 7
+    (tmp_path / "campaigns.csv").write_text("suite,campaign\nsuite_5,campaign_0004\n")
+    for more, judged in ((), "3"), ((f"add={tmp_path}/campaigns.csv",), "2"):
+        run = study.snakemake(*asked, *more)
+        assert dict(re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M))["suite_campaign"] == judged
+    run = study.snakemake("--dry-run", "suite", "--config", "suite_seed=6", f"add={tmp_path}/campaigns.csv")
+    assert run.returncode == 1 and "campaigns.csv holds campaigns of suite_5: give a campaigns.csv of suite_6" in run.stdout + run.stderr
+
+
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
 def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, structure):
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")

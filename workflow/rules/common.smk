@@ -16,7 +16,8 @@ from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.completion.study import STUDIES, study_of
 from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.discrepancy.dag import (
-    NULL_PARTS, SUITE_NAME, SUITE_S, finalist_names, frozen_seed, pair_names, screened_files, screened_names, shard_of, suite_name,
+    NULL_PARTS, SUITE_NAME, SUITE_S, finalist_names, frozen_seed, numbers_added, numbers_judged, pair_names, screened_files, screened_names, shard_of,
+    suite_name,
 )
 from vibroimpact.discrepancy.suite_check import CHECKS
 from vibroimpact.provenance import imported_files
@@ -33,7 +34,7 @@ FIGURES = {
 
 
 # What a run is asked to look at; no key of the study.
-REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "seconds", "compared_s", "draw") if name in config}
+REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "add", "seconds", "compared_s", "draw") if name in config}
 
 
 def number_asked(name):
@@ -253,6 +254,17 @@ wildcard_constraints:
     structure="|".join(STRUCTURES),
     law=r"[a-z_]+\.[A-Za-z0-9_-]+",
     load=r"[0-9.e+-]+",
+
+
+def suite_campaigns(suite, added):
+    """The numbers of the campaigns to judge: of the shard asked for, without those that campaigns.csv files hold already; those with a verdict for count=judged."""
+    count = REQUEST.get("count", "12")
+    try:
+        known = numbers_added(added, Path(suite).name)
+        numbers = numbers_judged(suite) if count == "judged" else shard_of(count, REQUEST.get("shard", "0/1"))
+    except ValueError as problem:
+        sys.exit(str(problem))
+    return [number for number in numbers if number not in known]
 
 
 def plain_verdicts(seed, suite, campaigns):

@@ -1,9 +1,11 @@
 # The hidden-effect suite: `snakemake -j2 suite --config suite_seed=1 count=90 shard=0/1`. Shards add up; what is done is kept. Without a seed it is that of
 # the frozen thresholds. seconds=49 makes the same campaigns longer, draw=1 simulates with other seeds; `suite_difference` holds such a suite against the plain one.
+# count=judged: the page of what has a verdict so far; add=FILE,FILE: campaigns.csv of shards judged elsewhere, which are not judged again.
 
 SUITE_SEED = int(REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")))
 SUITE = f"results/{suite_name(SUITE_SEED, int(number_asked('seconds') or SUITE_S), DRAW)}"
-SUITE_CAMPAIGNS = shard_of(int(REQUEST.get("count", 12)), REQUEST.get("shard", "0/1"))
+SUITE_ADDED = [file for file in REQUEST.get("add", "").split(",") if file]
+SUITE_CAMPAIGNS = suite_campaigns(SUITE, SUITE_ADDED)
 SUITE_FIGURES = ("suite_rates", "suite_confusion", "suite_strength", "suite_parameters")  # in the order of the page
 
 
@@ -61,6 +63,7 @@ rule suite:
     input:
         library=library("suite"),
         template=f"{SOURCE}/vibroimpact/suite_page.html",
+        added=SUITE_ADDED,
         verdicts=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
     output:
         rates=f"{SUITE}/rates.csv",

@@ -4,13 +4,13 @@ import sys
 from pathlib import Path
 
 from vibroimpact.discrepancy.detection import detection
-from vibroimpact.discrepancy.suite import confusion, rates, read
+from vibroimpact.discrepancy.suite import confusion, rates, read_shards
 from vibroimpact.figures.suite import suite_figures
 from vibroimpact.records import write_table, write_text
 from vibroimpact.suite_page import suite_page
 
 sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-rows = read(Path(snakemake.output.page).parent)
+rows = read_shards(Path(snakemake.output.page).parent, snakemake.input.added)
 tables = {"campaigns": rows, "rates": rates(rows), "confusion": confusion(rows), "detection": detection(rows)}
 for name, table in tables.items():
     write_table(table, snakemake.output[name])

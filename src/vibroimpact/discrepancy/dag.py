@@ -1,5 +1,6 @@
 """What the workflow must know of a discrepancy run before its jobs exist: their number and the names of candidates."""
 
+import csv
 import hashlib
 import json
 import re
@@ -51,6 +52,30 @@ def suite_of(name):
 
 
 def shard_of(count, shard):
-    """Return the numbers of the campaigns of a shard "i/n" of the first `count`: every n-th from the i-th on."""
-    first, every = (int(part) for part in shard.split("/"))
-    return range(first, count, every)
+    """Return the numbers of the campaigns of a shard "i/n" of the first `count`: every n-th from the i-th on. Raises ValueError where these are none."""
+    if not str(count).isdecimal() or int(count) < 1:
+        raise ValueError(f"count = {count}: give how many campaigns, as in count=90, or count=judged for those with a verdict")
+    parts = shard.split("/")
+    if len(parts) != 2 or not all(part.isdecimal() for part in parts) or not int(parts[0]) < int(parts[1]):
+        raise ValueError(f"shard = {shard}: give i/n with i from 0 to n - 1, as in shard=0/3")
+    return range(int(parts[0]), int(count), int(parts[1]))
+
+
+def numbers_judged(folder):
+    """Return the numbers of the campaigns of a suite's folder that have a verdict."""
+    return sorted(int(file.parent.name.removeprefix("campaign_")) for file in Path(folder).glob("campaign_*/verdict.json"))
+
+
+def numbers_added(files, suite):
+    """Return the numbers of the campaigns that campaigns.csv files hold of a suite of this name. Raises ValueError where one holds those of another, or none."""
+    out = set()
+    for file in files:
+        if not Path(file).is_file():
+            raise ValueError(f"add = {file} is not there: give a campaigns.csv of {suite}")
+        with open(file, newline="", encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        others = sorted({str(row.get("suite")) for row in rows} - {suite})
+        if others or not rows:
+            raise ValueError(f"add = {file} holds {'campaigns of ' + others[0] if others else 'no campaign'}: give a campaigns.csv of {suite}")
+        out |= {int(row["campaign"].removeprefix("campaign_")) for row in rows}
+    return out

@@ -1,5 +1,6 @@
 """The suite's table: verdicts against the truths of sealed campaigns, arm by arm, with intervals."""
 
+import csv
 import json
 from pathlib import Path
 
@@ -157,5 +158,30 @@ def read(folder):
     for file in sorted(Path(folder).glob("*/verdict.json")):
         truth = Path(folder) / "truth" / f"{file.parent.name}.json"
         if truth.is_file():
-            rows.append({"campaign": file.parent.name} | judged(json.loads(file.read_text(encoding="utf-8")), json.loads(truth.read_text(encoding="utf-8"))))
+            said, hidden = (json.loads(path.read_text(encoding="utf-8")) for path in (file, truth))
+            rows.append({"suite": Path(folder).name, "campaign": file.parent.name} | judged(said, hidden))
     return rows
+
+
+def read_shards(folder, added):
+    """Return the judged rows of a folder of campaigns and of campaigns.csv files of shards judged elsewhere, each campaign once: as judged here where it is in both."""
+    rows = {row["campaign"]: row for file in added for row in read_table(file)} | {row["campaign"]: row for row in read(folder)}
+    return [rows[name] for name in sorted(rows)]
+
+
+TEXT = {"suite", "campaign", "arm", "hidden", "verdict", "named", "first_name", "parameter"}  # columns of campaigns.csv
+ANSWERS = {"in_set", "first", "one_right", "wrong", "any_name", "open", "flagged", "both"}
+
+
+def read_table(file):
+    """Return the judged rows of a campaigns.csv, as `read` returned them where it was written."""
+    with open(file, newline="", encoding="utf-8") as table:
+        return [{column: _cell(column, text) for column, text in row.items()} for row in csv.DictReader(table)]
+
+
+def _cell(column, text):
+    if column in TEXT:
+        return text
+    if column in ANSWERS:
+        return text == "True"
+    return float(text) if text else None
