@@ -123,7 +123,7 @@ def test_a_likelihood_that_knows_nothing_gives_the_whole_range():
 def test_components_of_a_vector_are_also_tried_alone():
     design = Candidate("support_offset", "all").design()
     assert {(0.5, 0.3), (0.5, 0.7), (0.3, 0.5), (0.7, 0.5)} <= {tuple(np.round(point, 6)) for point in design}
-    assert len(Candidate("plate_flexibility", "all").design()) == 9
+    assert len(Candidate("plate_flexibility", "all").design()) == 12
 
 
 def test_where_an_effect_is_nothing_is_known_where_its_range_holds_it():

@@ -18,7 +18,7 @@ EFFECT = Effect(
     explanation="the support plate moves",
     source="mass on a spring in both transverse directions",
     parameters=(
-        Parameter("stiffness", "N/m", 0.002, 8.0, None, per="contact_stiffness", design=(0.15, 0.4, 0.65), over="mass"),  # the plate's own frequency
+        Parameter("stiffness", "N/m", 0.002, 8.0, None, per="contact_stiffness", design=(0.15, 0.4, 0.65, 0.8), over="mass"),  # the plate's own frequency
         Parameter("mass", "kg", 0.01, 3.0, None, per="mass", design=(0.2, 0.6, 1.0)),
     ),
     apply=apply,
