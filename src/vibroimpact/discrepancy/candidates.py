@@ -11,7 +11,7 @@ from vibroimpact.effects.registry import EFFECTS
 ALONE = "@alone"
 QUICK_PLACES = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
 PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
-ALONG = 0.2  # of a searched range
+ALONG = (0.1, 0.2)  # of a searched range
 
 QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number of parameters
 
@@ -85,7 +85,7 @@ class Candidate:
         points = np.stack([axis.ravel() for axis in axes], axis=-1)
         if chosen is None and len(axes) > 1 and len(self.signed) == len(axes):
             # components of a vector: along one axis alone the structure may keep its symmetry, which no point beside it tells of
-            along = np.vstack([0.5 + side * np.eye(len(axes)) for side in (-ALONG, ALONG)])
+            along = np.vstack([0.5 + side * step * np.eye(len(axes)) for step in ALONG for side in (-1.0, 1.0)])
             points = np.vstack([points, along])
         return points
 
