@@ -123,6 +123,7 @@ def test_a_likelihood_that_knows_nothing_gives_the_whole_range():
 def test_components_of_a_vector_are_also_tried_alone():
     design = Candidate("support_offset", "all").design()
     assert {(0.5, 0.3), (0.5, 0.7), (0.3, 0.5), (0.7, 0.5), (0.5, 0.4), (0.6, 0.5)} <= {tuple(np.round(point, 6)) for point in design} and len(design) == 17
+    assert len(Candidate("support_offset", "all").design(quick=True)) == 8  # along the axes alone
     assert len(Candidate("plate_flexibility", "all").design()) == 12
 
 

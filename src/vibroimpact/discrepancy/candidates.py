@@ -83,10 +83,10 @@ class Candidate:
         chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
         axes = np.meshgrid(*[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij")
         points = np.stack([axis.ravel() for axis in axes], axis=-1)
-        if chosen is None and len(axes) > 1 and len(self.signed) == len(axes):
+        if len(axes) > 1 and len(self.signed) == len(axes):
             # components of a vector: along one axis alone the structure may keep its symmetry, which no point beside it tells of
             along = np.vstack([0.5 + side * step * np.eye(len(axes)) for step in ALONG for side in (-1.0, 1.0)])
-            points = np.vstack([points, along])
+            points = along if quick else np.vstack([points, along])
         return points
 
     @property
