@@ -79,7 +79,7 @@ class Candidate:
             return np.where((unit >= 0.0) & (unit <= 1.0), unit, np.nan)
 
     def design(self, quick=False):
-        """Return (point, parameter): the parameters to try first, all combinations of the effect's own design; fewer where it must be quick."""
+        """Return (point, parameter): the parameters to try first, all combinations of the effect's own design, of a vector also along its axes; fewer if quick."""
         chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
         axes = np.meshgrid(*[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij")
         points = np.stack([axis.ravel() for axis in axes], axis=-1)
