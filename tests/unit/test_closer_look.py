@@ -1,11 +1,12 @@
 """The closer look at a candidate, on a law that costs nothing to simulate: it finds what is hidden, at the end of a range as well, and gives up what is far behind."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy import finalists
+from vibroimpact.discrepancy import finalists, search
 from vibroimpact.discrepancy.finalists import Finalist, refine
 from vibroimpact.discrepancy.null import Null
 from vibroimpact.discrepancy.screening import Path
@@ -39,9 +40,10 @@ def looked(monkeypatch):
             scores = finalists.direct_scores(bench, null, measured, runs.mean(axis=1))
             return Finalist(candidate, unit, found.interval, scores, 0.0, runs, path, found.profile, free)
 
-        monkeypatch.setattr(finalists, "simulate_path", simulated)
+        monkeypatch.setattr(search, "simulate_path", simulated)
         monkeypatch.setattr(finalists, "judged", judged)
-        monkeypatch.setattr(finalists, "_free", lambda *_: np.zeros((1, RECORDS, FEATURES)))
+        for place in (finalists, search):
+            monkeypatch.setattr(place, "free_of", lambda *_: np.zeros((1, RECORDS, FEATURES)))
         bare = law(np.zeros(len(truth)))
         seeds = bare[:, None] + SD * rng.standard_normal((RECORDS, 16, FEATURES))
         covariance = np.tile(2.0 * SD**2 * np.eye(FEATURES), (RECORDS, 1, 1))
@@ -75,7 +77,7 @@ def test_other_signs_are_tried(looked):
 
 def test_other_signs_are_tried_where_a_search_ends(looked, monkeypatch):
     """Of a tube that is pressed to its plates, no star far from the optimum tells to which side."""
-    monkeypatch.setattr(finalists, "IMAGED", 0)
+    monkeypatch.setattr(search, "IMAGED", 0)
     truth = np.array([0.86, 0.2])
     assert looked(truth, np.array([0.16, 0.22]), signed=(0, 1), law=mirrored)[0].unit == pytest.approx(truth, abs=0.04)
 
@@ -85,3 +87,17 @@ def test_what_is_far_behind_gets_no_closer_look(looked):
     behind, few = looked((0.3, 0.7), (0.5, 0.5), least=1.0e6)
     assert few == 5 < whole  # those that it began with
     assert behind.features.shape[1] == finalists.FEW_SEEDS
+
+
+def test_a_search_that_ended_far_from_what_is_best_by_its_own_law_goes_on_there(looked, monkeypatch):
+    """A plate of 285 kN/m and 0.46 kg: one of 541 kN/m and 0.22 kg came before it once the other's change was what two laws may differ by."""
+    truth, whole = (0.3, 0.7), search.searched
+
+    def astray(bench, null, measured, candidate, path, scales, fit, rounds, *rest):
+        ended = whole(bench, null, measured, candidate, path, scales, fit, 1, *rest)
+        return replace(ended, path=path, scores=ended.scores[: len(path.parameters)], found=replace(ended.found, unit=np.array([0.9, 0.1])))
+
+    monkeypatch.setattr(finalists, "searched", astray)
+    assert looked(truth, (0.5, 0.5))[0].unit == pytest.approx(np.array(truth), abs=0.05)
+    monkeypatch.setattr(search, "ELSEWHERE", 1.0)
+    assert looked(truth, (0.5, 0.5))[0].unit != pytest.approx(np.array(truth), abs=0.05)

@@ -217,3 +217,10 @@ def test_nothing_is_looked_at_closely_where_nothing_is_missing_and_no_gain_could
     assert names(naming.finalists(rows, EXPLAINED)) == []
     assert names(naming.finalists(rows, LEFT)) == ["hertz@all"]
     assert names(naming.finalists(screened(hertz__all=6.0), EXPLAINED)) == ["hertz@all"]
+
+
+def test_what_was_screened_beside_another_structure_is_looked_at_closely_whatever_its_score():
+    """Contact damping beside nine times the damping of all modes, which the candidates of a bank do not have: -64 there, 275 in the campaign."""
+    rows = screened(contact_damping__all=-64.0, hertz__all=-77.0, contact_stiffness__all=-79.0, quadratic_stiffness__left_leg=-82.0, hunt_crossley__all=-92.0)
+    assert names(naming.finalists(rows, EXPLAINED, elsewhere=True)) == ["contact_damping@all", "hertz@all", "contact_stiffness@all", "hunt_crossley@all"]
+    assert names(naming.finalists(rows, EXPLAINED)) == []

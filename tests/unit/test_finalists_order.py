@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy import jobs, priors
+from vibroimpact.discrepancy import jobs, naming, priors
 from vibroimpact.discrepancy.candidates import candidate_named
 
 ENOUGH, LEFT = np.array([0.3, -1.0]), np.array([0.3, -4.9])
@@ -46,6 +46,8 @@ def test_an_alias_of_the_best_is_looked_at_longer_than_another_effect():
     assert jobs.least_gain("preload@all", ranked) == pytest.approx(500.0 * jobs.ALIAS_LOSING)
     assert jobs.least_gain("support_offset@left", ranked) == pytest.approx(300.0 * jobs.LOSING)  # of another effect: gap, which it is no alias of
     assert jobs.least_gain("gap@all", {"ranked": ranked["ranked"][2:3]}) == -np.inf
+    behind = {"ranked": [{"name": "hertz@all", "score": -77.0}, {"name": "contact_damping@all", "score": -64.0}]}
+    assert jobs.least_gain("contact_damping@all", behind) == naming.LEAST_GAIN  # what others lose is no measure
     assert jobs.least_gain("gap@left", {"pairs": {}, "least": 70.0, "threshold": 15.0}) == 70.0
     assert jobs.least_gain("gap@all+hertz@all", {"pairs": {}, "least": 70.0, "threshold": 15.0}) == 85.0  # what a name asks
     assert jobs.least_gain("gap@all+hertz@all", {"pairs": {}, "least": 700.0, "threshold": 15.0}) == pytest.approx(700.0 * (1.0 + priors.SECOND_SHARE))

@@ -23,7 +23,7 @@ def path(place, points):
 def simulated(monkeypatch):
     monkeypatch.setattr(finalists, "other_places", lambda candidate, values: [place for place in SCORES if place != candidate.name])
     monkeypatch.setattr(finalists, "simulate_path", lambda bench, place, points, *_, **__: path(place, points))
-    monkeypatch.setattr(finalists, "_scores", lambda bench, null, measured, path, fit: path.features[:, 0, 0])
+    monkeypatch.setattr(finalists, "scores_of", lambda bench, null, measured, path, fit: path.features[:, 0, 0])
 
 
 def place_of(at, points):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.finalists import scores_along
+from vibroimpact.discrepancy.along import scores_along
 from vibroimpact.discrepancy.naming import fit_mask
 from vibroimpact.discrepancy.neighbourhood import box_round, near, offset
 from vibroimpact.discrepancy.screening import calibrate

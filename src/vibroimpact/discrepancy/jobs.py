@@ -6,16 +6,18 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
+from vibroimpact.discrepancy.along import gains_of
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside, with_parts_beside
 from vibroimpact.discrepancy.branches import pair_deviations
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import PLACED_FROM, ROUNDS, STARTS, gain_of_part, gains_of, own, placed, placed_again, refine, started
+from vibroimpact.discrepancy.finalists import PLACED_FROM, STARTS, gain_of_part, own, placed, placed_again, refine, started
 from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.discrepancy.nuisance_directions import unknowns_free
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
 from vibroimpact.discrepancy.screening import simulate_path
+from vibroimpact.discrepancy.search import ROUNDS
 from vibroimpact.discrepancy.verdict import idle
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.records import read_text, write_text
@@ -58,7 +60,7 @@ def screening(run, path, quick=False):
     paths = {candidate: path for candidate, path in paths.items() if run.prepared.room(candidate)}
     ranked = naming.screen(bench, null, measured, paths)
     explained = naming.explained(bench, null, null.mean, measured, False)
-    chosen = naming.finalists(ranked, explained, QUICK_FINALISTS if quick else priors.FINALISTS)
+    chosen = naming.finalists(ranked, explained, QUICK_FINALISTS if quick else priors.FINALISTS, run.screened_elsewhere)
     starts = {row.candidate.name: row.unit.tolist() for row in chosen}
     gains = naming.null_gains(bench, null, paths)
     write_text(json.dumps({"finalists": starts, "threshold": naming.threshold(gains), "null_gains": gains.tolist(),
@@ -80,7 +82,7 @@ def least_gain(name, chosen):
     if not others:
         return -np.inf
     score, first = max(others)
-    return (ALIAS_LOSING if effects & set(EFFECTS[first].aliases) else LOSING) * score
+    return max((ALIAS_LOSING if effects & set(EFFECTS[first].aliases) else LOSING) * score, naming.LEAST_GAIN)
 
 
 def finalist(run, name, chosen, path, quick=False):

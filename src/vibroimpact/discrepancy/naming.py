@@ -66,12 +66,13 @@ def threshold(gains):
     return float(max(priors.GAIN, gains.mean() + priors.NULL_SIGMA * spread)) if len(gains) else priors.GAIN
 
 
-def finalists(screened, explained, count=priors.FINALISTS):
+def finalists(screened, explained, count=priors.FINALISTS, elsewhere=False):
     """Return the candidates to simulate directly: the best of each effect, and the aliases of the first that came near.
 
-    explained (record,): z of the bare model, see `explained`; where it leaves nothing, only those that a closer look may bring to a name.
+    explained (record,): z of the bare model, see `explained`; where it leaves nothing, only those that a closer look may bring to a name; elsewhere: they were
+    screened beside another structure, and their scores tell an order at most.
     """
-    best, least = {}, priors.GAIN / GROWN if np.min(explained) > priors.EXPLAINED_Z else 0.0
+    best, least = {}, -np.inf if elsewhere else LEAST_GAIN if np.min(explained) > priors.EXPLAINED_Z else 0.0
     for row in screened:
         if row.score > least:
             best.setdefault((row.candidate.effect_id, row.candidate.alone), row)
@@ -80,11 +81,13 @@ def finalists(screened, explained, count=priors.FINALISTS):
     if chosen:
         first, known = chosen[0], {(row.candidate.effect_id, row.candidate.alone) for row in chosen}
         # the best of each: where it sits is looked for anew
-        chosen += [row for key, row in best.items() if key not in known and row.candidate.ids[0] in first.candidate.effect.aliases and row.score > FAR * first.score][:2]
+        far = FAR * first.score if first.score > 0.0 else -np.inf
+        chosen += [row for key, row in best.items() if key not in known and row.candidate.ids[0] in first.candidate.effect.aliases and row.score > far][:2]
     return chosen
 
 
 GROWN = 3.0  # times its screening score at most is the gain of a candidate that was looked at closely
+LEAST_GAIN = priors.GAIN / GROWN  # less never grows to a name
 LEAST_FINALISTS, NEAR, FAR = 3, 0.5, 0.2  # shares of the best screening score: nearer ones are all simulated, aliases also when farther
 
 

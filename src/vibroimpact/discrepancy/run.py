@@ -9,6 +9,7 @@ import numpy as np
 from vibroimpact.config import check_config
 from vibroimpact.discrepancy import store
 from vibroimpact.discrepancy.bank import Source, known_paths
+from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.prepared import Prepared, workbench
 
 
@@ -72,6 +73,12 @@ class Run:
     def screening_null(self):
         """Return the Null of the seconds that are screened."""
         return self.null if self.screened_as_compared else store.null_from(self.screening_bench, self.nulls, "screened_")
+
+    @property
+    def screened_elsewhere(self):
+        """Return whether a bank's candidates stand in for those beside a linear effect that was adopted here: a contact damping that gains 275 beside nine times the
+        damping of all modes loses 64 as the bank's, with the nominal damping, has it."""
+        return bool(self.bank_nulls) and self.prepared.adopted is not None and not candidate_named(self.prepared.adopted["name"]).effect.measured
 
     def simulated_here(self, candidate):
         """Return whether what was screened of a Candidate are runs of this campaign over all that is compared, not moved here from elsewhere."""
