@@ -26,14 +26,15 @@ def finalist(name, gain, explained=EXPLAINED, held_out=10.0, part=0.0):
 
 @pytest.fixture
 def decided(monkeypatch):
-    """Return the function (finalists, adopted, rest, p, share) -> Decision."""
+    """Return the function (finalists, adopted, rest, p, share, linear, beyond) -> Decision."""
 
-    def run(found, adopted=None, rest=LEFT, p=1.0e-6, share=0.9, linear=()):
+    def run(found, adopted=None, rest=LEFT, p=1.0e-6, share=0.9, linear=(), beyond=100.0):
         left = {row.mean: row.left for row in found} | {"null": rest}
         monkeypatch.setattr(verdict.naming, "totals", lambda *_: {row.candidate.name: (row.gain, row.gain - row.held_out, row.held_out) for row in found})
         monkeypatch.setattr(verdict.naming, "explained", lambda bench, null, mean, *_: left[mean])
         monkeypatch.setattr(verdict.naming, "bare_explained", lambda *_: left["null"])
         monkeypatch.setattr(verdict, "closure", lambda *_: share)
+        monkeypatch.setattr(verdict, "beyond_chance", lambda *_: beyond)
         bench = SimpleNamespace(measured_features={"records": None})
         prepared = SimpleNamespace(adopted=adopted, linear=list(linear), scales=SCALES)
         order = sorted(found, key=lambda row: -row.gain)
@@ -170,6 +171,14 @@ def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
     assert decided(overfit, rest=EXPLAINED, p=0.4).verdict == "none"
     adopted = {"name": "sensor_gain@force", "gain": 52.0, "unit": [0.53]}
     assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [["sensor_gain"]]
+
+
+@pytest.mark.parametrize(("held_out", "expected"), [(85.0, [["contact_damping", "modal_damping"]]), (THRESHOLD - 1.0, [["modal_damping"]])])
+def test_where_nothing_is_left_beyond_chance_the_held_out_records_alone_may_name(decided, held_out, expected):
+    """Contact damping beside modal damping: 305 units of which 85 on the held-out record, within what the null's covariance holds."""
+    adopted = {"name": "modal_damping@all", "unit": [0.9], "gain": 1000.0}
+    found = decided([finalist("contact_damping@all", 305.0, held_out=held_out)], adopted=adopted, rest=EXPLAINED, p=0.98, share=0.0, beyond=-10.0)
+    assert (found.verdict, found.ambiguity) == ("named", expected)
 
 
 def test_what_held_out_records_contradict_is_not_added_to_what_the_lowest_record_told(decided):

@@ -1,11 +1,12 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Seventeenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
+Eighteenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
 that impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two and of
 nuisances beside what bends the lowest record, the tenth of where such an effect is searched from and of effects that held-out records contradict,
 the eleventh of nuisances that are free where such an effect is judged, and of searches beside a mass, the thirteenth of laws that no campaign tells,
 of runs that go two ways, and of explanations that make all records worse, the fourteenth of how a candidate's own runs scatter, the fifteenth of the
-order in which what is named is told, the sixteenth of designs that were too coarse.
+order in which what is named is told, the sixteenth of designs that were too coarse, the seventeenth of pairs beside a linear
+effect.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.

@@ -48,7 +48,7 @@ def decide(bench, null, prepared, found, threshold, p_before):
     sufficient = {row.candidate.name for row in alike if naming.explained(bench, row.own(null), row.mean, measured).min() > priors.EXPLAINED_Z}
     together = whole_sets(linear, local_sets(best.candidate, totals, {row.candidate.name for row in alike}, sufficient, added_by_each(best)))
     share = closure(bench, null, best, measured)
-    contradicted = vetoed(totals[best.candidate.name], share)
+    contradicted = vetoed(totals[best.candidate.name], share, beyond_chance(bench, null, measured) > 0.0, threshold)
     if left.min() < priors.EXPLAINED_Z or contradicted:
         if share <= priors.PARTLY or contradicted and (prepared.adopted is not None or without.verdict != "unknown"):
             return without  # what the lowest record told, and no more
@@ -122,16 +122,22 @@ def local_sets(best, totals, names, sufficient=frozenset(), added=None):
     return out
 
 
+def beyond_chance(bench, null, measured):
+    """Return the squared distance of the measurement from the null beyond that of chance, on all records, in units of what seeds and two codes scatter by."""
+    return float(np.sum(naming.chi_squares(bench, null, null.mean, measured, False) - measured.shape[1]))
+
+
 def closure(bench, null, found, measured):
     """Return the share of the distance beyond chance that a Finalist closes, on all records, in units of what seeds and two codes scatter by."""
-    before = np.sum(naming.chi_squares(bench, null, null.mean, measured, False) - measured.shape[1])
+    before = beyond_chance(bench, null, measured)
     after = np.sum(naming.chi_squares(bench, found.own(null), found.mean, measured) - measured.shape[1])
     return 1.0 - np.sqrt(max(after, 0.0) / before) if before > 0.0 else 0.0
 
 
-def vetoed(total, share):
-    """Return whether what was held out contradicts what was fitted: a loss there, or next to nothing closed."""
-    return total[2] < -priors.AMBIGUOUS or share < priors.LEAST_CLOSED
+def vetoed(total, share, beyond, threshold):
+    """Return whether what was held out contradicts what was fitted: a loss there, or next to nothing closed; where nothing is left beyond chance that could be (beyond false),
+    a gain there below that of a name (threshold)."""
+    return total[2] < -priors.AMBIGUOUS or (share < priors.LEAST_CLOSED if beyond else total[2] < threshold)
 
 
 def effects_of(prepared, decision, model):

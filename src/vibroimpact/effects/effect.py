@@ -39,7 +39,8 @@ class Effect:
     aliases: ids of effects that look alike; source: where the law is from; linear: it acts in the linear structure below contact too, and keeps
     it linear; below_contact: it is not linear, yet acts where nothing touches, and may be taken for a linear effect there; measured: it changes what was measured, not the model (see measurement.py); needs: what the campaign must hold;
     law_of: id of the effect of the catalogue that it is another law of, under which it is reported; quantity: what several effects of the catalogue are laws of;
-    other_laws: what may stand in the place of apply, the same effect by laws that differ from it in what no measurement of a structure in use tells.
+    other_laws: what may stand in the place of apply, the same effect by laws that differ from it in what no measurement of a structure in use tells;
+    unlimited(values, location) -> (id, location) of the effect that it is where its limit is never reached, None where the catalogue has none.
     """
 
     id: str
@@ -57,6 +58,7 @@ class Effect:
     law_of: str = ""
     other_laws: tuple[Callable, ...] = ()
     quantity: str = ""
+    unlimited: Callable = field(default=lambda values, location: None)
 
     @property
     def reported(self):

@@ -2,6 +2,7 @@
 
 from vibroimpact.effects import places
 from vibroimpact.effects.effect import Effect, Parameter
+from vibroimpact.effects.lateral_stinger import along_the_force
 
 
 def apply(values, parameters, location):
@@ -30,4 +31,5 @@ EFFECT = Effect(
     aliases=("coulomb_friction", "lateral_stinger"),
     locations=places.masses_and_springs,
     other_laws=(rounded,),
+    unlimited=along_the_force,
 )
