@@ -158,14 +158,20 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     out.linear_stage = bool(bench.linear_stage)
     if out.linear_stage:
         read_lowest(bench, lambda: Workbench(config, campaign, seconds), out, {} if tables is None else tables, without)
-    # a record that something bends shows modes, yet tells wrong which linear effect there is beside it: a press that holds the tube hid nine times its damping
-    told = out.linear_stage and not for_all and (quick or not out.nonlinear_low)
-    modes = (out.fit["modes"] if out.fit else bench.measured_fit.modes) if told else None
-    candidates = local_candidates(bench.given, held(campaign), modes, quick)
+    shown = out.fit["modes"] if out.fit else bench.measured_fit.modes if out.linear_stage else None
+    candidates = local_candidates(bench.given, held(campaign), telling_modes(out, shown, for_all, quick), quick)
     out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids) and (out.room(candidate) or in_place_of_adopted(out, candidate))]
     if out.linear_stage and out.nonlinear_low:  # a linear effect may be what makes it touch: those that come nearest are simulated where they look best
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
+
+
+def telling_modes(prepared, shown, for_all=False, quick=False):
+    """Return those of the modes that the lowest record shows by which it tells of linear effects, None where these are candidates as the others are.
+
+    A record that something bends shows modes, yet tells wrong which linear effect there is beside it: a press that holds the tube hid nine times its damping.
+    """
+    return shown if prepared.linear_stage and not for_all and (quick or not prepared.nonlinear_low) else None
 
 
 def read_lowest(bench, fresh, out, tables, without):
