@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.along import scores_along
 from vibroimpact.discrepancy.naming import fit_mask
 from vibroimpact.discrepancy.neighbourhood import box_round, near, offset
+from vibroimpact.discrepancy.path_scores import scores_along
 from vibroimpact.discrepancy.screening import calibrate
 
 EXCLUDED = 80.0  # of log likelihood: more than the scatter of two seeds, by which neighbours differ by 50

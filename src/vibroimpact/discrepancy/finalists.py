@@ -6,10 +6,10 @@ import numpy as np
 
 from vibroimpact.contraction import IntegrationError
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.along import gains_of, law_at, scores_of
 from vibroimpact.discrepancy.branches import deviations, pair_deviations, with_branch
 from vibroimpact.discrepancy.candidates import Pair, other_places
 from vibroimpact.discrepancy.neighbourhood import NEW, apart, around, nearest, within_simulated
+from vibroimpact.discrepancy.path_scores import gains_of, law_at, scores_of
 from vibroimpact.discrepancy.screening import Path, direct_scores, linear_score, null_scores, simulate_path
 from vibroimpact.discrepancy.search import CLEARLY, MOVED, ROUNDS, STEPS, free_of, from_elsewhere, searched, with_other_signs
 from vibroimpact.discrepancy.survivors import of_survivors

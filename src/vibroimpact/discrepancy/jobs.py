@@ -6,7 +6,6 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from vibroimpact.discrepancy import naming, priors, second, store
-from vibroimpact.discrepancy.along import gains_of
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside, with_parts_beside
 from vibroimpact.discrepancy.branches import pair_deviations
@@ -16,6 +15,7 @@ from vibroimpact.discrepancy.finalists import PLACED_FROM, STARTS, gain_of_part,
 from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.discrepancy.nuisance_directions import unknowns_free
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
+from vibroimpact.discrepancy.path_scores import gains_of
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.discrepancy.search import ROUNDS
 from vibroimpact.discrepancy.verdict import idle

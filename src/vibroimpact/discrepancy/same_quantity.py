@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.discrepancy import naming, priors
-from vibroimpact.discrepancy.along import gains_of
 from vibroimpact.discrepancy.beside import charged, with_parts_beside
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.finalists import refine
 from vibroimpact.discrepancy.nuisance_directions import unknowns_free
+from vibroimpact.discrepancy.path_scores import gains_of
 from vibroimpact.discrepancy.screening import simulate_path
 from vibroimpact.effects.registry import EFFECTS
 

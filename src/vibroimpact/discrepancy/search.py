@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.contraction import IntegrationError
-from vibroimpact.discrepancy.along import gains_of, scores_along, scores_of
 from vibroimpact.discrepancy.branches import searched_by
 from vibroimpact.discrepancy.neighbourhood import NEAR, apart, around, box_round, images, near, nearest, unknown
 from vibroimpact.discrepancy.null import free_at
+from vibroimpact.discrepancy.path_scores import gains_of, scores_along, scores_of
 from vibroimpact.discrepancy.screening import Path, calibrate, simulate_path
 
 STEPS = (0.12, 0.04, 0.012)  # of the searched range: how far to either side a round looks, closer only when the best no longer moves

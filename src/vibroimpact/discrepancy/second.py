@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.along import gains_of
 from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.features import compressed, uncompressed
+from vibroimpact.discrepancy.path_scores import gains_of
 from vibroimpact.discrepancy.screening import direct_scores, linear_score, simulate_path
 
 PAIRS, LEAST_PAIRS = 4, 2
