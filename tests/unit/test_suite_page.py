@@ -1,13 +1,17 @@
 """The suite's rows, detection limit, figures and page: what they say is what the verdicts and truths hold."""
 
+import inspect
+
 import numpy as np
 import pytest
 from scipy.special import expit, logit
 
 from vibroimpact.discrepancy.detection import detection, detection_curve, detection_limit, probability
-from vibroimpact.discrepancy.suite import confusion, judged, rates, standing
+from vibroimpact.discrepancy.suite import SAME_QUANTITY, confusion, judged, rates, standing
+from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.figures.suite import suite_figures
 from vibroimpact.suite_page import suite_page, suite_sentence
+from vibroimpact_truth import hidden
 
 LIMIT = 2.0  # floors, of the campaigns drawn here
 
@@ -55,6 +59,18 @@ def test_rows_hold_strength_and_parameter_against_truth():
     assert row["parameter_error"] == pytest.approx(0.5) and row["covered"] == 0.0
     stated = truth_of("medium", ("gap", {"factor": 1.2})) | {"strength": {"excess_over_floor": 5.0}}
     assert judged(verdict_of("none"), stated)["strength"] == 5.0
+
+
+@pytest.mark.parametrize("name", SAME_QUANTITY)
+def test_a_quantity_of_both_codes_is_a_parameter_of_each(name):
+    true, own = SAME_QUANTITY[name]
+    stated = {"channel", "factor"} if name == "sensor_gain" else inspect.signature(hidden.EFFECTS[name]).parameters  # a fault of the measuring chain, not of the rig
+    assert true in stated and own in {row.name for row in EFFECTS[name].parameters}
+
+
+def test_a_parameter_by_its_other_name_is_held_against_its_truth():
+    row = judged(verdict_of("named", [["quadratic_drag"]], [effect("quadratic_drag", "coefficient", 60.3, 51.4, 66.4)]), truth_of("strong", ("quadratic_drag", {"drag": 59.8})))
+    assert row["parameter"] == "quadratic_drag.coefficient" and row["covered"] == 1.0
 
 
 def test_a_refused_campaign_has_no_strength_and_no_parameter():

@@ -15,6 +15,7 @@ from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.completed_model import updated_model
 from vibroimpact.discrepancy.estimate_scatter import with_scatter
 from vibroimpact.discrepancy.invariances import broken_invariances
+from vibroimpact.discrepancy.law_directions import within_any_law
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.prepared import workbench
 from vibroimpact.discrepancy.same_quantity import by_other_laws
@@ -63,6 +64,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
     if decision.chosen is not None:
         chosen = with_scatter(bench, null, measured, decision.chosen)
+        chosen = chosen if quick else within_any_law(bench, null, chosen, prepared.scales)
         found = [chosen if row is decision.chosen else row for row in found]
         decision = replace(decision, chosen=chosen)
     whole = before_bench = run.whole_bench

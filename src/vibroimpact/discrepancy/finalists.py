@@ -19,6 +19,7 @@ SAME_PLACE = 100.0  # of log likelihood: two seeds of one law differ by as much
 PLACED_STEP = 0.06  # as strong at another place is not the same to a parameter
 PLACED_FROM = 0.5  # of the gain that makes a closer look worth its runs: from there on other places are tried
 FEW_SEEDS = 4  # of what is not worth a closer look
+SEARCHED = 2  # of what is left free of a Finalist, the first: the damping of unseen modes, and what parts its runs
 SAFER = 4  # of what was simulated, best first, until one is not thrown off
 
 

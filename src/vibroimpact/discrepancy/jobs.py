@@ -11,7 +11,7 @@ from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside
 from vibroimpact.discrepancy.branches import pair_deviations
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
-from vibroimpact.discrepancy.finalists import PLACED_FROM, STARTS, gain_of_part, own, placed, placed_again, refine, started
+from vibroimpact.discrepancy.finalists import PLACED_FROM, SEARCHED, STARTS, gain_of_part, own, placed, placed_again, refine, started
 from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.discrepancy.nuisance_directions import unknowns_free
 from vibroimpact.discrepancy.null import UNSEEN, unseen_damping
@@ -158,7 +158,6 @@ def longer(bench, null, measured, path, screened):
     return float(np.clip(gains_of(bench, null, measured, path).max() / screened, 1.0, LONGER))
 
 
-SEARCHED = 2  # of what is left free of a finalist, the first: the damping of unseen modes, and what parts its runs
 LOSING = 0.7  # of the gain of the best other candidate: below it a closer look is not worth its runs
 ALIAS_LOSING = 0.35  # the same for its aliases: to name one alone is to say that it is not the other
 LONGER = 3.0

@@ -24,9 +24,14 @@ TARGETS = {  # arm, quantity -> (target, fails beyond); from the acceptance tabl
 }  # fmt: skip
 ALIASES = {"gap": "sensor_gain", "sensor_gain": "gap", "hertz": "contact_stiffness", "contact_stiffness": "hertz", "hunt_crossley": "contact_damping",
            "contact_damping": "hunt_crossley", "added_mass": "mode_frequency_error", "mode_frequency_error": "added_mass"}  # fmt: skip
-SAME_QUANTITY = {"gap": ("factor", "gap_factor"), "contact_damping": ("damping", "damping"), "hunt_crossley": ("alpha", "alpha"), "dry_friction": ("mu", "mu"),
-                 "modal_damping": ("factor", "factor"), "added_mass": ("mass", "mass"), "force_misalignment": ("angle", "angle"),
-                 "coulomb_friction": ("force", "force"), "quadratic_drag": ("coefficient", "coefficient"), "sensor_gain": ("factor", "factor")}  # fmt: skip
+SAME_QUANTITY = {  # effect: (parameter of the truth, of the catalogue), one of each, the same in both codes; the profile of a hole is the same in no two
+    "gap": ("factor", "gap_factor"), "contact_damping": ("damping", "damping"), "hunt_crossley": ("alpha", "alpha"), "hertz": ("coefficient", "coefficient"),
+    "dry_friction": ("mu", "mu"), "plate_flexibility": ("stiffness", "stiffness"), "root_stiffness": ("rotation", "rotation"), "modal_damping": ("factor", "factor"),
+    "mode_frequency_error": ("factor", "factor"), "added_mass": ("mass", "mass"), "lateral_stinger": ("stiffness", "stiffness"),
+    "fluid_added_mass_damping": ("mass", "mass"), "cubic_stiffness": ("stiffness", "coefficient"), "quadratic_stiffness": ("stiffness", "coefficient"),
+    "saturation_stiffness": ("stiffness", "stiffness"), "quadratic_drag": ("drag", "coefficient"), "coulomb_friction": ("force", "force"),
+    "clearance": ("half_gap", "half_gap"), "force_misalignment": ("angle", "angle"), "sensor_gain": ("factor", "factor"),
+}  # fmt: skip
 
 
 def strength_of(verdict, truth):
