@@ -8,8 +8,12 @@ from vibroimpact.config import check_config
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
+from vibroimpact.discrepancy.in_place import gain_of_spring
+from vibroimpact.discrepancy.linear_fit import LinearChanges
+from vibroimpact.discrepancy.nearest_model import translated
 from vibroimpact.discrepancy.prepared import adopt, prepare, workbench
 from vibroimpact.discrepancy.screening import linear_score
+from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.excitation import band_limited_noise
 
 RATE, SECONDS, GAP = 2048.0, 12.0, 2.8886e-4
@@ -106,3 +110,17 @@ def test_a_pair_of_a_fault_and_an_effect_is_put_where_each_belongs(study_config,
     adopt(bench, prepared)
     assert bench.measuring.gain[1] == pytest.approx(found["sensor_gain"]["factor"][0])
     assert bench.bare.omega[0] > 1.05 * attach(study_config, bench.campaign).omega[0]
+
+
+def test_what_stands_in_the_place_of_a_linear_effect_sits_where_a_spring_would_do_as_much(study_config, tmp_path):
+    """A rod at the shaker may be a friction or a stop there, not one at the top of a leg; what acts all along the tube is never ruled out by a place."""
+    prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", STINGER))
+    assert prepared.adopted["name"] == "lateral_stinger@along_y"
+    assert {"coulomb_friction@shaker", "clearance@shaker", "quadratic_drag@tube"} <= set(prepared.in_place)
+    assert not {name.split("@")[1] for name in prepared.in_place} & {"left_leg", "lower_y"}
+    assert set(prepared.in_place) < set(prepared.screened) and "gap@all" not in prepared.in_place
+    bench = workbench(study_config, tmp_path / "campaign.nc", prepared, prepared.compared_s)
+    bare = Workbench(study_config, bench.campaign, prepared.compared_s)
+    bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
+    there, elsewhere = (gain_of_spring(bare, LinearChanges(bare), place, 6600.0) for place in ("shaker", "lower_y"))
+    assert there == pytest.approx(prepared.adopted["gain"], abs=3.0) and elsewhere < 0.5 * there  # that rod is a spring between that point and the ground

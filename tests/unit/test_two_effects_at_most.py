@@ -16,3 +16,13 @@ PAIR = "added_mass@apex+modal_damping@structure"
 def test_room_beside_or_in_place_of_what_the_lowest_record_told(adopted, candidate, expected):
     prepared = Prepared([], adopted=None if adopted is None else {"name": adopted})
     assert prepared.room(candidate_named(candidate)) is expected
+
+
+@pytest.mark.parametrize(("adopted", "in_place", "expected"), [
+    (None, [], ["coulomb_friction@apex"]), ("added_mass@apex", [], ["coulomb_friction@apex"]),
+    ("added_mass@apex", ["coulomb_friction@apex"], ["coulomb_friction@apex", "coulomb_friction@apex@alone"]),
+    (PAIR, ["coulomb_friction@apex"], ["coulomb_friction@apex@alone"]), (PAIR, [], [])])  # fmt: skip
+def test_what_is_simulated_of_a_candidate(adopted, in_place, expected):
+    """What there is no room for is not simulated, and what can not have been taken for a linear effect not in its place."""
+    prepared = Prepared([], adopted=None if adopted is None else {"name": adopted}, in_place=in_place)
+    assert [placed.name for placed in prepared.beside_or_in_place(candidate_named("coulomb_friction@apex"))] == expected

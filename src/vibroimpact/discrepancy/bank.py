@@ -8,7 +8,7 @@ import numpy as np
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import store
 from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.candidates import candidate_named, in_place_of_adopted
+from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.features import COARSE
 
 
@@ -88,7 +88,7 @@ def known_paths(files, source=None, prepared=None):
             if path is not None:
                 candidate = candidate_named(name)
                 out[replace(candidate, alone=alone)] = path if source is None else source.brought(path)
-                if source is not None and source.bank and in_place_of_adopted(prepared, candidate):
+                if source is not None and source.bank and name in prepared.in_place:
                     out[replace(candidate, alone=True)] = source.unmoved(path)
     return out
 

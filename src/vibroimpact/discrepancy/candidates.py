@@ -228,11 +228,6 @@ def candidate_named(name):
     return parts[0] if len(parts) == 1 else Pair(*parts)
 
 
-def in_place_of_adopted(prepared, candidate):
-    """Return whether a candidate may be what the lowest record took for a linear effect of the structure."""
-    return candidate.effect.below_contact and prepared.adopted is not None and not candidate_named(prepared.adopted["name"]).effect.measured
-
-
 def elsewhere(candidate, values):
     """Return the candidate at each single support, where it was at all of them."""
     return [Candidate(candidate.effect_id, place) for place in candidate.effect.locations(values) if place != candidate.location] if candidate.location == "all" else []

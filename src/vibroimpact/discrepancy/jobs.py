@@ -9,7 +9,7 @@ from vibroimpact.discrepancy import naming, priors, second, store
 from vibroimpact.discrepancy.bank import described
 from vibroimpact.discrepancy.beside import begun_beside, charged, refined_beside, with_parts_beside
 from vibroimpact.discrepancy.branches import pair_deviations
-from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, in_place_of_adopted, other_places
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named, elsewhere, other_places
 from vibroimpact.discrepancy.dag import NULL_PARTS
 from vibroimpact.discrepancy.finalists import PLACED_FROM, SEARCHED, STARTS, gain_of_part, own, placed, placed_again, refine, started
 from vibroimpact.discrepancy.nuisance import Nuisance
@@ -41,12 +41,12 @@ def null_part(run, part, path):
 
 
 def candidate_path(run, candidate, path, quick=False):
-    """Simulate a candidate at the points of its design."""
+    """Simulate a candidate at the points of its design, beside what was adopted and in its place, where it may be there."""
     bench, arrays = run.screening_bench, {}
-    for alone in (False, True) if in_place_of_adopted(run.prepared, candidate) else (False,):
-        found = simulate_path(bench, replace(candidate, alone=alone), candidate.design(quick), run.prepared.scales, run.records)
+    for placed in run.prepared.beside_or_in_place(candidate):
+        found = simulate_path(bench, placed, candidate.design(quick), run.prepared.scales, run.records)
         if found is not None:
-            arrays |= {alone * store.ALONE + name: value for name, value in store.path_arrays(found).items()}
+            arrays |= {placed.alone * store.ALONE + name: value for name, value in store.path_arrays(found).items()}
     store.save(path, **arrays) if arrays else store.save_empty(path)
 
 

@@ -51,7 +51,11 @@ class LinearChanges:
 
     def reading(self, candidate, physical):
         """Return the Reading of the model with a Candidate or Pair at its parameters in SI: of the modes most like those that were measured."""
-        return moved(self.full, self._of(self.model(candidate, physical)), self.reference)  # the reduced basis serves the change alone
+        return self.reading_of(self.model(candidate, physical))
+
+    def reading_of(self, model):
+        """Return the Reading of a linear ModalModel of the reduced basis, which serves the change alone."""
+        return moved(self.full, self._of(model), self.reference)
 
     def whole_reading(self, candidate, physical):
         """Return the same of the model without the reduction."""

@@ -38,11 +38,24 @@ class LinearRecord:
 
         kinds: acceleration or displacement, of all of them.
         """
-        lines = drive_shapes @ (self.accelerating if kinds == "acceleration" else self.spectrum)
+        return self.short_spectra(self._driving(drive_shapes, kinds) / self._stiffness(omega, damping))
+
+    def changes(self, omega, damping, drive_shapes, kinds):
+        """Return (by ln omega, by ln damping ratio) of what responses returns, each (mode, line)."""
+        stiffness, damped = self._stiffness(omega, damping), 1j * damping[:, None] * self.omega
+        falling = -self._driving(drive_shapes, kinds) / stiffness**2
+        return self.short_spectra(falling * (2.0 * omega[:, None] ** 2 + damped)), self.short_spectra(falling * damped)
+
+    def _driving(self, drive_shapes, kinds):
+        """Return (mode, line): the modal force, for displacements or accelerations."""
+        return drive_shapes @ (self.accelerating if kinds == "acceleration" else self.spectrum)
+
+    def _stiffness(self, omega, damping):
+        """Return (mode, line) dynamic stiffness of modes."""
         stiffness = np.empty((len(omega), self.omega.size), complex)
         stiffness.real = omega[:, None] ** 2 - self.squared
         stiffness.imag = damping[:, None] * self.omega
-        return self.short_spectra(lines / stiffness)
+        return stiffness
 
     def short_spectra(self, lines):
         """Return (..., line): the lines in the band of responses given by their spectra over the whole length, cut to the record."""

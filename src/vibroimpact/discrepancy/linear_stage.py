@@ -1,52 +1,24 @@
 """Modal parameters of a low-level record: frequencies, damping and participations fitted to its waveform, run from rest to its end.
 
-The same fit reads the measured and a simulated record, so that what it can not do it does to both. Variable projection: the participations
-are linear and solved for at each step (G.H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 1973); frequencies and damping by Gauss-Newton.
+The same fit reads the measured and a simulated record, so that what it can not do it does to both: which modes, from where, and by which participations; see
+modal_fit for a fit itself.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from scipy import linalg
 
 from vibroimpact.discrepancy.lags import driven_modes, lags
+from vibroimpact.discrepancy.modal_fit import LARGEST_LOG_DAMPING, ModalLines
 from vibroimpact.discrepancy.pursuit import assigned, pursued
 
-ITERATIONS = 12  # of Gauss-Newton at most
 MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
 LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far above the band leave in every line
-RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
-LARGEST_LOG_DAMPING = 3.0
-IDLE = 1.0e-9  # of the change with the logarithm that changes most
-STEP_LIMIT = 0.02  # of ln frequency in one iteration
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S = 2.0e-5
 SILENT = 1.0e-4  # of a mode's largest displacement among the channels: below it a channel does not see the mode in the model
 BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
+AT_ONCE = 32  # modes, so that their lines fit into little memory
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
-SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
-
-
-@dataclass(frozen=True)
-class ModalFit:
-    """What the fit of one record found.
-
-    modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted over the model's value;
-    participation (channel, fitted): response per unit modal response to the force on `drive` (fitted, force_channel); covariance of
-    [log_frequency, log_damping] (2 fitted, 2 fitted); delay (channel,) s by which a channel lags the others' fit, 0 where it is not to be told from none;
-    residual (channel,): RMS of what is left over that of the noise and of RESIDUAL_SHARE of the response, in the band; share (channel,): residual over response, RMS.
-    """
-
-    modes: np.ndarray
-    drive: np.ndarray
-    log_frequency: np.ndarray
-    log_damping: np.ndarray
-    participation: np.ndarray
-    covariance: np.ndarray
-    delay: np.ndarray
-    residual: np.ndarray
-    share: np.ndarray
 
 
 def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=True):
@@ -85,16 +57,20 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
         drive[~driven_modes(model, visible), 0] = 1.0
         turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         rest = _rest(record, model, visible, kind)
+        strict, more = _seen(model, visible, True), _seen(model, visible, False)
         if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
             start = _elsewhere(record, turned - rest, weights, model, visible, kind) if elsewhere else None
-            free = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start, True)
+            free = ModalLines(record, turned - rest, weights, model, visible, drive, kind).fit(strict, noise, delay, start, phases=True)
             lag, start = lags(free, model) if left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
             delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
             turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
-        # what breaks a symmetry lets a channel see modes that it does not in the model: looked at from the beginning, and once the modes are where they are
-        known = _gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, start)
-        found = min((_gauss_newton(record, turned - rest, weights, model, visible, drive, kind, noise, delay, begun, strict=False)
-                     for begun in (start, (known.log_frequency, known.log_damping))), key=_implausible)  # fmt: skip
+        lines = ModalLines(record, turned - rest, weights, model, visible, drive, kind)
+        known = lines.fit(strict, noise, delay, start)
+        begun = [(known.log_frequency, known.log_damping)]
+        if not fixed or lines.explains_more(known, strict, more):
+            # what breaks a symmetry lets a channel see modes that it does not in the model: looked at from the beginning, and once the modes are where they are
+            begun = [start, *begun]
+        found = min((lines.fit(more, noise, delay, one) for one in begun), key=_implausible)
         if fixed:
             break
         nothing = np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING  # modes that the model excites and the record does not hold
@@ -153,8 +129,8 @@ def _unexpected(record, measured, found, weights, drive, model, near, kind):
         basis = record.responses(model.omega[[mode]], model.damping[[mode]], np.eye(1, model.drive_shapes.shape[1]), kind)[0]
         gain = 0.0
         for channel in np.flatnonzero(np.abs(model.sensor_shapes[mode]) > 1.0e-6 * np.abs(model.sensor_shapes).max()):
-            y, b = _real(weights[channel] * residual[channel]), _real(weights[channel] * basis)
-            gain += (y @ b) ** 2 / (b @ b)
+            y, b = weights[channel] * residual[channel], weights[channel] * basis
+            gain += np.vdot(b, y).real ** 2 / np.vdot(b, b).real
         if gain > UNEXPECTED and not _covered(model, mode, found):
             extra.append(mode)
     return np.array(extra, int)
@@ -174,124 +150,19 @@ def _covered(model, mode, found):
 def _rest(record, model, visible, kind):
     """Return (channel, line): what the modes that are not fitted add, those far above the band as their static response."""
     others = np.setdiff1d(np.flatnonzero(model.omega > 0.0), visible)
-    transfer = np.zeros((model.sensor_shapes.shape[1], model.drive_shapes.shape[1], record.omega.size), complex)
     reach = record.omega <= 2.2 * np.pi * record.frequency[-1]
-    omega = record.omega[reach]
-    for mode in others:
-        h = 1.0 / (model.omega[mode] ** 2 - omega**2 + 1j * model.damping[mode] * omega)
-        transfer[:, :, reach] += np.einsum("c,f,l->cfl", model.sensor_shapes[mode], model.drive_shapes[mode], h)
+    omega, force = record.omega[reach], record.spectrum[:, reach]
+    lines = np.zeros((model.sensor_shapes.shape[1], record.omega.size), complex)
+    for first in range(0, len(others), AT_ONCE):
+        part = others[first : first + AT_ONCE]
+        transfer = 1.0 / (model.omega[part, None] ** 2 - omega**2 + 1j * model.damping[part, None] * omega)
+        lines[:, reach] += model.sensor_shapes[part].T @ (transfer * (model.drive_shapes[part] @ force))
     if kind == "acceleration":
-        transfer *= -(record.omega**2)
-    return record.short_spectra(np.einsum("cfl,fl->cl", transfer, record.spectrum))
-
-
-def _gauss_newton(record, measured, weights, model, visible, drive, kind, noise, delay, start=None, phases=False, strict=True):
-    """Return the ModalFit (participations complex where `phases`), from the frequency at which each mode's own resonance fits best."""
-    count = len(visible)
-    omega, zeta = model.omega[visible], model.damping[visible] / (2.0 * model.omega[visible])
-    logs = np.zeros(2 * count)
-    if isinstance(start, tuple):
-        logs = np.concatenate(start)
-    else:
-        logs[:count] = start if start is not None else _start(record, measured, weights, visible, drive, omega, zeta, kind)
-    weighted = weights * measured
-
-    def columns(values, chosen=slice(None)):
-        w = (omega * np.exp(values[:count]))[chosen]
-        return record.responses(w, 2.0 * (zeta * np.exp(values[count:]))[chosen] * w, drive[chosen], kind)
-
-    seen = _seen(model, visible, strict)
-
-    def solve(basis):
-        shapes = np.zeros(seen.shape, complex if phases else float)
-        for c in np.flatnonzero(seen.any(axis=1)):
-            rows, target = (weights[c] * basis[seen[c]]).T, weights[c] * measured[c]
-            shapes[c, seen[c]] = linalg.lstsq(rows, target)[0] if phases else linalg.lstsq(_real(rows.T).T, _real(target))[0]
-        return shapes
-
-    best, best_cost, damp = None, np.inf, 1.0e-3
-    for _ in range(ITERATIONS):
-        basis = columns(logs)
-        shapes = solve(basis)
-        residual = weighted - weights * (shapes @ basis)
-        cost = np.sum(np.abs(residual) ** 2)
-        if cost < best_cost:
-            converged = best is not None and best_cost - cost < 1.0e-6 * cost
-            best, best_cost, damp = (logs.copy(), shapes, basis, residual), cost, max(0.2 * damp, 1.0e-9)
-            if converged:
-                break
-        else:
-            damp *= 20.0
-            if damp > 1.0e3:
-                break
-        jacobian = _jacobian(weights, columns, best, seen)
-        length = np.linalg.norm(jacobian, axis=0)
-        length = np.where(length > IDLE * length.max(), length, np.inf)  # a mode that takes no part stays where it is, and spoils no equation
-        jacobian /= length
-        step = linalg.solve(jacobian.T @ jacobian + damp * np.eye(2 * count), jacobian.T @ _real(best[3]).ravel(), assume_a="pos") / length
-        logs = best[0] + step * min(1.0, STEP_LIMIT / max(np.abs(step[:count]).max(), 1.0e-30))
-        logs[count:] = np.clip(logs[count:], -LARGEST_LOG_DAMPING, LARGEST_LOG_DAMPING)
-    return _result(best, weights, visible, drive, noise, columns, measured, delay, seen)
-
-
-def _jacobian(weights, columns, best, seen):
-    """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm, without what the participations would take up.
-
-    The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of the basis, channel by channel.
-    """
-    logs, shapes, basis, _ = best
-    count, channels = len(logs) // 2, len(shapes)
-    jacobian = np.zeros((channels, 2 * basis.shape[1], 2 * count))
-    for number in range(2 * count):
-        moved = logs.copy()
-        step = 1.0e-5 if number < count else 1.0e-3
-        moved[number] += step
-        mode = number % count
-        change = (columns(moved, [mode])[0] - basis[mode]) / step
-        jacobian[:, :, number] = _real(weights * np.outer(shapes[:, mode], change))
-    for channel in range(channels):
-        known = weights[channel] * basis[seen[channel]]
-        columns_of = [_real(known)] + [_real(1j * known)] * np.iscomplexobj(shapes)
-        span, _ = np.linalg.qr(np.vstack(columns_of).T)
-        jacobian[channel] -= span @ (span.T @ jacobian[channel])
-    return jacobian.reshape(-1, 2 * count)
-
-
-def _result(best, weights, visible, drive, noise, columns, measured, delay, seen):
-    logs, shapes, _, residual = best
-    count = len(visible)
-    jacobian = _jacobian(weights, columns, best, seen)
-    covariance = linalg.pinvh(jacobian.T @ jacobian) * max(1.0, np.mean(np.abs(residual) ** 2))
-    power = np.sqrt(np.sum(np.abs(residual / weights) ** 2, axis=-1))
-    total = np.sqrt(np.sum(np.abs(measured) ** 2, axis=-1))
-    return ModalFit(visible, drive, logs[:count], logs[count:], shapes, covariance, delay, power / np.hypot(noise, RESIDUAL_SHARE * total), power / np.maximum(total, 1.0e-300))
-
-
-def _start(record, measured, weights, visible, drive, omega, zeta, kind):
-    """Return (fitted,) ln of the frequency at which the mode alone explains most near its resonance, within SEARCH."""
-    out = np.zeros(len(visible))
-    for number in range(len(visible)):
-        near = np.abs(record.frequency - omega[number] / (2.0 * np.pi)) < SEARCH * 1.5 * omega[number] / (2.0 * np.pi) + 0.5
-        if near.sum() < 10:
-            continue
-        grid = np.arange(-SEARCH, SEARCH + 1.0e-9, max(zeta[number], SEARCH / 40.0))
-        w = omega[number] * np.exp(grid)
-        basis = record.responses(w, 2.0 * zeta[number] * w, np.repeat(drive[number][None], len(w), axis=0), kind)[:, near]
-        explained = np.zeros(len(grid))
-        for c in range(len(measured)):
-            y, b = weights[c, near] * measured[c, near], weights[c, near] * basis
-            explained += np.real(b.conj() @ y) ** 2 / np.maximum(np.sum(np.abs(b) ** 2, axis=-1), 1.0e-300)
-        prior = -0.5 * (grid / 0.006) ** 2 * 0.02 * explained.max()  # between equals the one near the model
-        out[number] = grid[np.argmax(explained + prior)]
-    return out
+        lines *= -(record.omega**2)
+    return record.short_spectra(lines)
 
 
 def _smooth(values, width=21):
     """Running mean over the last axis."""
     kernel = np.ones(width) / width
     return np.apply_along_axis(lambda row: np.convolve(np.pad(row, width // 2, mode="edge"), kernel, mode="valid"), -1, values)
-
-
-def _real(values):
-    """Complex (..., n) as real (..., 2 n)."""
-    return np.concatenate([values.real, values.imag], axis=-1)

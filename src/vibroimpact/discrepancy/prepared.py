@@ -1,7 +1,8 @@
 """The first job of a discrepancy run: checks, the linear stage, the linear effects that are adopted before contact is looked at."""
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -10,11 +11,13 @@ from vibroimpact.campaign_checks import check_file, refused, usable_signals
 from vibroimpact.campaign_model_checks import compare_with_model
 from vibroimpact.campaign_signals import measured_signals, transfer
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named, in_place_of_adopted, local_candidates, not_testable
+from vibroimpact.discrepancy.candidates import candidate_named, local_candidates, not_testable
+from vibroimpact.discrepancy.in_place import in_place
 from vibroimpact.discrepancy.linear_fit import LinearChanges
 from vibroimpact.discrepancy.linear_rows import held, linear_rows, nameable, nearest_linear
-from vibroimpact.discrepancy.linear_stage import ModalFit, left
+from vibroimpact.discrepancy.linear_stage import left
 from vibroimpact.discrepancy.measuring import Measuring
+from vibroimpact.discrepancy.modal_fit import ModalFit
 from vibroimpact.discrepancy.nearest_model import fit_from_nearest, translated
 from vibroimpact.discrepancy.nuisance import neutral, plausible
 from vibroimpact.discrepancy.null import driven_channels
@@ -30,7 +33,7 @@ class Prepared:
 
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
     {name, unit, gain, interval} of the linear effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every linear candidate,
-    best first; screened: names of the candidates that only simulation tells of; linear_stage: whether the lowest record tells of the linear structure; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
+    best first; screened: names of the candidates that only simulation tells of; in_place: those that may be what the lowest record took for what is adopted; linear_stage: whether the lowest record tells of the linear structure; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
     noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them, see windows; fit: the ModalFit of the lowest record on
     the model with what was adopted; for_all, draw: see prepare.
     """
@@ -41,6 +44,7 @@ class Prepared:
     adopted: dict | None = None
     linear: list = field(default_factory=list)
     screened: list = field(default_factory=list)
+    in_place: list = field(default_factory=list)
     linear_stage: bool = False
     nonlinear_low: bool = False
     chi_square: float = 0.0
@@ -58,6 +62,10 @@ class Prepared:
         """Return whether a Candidate or Pair, with so many more effects, may be missing beside what was adopted, or in its place: no more than priors.MOST_EFFECTS are named."""
         adopted = [] if self.adopted is None or candidate.alone else candidate_named(self.adopted["name"]).ids
         return len(adopted) + len(candidate.ids) + more <= priors.MOST_EFFECTS
+
+    def beside_or_in_place(self, candidate):
+        """Return the Candidates that one is simulated as: beside what was adopted where there is room, in its place where it may be what that was taken for."""
+        return [candidate] * self.room(candidate) + [replace(candidate, alone=True)] * (candidate.name in self.in_place)
 
     def write(self, path):
         """Write as JSON."""
@@ -156,14 +164,29 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
     out.scales = {name: float(value) for name, value in scales(bench.bare, bench.signals, {"displacement": reach, "speed": reach * 2.0 * np.pi * first}).items()}
     out.linear_stage = bool(bench.linear_stage)
+    fresh = partial(Workbench, config, campaign, seconds)
     if out.linear_stage:
-        read_lowest(bench, lambda: Workbench(config, campaign, seconds), out, {} if tables is None else tables, without)
+        bench = read_lowest(bench, fresh, out, {} if tables is None else tables, without)
     shown = out.fit["modes"] if out.fit else bench.measured_fit.modes if out.linear_stage else None
     candidates = local_candidates(bench.given, held(campaign), telling_modes(out, shown, for_all, quick), quick)
-    out.screened = [candidate.name for candidate in candidates if not without & set(candidate.ids) and (out.room(candidate) or in_place_of_adopted(out, candidate))]
+    candidates = [candidate for candidate in candidates if not without & set(candidate.ids)]
+    out.in_place = taken_for_linear(bench, fresh, out, candidates)
+    out.screened = [candidate.name for candidate in candidates if out.beside_or_in_place(candidate)]
     if out.linear_stage and out.nonlinear_low:  # a linear effect may be what makes it touch: those that come nearest are simulated where they look best
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
+
+
+def taken_for_linear(bench, fresh, prepared, candidates):
+    """Return the names of the Candidates that may stand in the place of what a Prepared adopts, none where that is nothing, or a fault of the measuring chain.
+
+    bench: Workbench with what is adopted; fresh() gives another one.
+    """
+    if prepared.adopted is None or candidate_named(prepared.adopted["name"]).effect.measured:
+        return []
+    bare = fresh()
+    bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
+    return in_place(bare, candidates, prepared.adopted["gain"], prepared.scales["tube_translation"])
 
 
 def telling_modes(prepared, shown, for_all=False, quick=False):
@@ -175,7 +198,7 @@ def telling_modes(prepared, shown, for_all=False, quick=False):
 
 
 def read_lowest(bench, fresh, out, tables, without):
-    """Read the lowest record: linear stage, delays, linear effects, what is adopted; Prepared out and tables are changed.
+    """Return the Workbench with what the lowest record tells: linear stage, delays, linear effects, what is adopted; Prepared out and tables are changed.
 
     bench: Workbench; fresh() gives another one; tables, without: see prepare.
     """
@@ -187,7 +210,7 @@ def read_lowest(bench, fresh, out, tables, without):
     if np.median(fit.share[driven]) > priors.UNREAD:
         out.linear_stage = False
         out.checks.append({"check": "lowest level", "level": "warn", "record": None, "channel": None, "message": UNREAD_MESSAGE})
-        return
+        return bench
     _, _, out.chi_square, _ = corrected_nuisance(bench)
     out.residual = fit.residual.tolist()
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
@@ -212,6 +235,7 @@ def read_lowest(bench, fresh, out, tables, without):
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
     out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
+    return bench
 
 
 UNREAD_MESSAGE = ("No modes explain the lowest record: it touches already, or the structure is another one. Linear effects are tried by simulation, beside the others. "
