@@ -1,5 +1,7 @@
 """Linear effects are read off a lowest record: one, two at once, modes that moved far, a record that touches."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -120,6 +122,8 @@ def test_what_stands_in_the_place_of_a_linear_effect_sits_where_a_spring_would_d
     assert not {name.split("@")[1] for name in prepared.in_place} & {"left_leg", "lower_y"}
     assert set(prepared.in_place) < set(prepared.screened) and "gap@all" not in prepared.in_place
     bench = workbench(study_config, tmp_path / "campaign.nc", prepared, prepared.compared_s)
+    assert prepared.still_linear and bench.reads_lowest
+    assert not workbench(study_config, tmp_path / "campaign.nc", replace(prepared, still_linear=False), prepared.screened_s).reads_lowest  # as the first job saw it
     bare = Workbench(study_config, bench.campaign, prepared.compared_s)
     bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
     there, elsewhere = (gain_of_spring(bare, LinearChanges(bare), place, 6600.0) for place in ("shaker", "lower_y"))

@@ -33,7 +33,7 @@ class Prepared:
 
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
     {name, unit, gain, interval} of the linear effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every linear candidate,
-    best first; screened: names of the candidates that only simulation tells of; in_place: those that may be what the lowest record took for what is adopted; linear_stage: whether the lowest record tells of the linear structure; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
+    best first; screened: names of the candidates that only simulation tells of; in_place: those that may be what the lowest record took for what is adopted; linear_stage: whether the lowest record tells of the linear structure; still_linear: whether it does with what is adopted, or touches then; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
     noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them, see windows; fit: the ModalFit of the lowest record on
     the model with what was adopted; for_all, draw: see prepare.
     """
@@ -46,6 +46,7 @@ class Prepared:
     screened: list = field(default_factory=list)
     in_place: list = field(default_factory=list)
     linear_stage: bool = False
+    still_linear: bool = False
     nonlinear_low: bool = False
     chi_square: float = 0.0
     residual: list = field(default_factory=list)
@@ -110,7 +111,7 @@ def workbench(config, campaign_path, prepared, seconds):
         delay = np.array([prepared.delays.get(name, 0.0) for name in bench.signals.names])
         bench.late = Measuring(np.ones(len(delay)), delay, 1.0)
     if prepared.adopted is not None:
-        adopt(bench, prepared)
+        adopt(bench, prepared, prepared.still_linear)
     elif prepared.linear_stage:
         if prepared.fit is not None:
             bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
@@ -120,13 +121,18 @@ def workbench(config, campaign_path, prepared, seconds):
     return bench
 
 
-def adopt(bench, prepared):
-    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from here on, nuisances are those beside it."""
+def adopt(bench, prepared, linear_stage=None):
+    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from here on, nuisances are those beside it.
+
+    linear_stage: whether the lowest record tells of the linear structure with them; looked for where it is None.
+    """
     candidate = candidate_named(prepared.adopted["name"])
     physical = candidate.physical(prepared.adopted["unit"], prepared.scales)
     values = candidate.variant(bench.values, physical)
     if values is not bench.values:
         bench.rebase(values)
+    if linear_stage is not None:
+        bench.linear_stage = linear_stage
     if prepared.fit is not None:
         bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
     bench.measuring = candidate.measuring(physical, bench.signals.names)
@@ -169,6 +175,7 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
         bench = read_lowest(bench, fresh, out, {} if tables is None else tables, without)
     shown = out.fit["modes"] if out.fit else bench.measured_fit.modes if out.linear_stage else None
     candidates = local_candidates(bench.given, held(campaign), telling_modes(out, shown, for_all, quick), quick)
+    out.still_linear = bool(bench.linear_stage)
     candidates = [candidate for candidate in candidates if not without & set(candidate.ids)]
     out.in_place = taken_for_linear(bench, fresh, out, candidates)
     out.screened = [candidate.name for candidate in candidates if out.beside_or_in_place(candidate)]

@@ -55,7 +55,7 @@ class Run:
     @property
     def records(self):
         """Return (record,): those whose features are compared; the lowest one is read by its modes where it can be, and compared in a bank for campaigns where it can not."""
-        bench = self.bench
+        bench = self.screening_bench  # a job that screens has no other
         records = np.arange(len(bench.signals.load))
         return records[records != bench.signals.lowest] if bench.reads_lowest and not self.prepared.for_all else records
 
