@@ -68,6 +68,21 @@ def test_a_late_channel_is_told_and_how_late(rig):
     np.testing.assert_allclose(fit.delay[:3], [0.0, 4.0 / RATE, 0.0], atol=5e-5)
 
 
+@pytest.mark.parametrize("late", [{0: 7.0e-3}, {2: -12.0e-3}, {0: 3.0e-3, 1: 9.0e-3}], ids=["7 ms", "12 ms early", "two channels"])
+def test_a_channel_so_late_that_it_spoils_the_fit_is_turned_back_first(rig, late):
+    """Between its resonances no phase of each mode stands for milliseconds: what the channel leaves is no sign that the fit is of another structure."""
+    bench, fit = rig
+    responses = bench.valid(bench.signals.response[bench.signals.lowest]).copy()
+    for channel, delay in late.items():
+        lines = np.fft.rfft(responses[channel], 2 * responses.shape[1])
+        turned = lines * np.exp(-2j * np.pi * np.fft.rfftfreq(2 * responses.shape[1], 1.0 / RATE) * delay)
+        responses[channel] = np.fft.irfft(turned)[: responses.shape[1]]
+    found = fit_modes(bench.linear_record, responses, bench.bare, bench.signals.kinds, bench.signals.noise_in_band)
+    expected = fit.delay + np.array([late.get(channel, 0.0) for channel in range(len(PLACES))])
+    np.testing.assert_allclose(found.delay[:3], expected[:3], atol=3.0e-5)
+    np.testing.assert_allclose(found.log_frequency, fit.log_frequency, atol=3.0e-4)
+
+
 def test_nuisances_within_their_priors_are_no_finding(rig):
     bench, fit = rig
     _, _, chi_square, pulls = corrected_nuisance(bench)

@@ -196,6 +196,7 @@ def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided)
     # a record near an onset, of which the model goes both ways, is met by no mean: where the fitted ones gain, it is no witness alone
     assert verdict.refuted(named, -0.2, -2.8) and not any(verdict.refuted(named, *shares) for shares in ((0.5, -2.8), (-0.2, -0.5), (-2.8, None), (None, -2.8)))
     assert not verdict.refuted(replace(named, verdict="none", chosen=None), -0.2, -2.8)
+    assert verdict.refuted(named, -0.52, -0.62)  # an offset of next to nothing, named for a channel that was late
 
 
 def test_a_part_that_makes_no_records_better_is_no_explanation(decided):

@@ -3,6 +3,9 @@
 import numpy as np
 
 LONGEST_LAG_S = 0.02
+HEARD, FEWEST = 3.0, 50  # times the noise of a line, and so many lines
+REAL_ENOUGH = 0.6  # least agreement of twice the phase once the delay is taken out
+SEEN_S = 3.0e-4  # less is told by the phases of modes
 DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
 
 
@@ -26,6 +29,26 @@ def lags(found, model):
             turned = unit * np.exp(2j * np.pi * frequency * best)
             best -= np.sum(frequency * turned.imag) / max(2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300)
         out[channel] = best
+    return out
+
+
+def from_phases(lines, noise):
+    """Return (channel,) s: by how much each channel lags, 0 where that can not be told, from the lines of a record (ModalLines) alone; noise (channel,) RMS in the band.
+
+    Modes damped in proportion answer in phase or against it away from their resonances, so that twice the phase per force is zero on most lines.
+    """
+    record = lines.record
+    force = record.short_spectra(record.spectrum[:1])[0]
+    tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / record.frequency[-1])
+    out = np.zeros(len(lines.measured))
+    for channel, own in enumerate(lines.measured):
+        heard = np.abs(own) > HEARD * noise[channel] / np.sqrt(own.size)
+        if heard.sum() < FEWEST:
+            continue
+        squared = (own[heard] / force[heard]) ** 2
+        score = np.real((squared / np.abs(squared)) @ np.exp(4j * np.pi * np.outer(record.frequency[heard], tried))) / heard.sum()
+        if score.max() > REAL_ENOUGH and abs(tried[np.argmax(score)]) > SEEN_S:
+            out[channel] = tried[np.argmax(score)]
     return out
 
 

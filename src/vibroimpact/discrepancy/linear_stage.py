@@ -6,7 +6,7 @@ modal_fit for a fit itself.
 
 import numpy as np
 
-from vibroimpact.discrepancy.lags import driven_modes, lags
+from vibroimpact.discrepancy.lags import driven_modes, from_phases, lags
 from vibroimpact.discrepancy.modal_fit import LARGEST_LOG_DAMPING, ModalLines
 from vibroimpact.discrepancy.pursuit import assigned, pursued
 
@@ -55,16 +55,17 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     for _ in range(3):  # modes that the model does not excite, and delays, are seen once the rest is taken out
         drive = model.drive_shapes[visible].copy()
         drive[~driven_modes(model, visible), 0] = 1.0
-        turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
         rest = _rest(record, model, visible, kind)
         strict, more = _seen(model, visible, True), _seen(model, visible, False)
+
+        def lines_at(delay, rest=rest, visible=visible, drive=drive):
+            return ModalLines(record, _turned_back(measured, record, delay) - rest, weights, model, visible, drive, kind)
+
         if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
-            start = _elsewhere(record, turned - rest, weights, model, visible, kind) if elsewhere else None
-            free = ModalLines(record, turned - rest, weights, model, visible, drive, kind).fit(strict, noise, delay, start, phases=True)
-            lag, start = lags(free, model) if left(free, model) < LOST else np.zeros(len(measured)), free.log_frequency
-            delay = np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
-            turned = measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
-        lines = ModalLines(record, turned - rest, weights, model, visible, drive, kind)
+            start = _elsewhere(record, lines_at(delay).measured, weights, model, visible, kind) if elsewhere else None
+            lag, start = _lags(lines_at, delay, strict, noise, model, start)
+            delay = _told(lag)
+        lines = lines_at(delay)
         known = lines.fit(strict, noise, delay, start)
         begun = [(known.log_frequency, known.log_damping)]
         if not fixed or lines.explains_more(known, strict, more):
@@ -77,11 +78,37 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
         if nothing.any() and not nothing.all():
             lag, start, visible = None, None, visible[~nothing]
             continue
-        extra = _unexpected(record, turned, found, weights, drive, model, near, kind)
+        extra = _unexpected(record, _turned_back(measured, record, delay), found, weights, drive, model, near, kind)
         if not len(extra):
             break
         lag, start, visible = None, None, np.sort(np.concatenate([visible, extra]))
     return found
+
+
+def _turned_back(measured, record, delay):
+    """Return (channel, line) measured lines without delays (channel,) s."""
+    return measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
+
+
+def _lags(lines_at, delay, seen, noise, model, start):
+    """Return ((channel,) s by which channels lag, ln frequency (fitted,)) of a fit with a phase for every participation; lines_at(delay) -> ModalLines with channels
+    turned back; delay: what is known so far, and is returned where the fit leads nowhere.
+
+    Between its resonances no phase of each mode stands for milliseconds: a channel so late spoils the fit, and is turned back by what its lines tell first.
+    """
+    first = free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
+    if left(free, model) >= LOST:
+        before, delay = delay, from_phases(lines_at(np.zeros_like(delay)), noise)
+        if delay.any():
+            free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
+        if left(free, model) >= LOST:
+            return before, first.log_frequency
+    return delay + lags(free, model), free.log_frequency
+
+
+def _told(lag):
+    """Return (channel,) s the delays that can be told from none."""
+    return np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
 
 
 def _elsewhere(record, measured, weights, model, visible, kind):

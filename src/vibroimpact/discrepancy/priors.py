@@ -1,12 +1,12 @@
 """Every threshold and prior of the discrepancy workflow, in one file. Frozen before an acceptance draw; see docs/method.md for what each was tuned on.
 
-Eighteenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
+Nineteenth freeze: after what the fifth draw showed of noise, rest and runs that are thrown off, the sixth of places, the seventh and eighth of noise
 that impacts hide and of pairs, which do not add and are looked at closely only where they gain, the ninth of effects in excess of two and of
 nuisances beside what bends the lowest record, the tenth of where such an effect is searched from and of effects that held-out records contradict,
 the eleventh of nuisances that are free where such an effect is judged, and of searches beside a mass, the thirteenth of laws that no campaign tells,
 of runs that go two ways, and of explanations that make all records worse, the fourteenth of how a candidate's own runs scatter, the fifteenth of the
 order in which what is named is told, the sixteenth of designs that were too coarse, the seventeenth of pairs beside a linear
-effect.
+effect, the eighteenth of an explanation that makes all records worse by half.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
@@ -56,5 +56,5 @@ SIGNIFICANT = 0.01  # global p below which the bare model and the measurement di
 LINEAR_AMBIGUOUS, LINEAR_ALIAS = 3.0, 8.0  # of log likelihood on the lowest record: linear effects nearer than this to the best; aliases of the catalogue
 PARTLY = 0.5  # closed share above which an explanation that leaves something is still partly one
 WORSE = -0.25  # closed share of the held-out misfit below which what explained a part of the others is no explanation
-FAR_WORSE = -1.0  # the same where it explained all, yet closes nothing of those fitted: twice the misfit of the bare model is none, whatever its scatter forgives
+FAR_WORSE = -0.5  # the same where it explained all, yet closes nothing of those fitted: more than the bare model's misfit is none, whatever its scatter forgives
 LEAST_CLOSED = 0.15  # closed share below which a gain of likelihood is no explanation
