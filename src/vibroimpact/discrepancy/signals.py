@@ -130,7 +130,8 @@ def noise_of(campaign, response, rate, band):
     lines = np.diff(edges)
     # from the median: lines of noise are exponentials, and a few of something else do not count
     density = np.array([np.median(power[:, low:high], axis=-1) for low, high in itertools.pairwise(edges)]) / np.log(2.0)
-    least = np.min(density * (1.0 + ALIKE * MEDIAN_SCATTER / np.sqrt(lines))[:, None], axis=0)
+    # as a factor: of some dozens of narrow parts one has half of the density, and would leave out all others
+    least = np.min(density * np.exp(ALIKE * MEDIAN_SCATTER / np.sqrt(lines))[:, None], axis=0)
     share = lines[:, None] * (density <= least)
     return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
 
