@@ -6,7 +6,8 @@ nuisances beside what bends the lowest record, the tenth of where such an effect
 the eleventh of nuisances that are free where such an effect is judged, and of searches beside a mass, the thirteenth of laws that no campaign tells,
 of runs that go two ways, and of explanations that make all records worse, the fourteenth of how a candidate's own runs scatter, the fifteenth of the
 order in which what is named is told, the sixteenth of designs that were too coarse, the seventeenth of pairs beside a linear
-effect, the eighteenth of an explanation that makes all records worse by half.
+effect, the eighteenth of channels so late that they spoil a fit, of noise read
+low, and of an explanation that makes all records worse by half.
 """
 
 # Nuisance of a measured structure, one sigma: what a modal test of a good model finds. Nothing within it is named.
