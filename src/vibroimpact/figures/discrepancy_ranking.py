@@ -64,9 +64,10 @@ def ranking_figure(ranking, named=()):
 
 
 def _label(row, names):
-    """Return the effects of a row in words, with their place where the same effects stand at several."""
-    name = "+".join(sorted(str(row["ids"]).split("+")))
-    place = f" ({row['location']})" if names.count(name) > 1 and row.get("location") else ""
+    """Return the effects of a row in words, with their place where the same effects stand at several, or one beside itself."""
+    ids = str(row["ids"]).split("+")
+    told_by_place = names.count("+".join(sorted(ids))) > 1 or len(set(ids)) < len(ids)
+    place = f" ({row['location']})" if told_by_place and row.get("location") else ""
     return f"{row['ids']}{place}".replace("_", " ").replace("+", " + ")
 
 
