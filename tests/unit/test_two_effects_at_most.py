@@ -1,9 +1,11 @@
 """No more than two effects are named, those of the lowest record included."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.prepared import Prepared
+from vibroimpact.discrepancy.prepared import Prepared, taken_for_linear
 
 PAIR = "added_mass@apex+modal_damping@structure"
 
@@ -26,3 +28,10 @@ def test_what_is_simulated_of_a_candidate(adopted, in_place, expected):
     """What there is no room for is not simulated, and what can not have been taken for a linear effect not in its place."""
     prepared = Prepared([], adopted=None if adopted is None else {"name": adopted}, in_place=in_place)
     assert [placed.name for placed in prepared.beside_or_in_place(candidate_named("coulomb_friction@apex"))] == expected
+
+
+def test_no_place_is_ruled_out_where_the_record_shows_no_linear_modes_with_what_is_adopted():
+    candidates = [candidate_named(name) for name in ("coulomb_friction@apex", "gap@all", "clearance@left_leg")]
+    touching = SimpleNamespace(linear_stage=False, measured_fit=None)
+    prepared = Prepared([], adopted={"name": "added_mass@apex", "gain": 100.0})
+    assert taken_for_linear(touching, None, prepared, candidates) == ["coulomb_friction@apex", "clearance@left_leg"]

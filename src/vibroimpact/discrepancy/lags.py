@@ -4,6 +4,7 @@ import numpy as np
 
 LONGEST_LAG_S = 0.02
 HEARD, FEWEST = 3.0, 50  # times the noise of a line, and so many lines
+EXCITED = 1.0e-3  # of the strongest line of the force
 REAL_ENOUGH = 0.6  # least agreement of twice the phase once the delay is taken out
 SEEN_S = 3.0e-4  # less is told by the phases of modes
 DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
@@ -39,10 +40,11 @@ def from_phases(lines, noise):
     """
     record = lines.record
     force = record.short_spectra(record.spectrum[:1])[0]
+    driven = np.abs(force) > EXCITED * np.abs(force).max()  # of periodic forces most lines are empty
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / record.frequency[-1])
     out = np.zeros(len(lines.measured))
     for channel, own in enumerate(lines.measured):
-        heard = np.abs(own) > HEARD * noise[channel] / np.sqrt(own.size)
+        heard = (np.abs(own) > HEARD * noise[channel] / np.sqrt(own.size)) & driven
         if heard.sum() < FEWEST:
             continue
         squared = (own[heard] / force[heard]) ** 2

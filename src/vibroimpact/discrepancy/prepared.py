@@ -191,6 +191,8 @@ def taken_for_linear(bench, fresh, prepared, candidates):
     """
     if prepared.adopted is None or candidate_named(prepared.adopted["name"]).effect.measured:
         return []
+    if not bench.linear_stage:  # it touches with what is adopted, or shows no modes then: there is nothing to rule a place out by
+        return [candidate.name for candidate in candidates if candidate.effect.below_contact]
     bare = fresh()
     bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
     return in_place(bare, candidates, prepared.adopted["gain"], prepared.scales["tube_translation"])
