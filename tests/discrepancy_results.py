@@ -81,8 +81,8 @@ def made_up_verdict(kind="named"):
         "ranking": [{"ids": row["ids"].split("+"), "heldout_score": row["heldout_score"], "closed_fraction": row["closed_fraction"]} for row in made_up_ranking()] if tested else [],
         "next_measurement": "Measure the in-plane motion at the apex at 3 N and a gap of 0.9 %: friction keeps it small, flat lands do not." if kind == "ambiguous" else None,
         "broken_invariances": ["T2", "T5"] if tested else [],
-        "regions": [{"band_Hz": [24.0, 33.0], "load_rms_N": 10.0, "gap_m": 2.48e-4, "channel": "apex_y", "discrepancy_dB": 7.4, "z": 8.1},
-                    {"band_Hz": [60.0, 82.0], "load_rms_N": 10.0, "gap_m": 2.48e-4, "channel": "apex_y", "discrepancy_dB": -5.9, "z": -6.3}] if tested else [],
+        "regions": [{"band_Hz": [24.0, 33.0], "load_rms_N": 10.0, "gap_m": 2.48e-4, "channel": "apex_y", "discrepancy_dB": 7.4, "z": 8.1, "nearest_modes_Hz": [28.4]},
+                    {"band_Hz": [60.0, 82.0], "load_rms_N": 10.0, "gap_m": 2.48e-4, "channel": "apex_y", "discrepancy_dB": -5.9, "z": -6.3, "nearest_modes_Hz": [70.2]}] if tested else [],
         "misfit": {"fit": split if tested else nothing, "holdout": split if tested else nothing}, "p_global_before": 0.0005 if tested else None,
         "p_global_after": 0.31 if tested else None, "checks": checks, "seconds": 912.4, "simulations": 3120,
         "provenance": {"versions": "python 3.11 numpy 2.4", "config_digest": "0123456789abcdef"}}

@@ -23,7 +23,7 @@ LAYERS = (
     ("ritz", "modifications", "reduction", "linear", "schemes", "antialias", "layout", "potential", "contraction"),
     ("integrate", "trace", "simulate", "step_records", "series_files", "spectra_files", "identified", "steady", "identify", "synthetic_campaign"),
     ("effects", "discrepancy", "consistency", "statistics_table", "timing", "f16", "completion"),
-    ("validation", "discrepancy_results", "discrepancy_page", "suite_page"),
+    ("page_style", "validation", "discrepancy_results", "discrepancy_page", "suite_page"),
     ("figures",),
 )
 ANATOMY = ["input", "output", "params", "log", "benchmark", "threads", "resources", "message", "script"]

@@ -10,11 +10,12 @@ from jinja2 import Environment, StrictUndefined
 from vibroimpact.discrepancy_results import best_places, shown_effects
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.page_style import STYLE
 from vibroimpact.shown_units import shown_unit
 
 TEMPLATE = Path(__file__).with_suffix(".html")
 SPLITS = {"fit": "fitted", "holdout": "held out"}
-MOST_ROWS = 20
+MOST_ROWS, MOST_MODES = 20, 6
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 
 
@@ -32,7 +33,7 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     tests = [f"{test}, {TESTS[test]}" if test in TESTS else str(test) for test in verdict["broken_invariances"]]
     return template.render(
-        name=name, verdict=verdict, floor=floor, quick_s=None if quick_s is None else digits(quick_s),
+        style=STYLE, name=name, verdict=verdict, floor=floor, quick_s=None if quick_s is None else digits(quick_s),
         sentence=verdict_sentence(verdict), effects=[*_effect_rows(verdict)],
         misfit=[*_misfit_rows(verdict)], p_before=_probability(verdict["p_global_before"]), p_after=_probability(verdict["p_global_after"]),
         regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]], broken="; ".join(tests),
@@ -112,7 +113,14 @@ def _misfit_rows(verdict):
 def _region_row(region):
     gap = region.get("gap_m")
     return {"band": " to ".join(digits(edge) for edge in region["band_Hz"]), "channel": region["channel"], "load": digits(region["load_rms_N"]),
-            "gap": digits(gap * 1e3) if gap is not None else "-", "discrepancy": f"{region['discrepancy_dB']:+.1f}", "z": f"{region['z']:+.1f}"}
+            "gap": digits(gap * 1e3) if gap is not None else "-", "discrepancy": f"{region['discrepancy_dB']:+.1f}", "z": f"{region['z']:+.1f}",
+            "modes": _modes(region.get("nearest_modes_Hz", ()))}
+
+
+def _modes(frequencies):
+    """Return the modes of the model in or nearest to a band; those that a symmetric tube has twice, to three digits, once."""
+    shown = list(dict.fromkeys(digits(frequency) for frequency in frequencies))
+    return ", ".join(shown[:MOST_MODES]) + (" ..." if len(shown) > MOST_MODES else "")
 
 
 def _flat(values, prefix=""):

@@ -8,6 +8,7 @@ from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.discrepancy.suite import TARGETS
 from vibroimpact.discrepancy_page import digits, embedded, in_words, percent
+from vibroimpact.page_style import STYLE
 
 TEMPLATE = Path(__file__).with_suffix(".html")
 
@@ -21,7 +22,7 @@ def suite_page(seed, rows, rates, limits, figures):
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     return template.render(
-        seed=seed, count=len(rows), sentence=suite_sentence(seed, rows, rates), failed=any(row["standing"] == "fails" for row in rates),
+        style=STYLE, seed=seed, count=len(rows), sentence=suite_sentence(seed, rows, rates), failed=any(row["standing"] == "fails" for row in rates),
         rates=[_rate_row(row) for row in rates], unasked=unasked(rates), limits=[_limit_row(row) for row in limits],
         figures=embedded(figures), campaigns=[_campaign_row(row) for row in rows])  # fmt: skip
 

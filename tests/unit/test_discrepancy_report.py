@@ -189,3 +189,12 @@ def test_every_verdict_has_its_sentence_and_page(kind):
                                        "partly_explained": "something else", "not_testable": "can not be judged"}[kind] in sentence
     page = discrepancy_page(kind, verdict, [])
     assert sentence.split(" (")[0] in page and ("Measure next" in page) == (kind == "ambiguous")
+
+
+def test_a_region_tells_the_modes_near_it_each_once():
+    region = made_up_verdict()["regions"][0]
+    page = discrepancy_page("campaign", made_up_verdict() | {"regions": [region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]}, [])
+    assert "<td>104, 105, 171, 172</td>" in page
+    assert "<td>104, 171</td>" in discrepancy_page("campaign", made_up_verdict() | {"regions": [region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]}, [])
+    without = {key: region[key] for key in region if key != "nearest_modes_Hz"}  # a structure that is known by its measured responses alone
+    assert "nearest modes" not in discrepancy_page("campaign", made_up_verdict() | {"regions": [without]}, [])

@@ -4,12 +4,7 @@ from collections import Counter
 from html import escape
 from pathlib import Path
 
-STYLE = """
-body {font: 15px/1.5 system-ui, sans-serif; max-width: 1080px; margin: 2em auto; padding: 0 1em; color: #222}
-table {border-collapse: collapse; margin: 1em 0; font-size: 13px} th, td {border-bottom: 1px solid #ddd; padding: 3px 9px; text-align: left; vertical-align: top}
-th {background: #f3f3f3} td.number {text-align: right; font-variant-numeric: tabular-nums} .bad {color: #b00020; font-weight: 600} .good {color: #1b7837}
-figure {margin: 2em 0} img {max-width: 100%} figcaption {font-size: 13px; color: #444} details {margin: 1em 0} summary {cursor: pointer; font-weight: 600}
-"""
+from vibroimpact.page_style import STYLE
 
 
 def validation_page(checks: list[dict], tables: list[tuple[str, str, list[dict]]], figures: list[Path], folder: Path) -> str:
@@ -69,7 +64,7 @@ def _table(rows):
         return "<p>(empty)</p>"
     head = "".join(f"<th>{escape(str(name)).replace('_', ' ')}</th>" for name in rows[0])
     body = "".join("<tr>" + "".join(_cell(value) for value in row.values()) + "</tr>" for row in rows)
-    return f"<table><tr>{head}</tr>{body}</table>"
+    return f"<table><thead><tr>{head}</tr></thead>{body}</table>"
 
 
 def _cell(value):
