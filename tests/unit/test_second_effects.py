@@ -56,10 +56,19 @@ def test_the_second_effect_is_tried_where_else_it_was_screened(simulated):
 
 def test_without_the_best_only_a_few_are_simulated(simulated, monkeypatch):
     first, other = finalist("gap@all", 1000.0), finalist("hertz@all", 900.0)
-    simulated([(other, "contact_damping@all", 0.1), (other, "dry_friction@all", 0.1), (first, "hunt_crossley@all", 0.1)],
-              {"hertz@all+contact_damping@all": 1500.0, "hertz@all+dry_friction@all": 1800.0, "gap@all+hunt_crossley@all": 1100.0})  # fmt: skip
+    simulated([(other, "preload@all", 0.1), (other, "dry_friction@all", 0.1), (first, "hunt_crossley@all", 0.1)],
+              {"hertz@all+preload@all": 1500.0, "hertz@all+dry_friction@all": 1800.0, "gap@all+hunt_crossley@all": 1100.0})  # fmt: skip
     monkeypatch.setattr(second, "WITHOUT_FIRST", 1)
-    assert [name for name, _, _ in found((), first, other)] == ["hertz@all+contact_damping@all", "gap@all+hunt_crossley@all"]
+    assert [name for name, _, _ in found((), first, other)] == ["hertz@all+preload@all", "gap@all+hunt_crossley@all"]
+
+
+def test_the_rest_of_one_law_is_simulated_whatever_a_sum_says(simulated, monkeypatch):
+    """A soft contact with a Hunt-Crossley damping of 19 s/m was the forty-second of the sums, and explained most by simulation."""
+    first, other = finalist("foliate_obstacle@all", 740.0), finalist("hunt_crossley@all", 680.0)
+    simulated([(first, "plate_flexibility@all", 0.8), (other, "quadratic_drag@tube", 0.4), (other, "contact_stiffness@all", 0.2)],
+              {"foliate_obstacle@all+plate_flexibility@all": 773.0, "hunt_crossley@all+contact_stiffness@all": 1258.0})  # fmt: skip
+    monkeypatch.setattr(second, "WITHOUT_FIRST", 1)
+    assert found((), first, other)[0] == ("hunt_crossley@all+contact_stiffness@all", 0.2, 1258.0)
 
 
 ROWS = [{"name": "sensor_gain@force", "unit": [0.1]}, {"name": "added_mass@apex+fluid_added_mass_damping@tube", "unit": [0.5, 0.1, 0.2]}, {"name": "added_mass@apex", "unit": [0.86]}]
@@ -74,14 +83,21 @@ def test_a_lowest_record_that_is_not_quite_linear_tells_of_one_effect(monkeypatc
     assert all(isinstance(row, Told) and row.mean[0, 0] == row.unit[0] == 0.86 for row in rows)
 
 
-@pytest.mark.parametrize(("name", "hidden", "units"), [("modal_damping@all", True, [0.4, 0.2, 0.8, 1.0]), ("modal_damping@all", False, [0.4]), ("gap@all", True, [0.4])])
-def test_a_linear_effect_that_no_lowest_record_tells_is_tried_at_every_value(monkeypatch, name, hidden, units):
-    """Nine times the damping, in a tube that is pressed to its hole, was simulated at six tenths alone, where the sum put it, and not found."""
+ALL, BEST = [0.4, 0.2, 0.8, 1.0], [0.4]
+
+
+@pytest.mark.parametrize(("first", "name", "hidden", "units"), [
+    ("support_offset@all", "modal_damping@all", True, ALL), ("support_offset@all", "modal_damping@all", False, BEST), ("support_offset@all", "gap@all", True, BEST),
+    ("hunt_crossley@all", "contact_stiffness@all", False, ALL), ("hertz@all", "contact_damping@all", False, ALL), ("hertz@all", "contact_stiffness@all", False, BEST),
+    ("hunt_crossley@all", "gap@all", False, BEST)])  # fmt: skip
+def test_what_no_sum_tells_is_tried_at_every_value(monkeypatch, first, name, hidden, units):
+    """Nine times the damping, in a tube that is pressed to its hole, was simulated at six tenths alone, where the sum put it, and not found; a soft contact with a heavy
+    damping was proposed with a stiff one."""
     monkeypatch.setattr(second, "direct_scores", lambda bench, null, measured, mean: mean[:, 0])
     monkeypatch.setattr(second, "linear_score", lambda bench, reading: 0.0)
     bench = SimpleNamespace(layout=SimpleNamespace(blend=np.full(3, 1.0e6)))
     at, scores = np.array([[0.2], [0.4], [0.8], [1.0]]), np.array([30.0, 40.0, 20.0, 10.0])
     path = SimpleNamespace(parameters=at, features=scores[:, None, None] * np.ones((1, 2, 3)), readings=[None] * 4)
-    first = SimpleNamespace(candidate=candidate_named("support_offset@all"), unit=np.array([0.7, 0.1]), mean=NULL.mean, low=0.0, own=lambda null: null)
+    first = SimpleNamespace(candidate=candidate_named(first), unit=np.full(len(candidate_named(first).effect.parameters), 0.7), mean=NULL.mean, low=0.0, own=lambda null: null)
     rows = second.proposed(bench, NULL, None, [first], {candidate_named(name): path}, hidden)
     assert [row[2][-1] for row in rows] == units

@@ -13,7 +13,7 @@ from vibroimpact.discrepancy.screening import direct_scores, linear_score, simul
 PAIRS, LEAST_PAIRS = 4, 2
 FIRSTS = 3
 POINTS = 2  # of an effect of several parameters, where one of a coarse design may be far off in the other
-WITHOUT_FIRST = 6  # pairs without the best finalist that are simulated; with it all are
+WITHOUT_FIRST = 6  # pairs without the best finalist that are simulated; with it, and of the stiffness and damping of one contact, all are
 NEAR = 0.5  # of what the best adds to a single effect: pairs beyond the first two that add less are not looked at closely
 
 
@@ -47,8 +47,8 @@ def told(bench, null, prepared, first_seed=24000):
 def pairs(bench, null, measured, found, paths, prepared, first_seed=25000):
     """Return [(Pair, unit (parameter,), gain)], best first, by direct simulation where `proposed` looks best.
 
-    found: Finalists, best first; paths {Candidate: Path}. With the best of found, and with what the lowest record tells, every effect is tried. Two effects that act
-    on one contact change each other: a larger gap and a damped contact add to nothing, and together explain what neither does.
+    found: Finalists, best first; paths {Candidate: Path}. With the best of found, and with what the lowest record tells, every effect is tried, and with any of them
+    the rest of one law. Two effects that act on one contact change each other: a larger gap and a damped contact add to nothing, and together explain what neither does.
     """
     def simulated(first, pair, unit):
         path = simulate_path(bench, pair, unit, prepared.scales, null.records, first_seed=first_seed)
@@ -56,7 +56,7 @@ def pairs(bench, null, measured, found, paths, prepared, first_seed=25000):
 
     firsts, best = [*found[:FIRSTS], *told(bench, null, prepared)], set(found[0].candidate.ids)
     order = proposed(bench, null, measured, firsts, paths, prepared.nonlinear_low or not prepared.linear_stage)
-    leads = [isinstance(first, Told) or best <= set(pair.ids) for first, pair, unit in order]
+    leads = [isinstance(first, Told) or best <= set(pair.ids) or of_one_law(pair) for first, pair, unit in order]
     leading, others = ([row for row, leading in zip(order, leads, strict=True) if leading is wanted] for wanted in (True, False))
     rows = _one_each([simulated(*row) for row in leading + others[:WITHOUT_FIRST]])
     for number, row in enumerate(rows[:LEAST_PAIRS]):
@@ -95,6 +95,7 @@ def proposed(bench, null, measured, firsts, paths, hidden=False):
     two of them where it has several parameters; hidden: a linear effect of each of its simulated values. No lowest record told of it, since something else bends that,
     and a sum tells it wrong: a press that held a tube of nine times the damping was fitted better with six tenths.
 
+    The stiffness and damping of one contact multiply (k p (1 + alpha dp/dt)), so that no sum tells them: the second is tried at each of its simulated values as well.
     What two effects change is added in the compressed features; paths {Candidate: Path}.
     """
     best = {}
@@ -112,7 +113,8 @@ def proposed(bench, null, measured, firsts, paths, hidden=False):
     for rows in best.values():
         rows.sort(key=lambda row: -row[0])
         second = rows[0][2].second.effect
-        chosen += _of_each_value(rows) if hidden and second.linear and not second.measured else rows[: POINTS if len(second.parameters) > 1 else 1]
+        every = of_one_law(rows[0][2]) or hidden and second.linear and not second.measured
+        chosen += _of_each_value(rows) if every else rows[: POINTS if len(second.parameters) > 1 else 1]
     return [row[1:] for row in sorted(chosen, key=lambda row: -row[0])]
 
 
@@ -120,8 +122,14 @@ def _of_each_value(rows):
     """Return those of rows (score, first, Pair, unit), best first, that are the best of each value of the second effect."""
     best = {}
     for row in rows:
-        best.setdefault(tuple(np.round(row[3][row[2].split :], 6)), row)
+        best.setdefault((row[2].second.effect_id, *np.round(row[3][row[2].split :], 6)), row)
     return list(best.values())
+
+
+def of_one_law(pair):
+    """Return whether a Pair is a stiffness and a damping of the contact itself."""
+    quantities = {part.effect.quantity for part in (pair.first, pair.second)}
+    return len(quantities) == 2 and all(quantities)
 
 
 def least_added(gain, threshold):
