@@ -68,10 +68,8 @@ def _table(rows):
 
 
 def _cell(value):
-    if value in (True, "True"):
-        return '<td class="good">yes</td>'
-    if value in (False, "False") and not isinstance(value, (int, float)) or value is False:
-        return '<td class="bad">no</td>'
+    if str(value) in ("True", "False"):  # by its text: 1 is a number, and equals True
+        return '<td class="good">yes</td>' if str(value) == "True" else '<td class="bad">no</td>'
     if isinstance(value, (int, float)):
         return f'<td class="number">{value:.5g}</td>'
     return f"<td>{escape(str(value))}</td>"
