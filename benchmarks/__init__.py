@@ -1,1 +1,3 @@
-"""What the project costs beside what a user would otherwise pick: `make benchmark`, or `python -m benchmarks --help`."""
+"""What the project costs beside what a user would otherwise pick: `make benchmark`, or `python -m
+benchmarks --help`.
+"""

@@ -1,9 +1,10 @@
 """The project beside what a user would otherwise pick, measured in one run.
 
-    python -m benchmarks                    everything: results/benchmark/, docs/performance.md and its figure
-    python -m benchmarks --quick            the same in small, to results/benchmark_quick/, the page beside the tables
-    python -m benchmarks --page             page and figure anew from the tables of the last run
-    python -m benchmarks --peers plain --no-growth --quick      our kernel beside the plain numba loop, in seconds
+python -m benchmarks                    everything: results/benchmark/, docs/performance.md and its
+figure python -m benchmarks --quick            the same in small, to results/benchmark_quick/, the
+page beside the tables python -m benchmarks --page             page and figure anew from the tables
+of the last run python -m benchmarks --peers plain --no-growth --quick      our kernel beside the
+plain numba loop, in seconds
 """
 
 import argparse
@@ -12,7 +13,7 @@ import time
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
-from benchmarks.machine import allowed_cores  # noqa: E402
+from benchmarks.machine import allowed_cores
 
 CORES = allowed_cores()
 if hasattr(os, "sched_setaffinity") and __name__ == "__main__":
@@ -64,27 +65,56 @@ def main():
             measured, described = measure_case(case, found, clock, say)
             pairs += measured
             peers += described
-    points = [] if options.no_growth else [*growth_points(clock, options.quick, say), *two_cores(clock, CORES, say)]
+    points = (
+        []
+        if options.no_growth
+        else [*growth_points(clock, options.quick, say), *two_cores(clock, CORES, say)]
+    )
     rows = benchmark_rows(pairs) + cores_rows(points, pairs[0].case if pairs else "")
     write_csv(out / "benchmark.csv", COLUMNS, rows)
     write_csv(out / "growth.csv", GROWTH_COLUMNS, growth_rows(points))
     write_csv(out / "peers.csv", PEER_COLUMNS, peers)
-    write_csv(out / "machine.csv", MACHINE_COLUMNS, [{"what": what, "value": value} for what, value in {**_machine(), **_absences(absent)}.items()])
+    write_csv(
+        out / "machine.csv",
+        MACHINE_COLUMNS,
+        [
+            {"what": what, "value": value}
+            for what, value in {**_machine(), **_absences(absent)}.items()
+        ],
+    )
     for row in rows:
-        print(f"{row['case']:34s} {row['quantity']:26s} {row['unit']:24s} {row['ours_median']:10.4g} {row['peer']:32s} {row['peer_median']:10.4g}"
-              f"  ratio {row['ratio_median']:.3g} ({row['ratio_min']:.3g} to {row['ratio_max']:.3g})")  # fmt: skip
+        print(
+            f"{row['case']:34s} {row['quantity']:26s} {row['unit']:24s} {row['ours_median']:10.4g}"
+            f" {row['peer']:32s} {row['peer_median']:10.4g}  ratio {row['ratio_median']:.3g}"
+            f" ({row['ratio_min']:.3g} to {row['ratio_max']:.3g})"
+        )
     _present(out, docs, say)
 
 
 def _present(out, docs, say):
     """Write page and figure from the tables in a folder."""
-    rows, growth, peers, described, steps = (read_csv(out / f"{name}.csv") for name in ("benchmark", "growth", "peers", "machine", "work_precision"))
+    rows, growth, peers, described, steps = (
+        read_csv(out / f"{name}.csv")
+        for name in ("benchmark", "growth", "peers", "machine", "work_precision")
+    )
     absent = [row["value"] for row in described if row["what"].startswith(ABSENT)]
     machine = {row["what"]: row["value"] for row in described if not row["what"].startswith(ABSENT)}
     draw(typed(rows), docs / "figures" / "performance.png")
     worth = section(steps, "figures/work_precision.png") if steps else ""
-    write_page(docs / "performance.md", rows, growth, peers, absent, machine, "figures/performance.png", worth)
-    say(f"written: {out}/benchmark.csv, growth.csv, peers.csv, machine.csv, {docs}/performance.md, {docs}/figures/performance.png")
+    write_page(
+        docs / "performance.md",
+        rows,
+        growth,
+        peers,
+        absent,
+        machine,
+        "figures/performance.png",
+        worth,
+    )
+    say(
+        f"written: {out}/benchmark.csv, growth.csv, peers.csv, machine.csv, {docs}/performance.md,"
+        f" {docs}/figures/performance.png"
+    )
 
 
 def _absences(sentences):
@@ -93,14 +123,42 @@ def _absences(sentences):
 
 
 def _options():
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="short runs, two repeats, part of the growth curves")
-    parser.add_argument("--repeats", type=int, default=5, help="pairs measured per peer (default 5)")
-    parser.add_argument("--peers", nargs="+", choices=FILES, default=FILES, help="files of benchmarks/peers to measure")
-    parser.add_argument("--cases", nargs="+", type=int, choices=range(1, len(CASES) + 1), help="problems to measure, by number")
-    parser.add_argument("--no-growth", action="store_true", help="leave out the growth curves and the two processes")
-    parser.add_argument("--page", action="store_true", help="measure nothing: page and figure from the tables there are")
-    parser.add_argument("--out", help="folder of the tables, page and figure (default results/benchmark and docs)")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="short runs, two repeats, part of the growth curves"
+    )
+    parser.add_argument(
+        "--repeats", type=int, default=5, help="pairs measured per peer (default 5)"
+    )
+    parser.add_argument(
+        "--peers",
+        nargs="+",
+        choices=FILES,
+        default=FILES,
+        help="files of benchmarks/peers to measure",
+    )
+    parser.add_argument(
+        "--cases",
+        nargs="+",
+        type=int,
+        choices=range(1, len(CASES) + 1),
+        help="problems to measure, by number",
+    )
+    parser.add_argument(
+        "--no-growth", action="store_true", help="leave out the growth curves and the two processes"
+    )
+    parser.add_argument(
+        "--page",
+        action="store_true",
+        help="measure nothing: page and figure from the tables there are",
+    )
+    parser.add_argument(
+        "--out", help="folder of the tables, page and figure (default results/benchmark and docs)"
+    )
     return parser.parse_args()
 
 

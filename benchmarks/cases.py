@@ -10,12 +10,16 @@ from benchmarks.peer import PeerAbsent
 from benchmarks.problem import FREE_MODES, LOAD_N, SMALL_BASIS, never_touching, tube_problem
 
 FILES = ("plain", "jax_scan", "exudyn_modal", "scipy_ivp", "diffrax_ode", "opensees")
-EXPLICIT_S = 0.05  # simulated per timed run of an explicit method where residual vectors of 130 kHz set its step: seconds each
+# simulated per timed run of an explicit method where residual vectors of 130 kHz set its step:
+# seconds each
+EXPLICIT_S = 0.05
 
 
 @dataclass(frozen=True)
 class Case:
-    """A problem (function), the files of benchmarks/peers measured on it, and whether the load reaches the obstacles."""
+    """A problem (function), the files of benchmarks/peers measured on it, and whether the load
+    reaches the obstacles.
+    """
 
     problem: object
     files: tuple
@@ -43,7 +47,9 @@ def available(files, say=print):
 
 
 def measure_case(case, found, clock, say=print):
-    """Return ([Pair], [row of PEER_COLUMNS]): every available peer of the case checked, and those that agree measured."""
+    """Return ([Pair], [row of PEER_COLUMNS]): every available peer of the case checked, and those
+    that agree measured.
+    """
     problem = case.problem()
     chosen, rows = [], []
     for file in case.files:
@@ -58,7 +64,9 @@ def measure_case(case, found, clock, say=print):
 
 
 def _shortened(peer, file, problem):
-    """Return the peer with a shorter timed run where an explicit method must follow residual vectors."""
+    """Return the peer with a shorter timed run where an explicit method must follow residual
+    vectors.
+    """
     stiff = file in ("scipy_ivp", "diffrax_ode") and problem.config.basis.attachment_shapes
     return replace(peer, seconds=min(peer.seconds, EXPLICIT_S)) if stiff else peer
 
@@ -66,15 +74,26 @@ def _shortened(peer, file, problem):
 def _verdict(peer, problem, touches):
     """Return the Agreement of a peer, its own failures included."""
     try:
-        # Where the load never touches, the check is made under the load that does: the same model, and contact is what codes differ in.
+        # Where the load never touches, the check is made under the load that does: the same model,
+        # and contact is what codes differ in.
         return agreement(peer, problem if touches else replace(problem, load_N=LOAD_N))
     except Exception as error:  # whatever another code throws, the rest is still measured
-        return Agreement(peer.tolerance, failure=f"{type(error).__name__}: {error}".replace("\n", " "))
+        return Agreement(
+            peer.tolerance, failure=f"{type(error).__name__}: {error}".replace("\n", " ")
+        )
 
 
 def _row(problem, peer, seconds, found):
     """Return the row of PEER_COLUMNS."""
-    return {"case": problem.name, "peer": peer.name, "version": peer.version, "simulated_s": seconds,
-            "contact_fraction": contact_fraction(problem, seconds), **{name: getattr(found, name) for name in NAMES},
-            **{f"{name}_tolerance": getattr(found.tolerance, name) for name in NAMES},
-            "agrees": "yes" if found.passed else "no", "failure": found.failure, "note": peer.note}  # fmt: skip
+    return {
+        "case": problem.name,
+        "peer": peer.name,
+        "version": peer.version,
+        "simulated_s": seconds,
+        "contact_fraction": contact_fraction(problem, seconds),
+        **{name: getattr(found, name) for name in NAMES},
+        **{f"{name}_tolerance": getattr(found.tolerance, name) for name in NAMES},
+        "agrees": "yes" if found.passed else "no",
+        "failure": found.failure,
+        "note": peer.note,
+    }

@@ -1,4 +1,6 @@
-"""Two processes on two cores against one: the same batch in one process alone, then in both at once."""
+"""Two processes on two cores against one: the same batch in one process alone, then in both at
+once.
+"""
 
 import multiprocessing
 import os
@@ -12,7 +14,9 @@ BATCH, SECONDS = 8, 4.0
 
 
 def two_cores(clock, cores, say=print):
-    """Return [Growth] of one and for two processes, wall-clock s per simulated s and run; [] where there is one core only."""
+    """Return [Growth] of one and for two processes, wall-clock s per simulated s and run; [] where
+    there is one core only.
+    """
     if len(cores) < 2:
         say("two cores against one: left out, this process may use one core only")
         return []
@@ -40,8 +44,14 @@ def two_cores(clock, cores, say=print):
         for process, pipe in workers:
             pipe.close()
             process.join(10.0)
-    points = [growth_of("processes", count, problem, BATCH, SECONDS, costs, "wall") for count, costs in found.items()]
-    say("two processes: " + ", ".join(f"{point.value:g}: {min(point.ns_per_step):.0f} ns" for point in points))
+    points = [
+        growth_of("processes", count, problem, BATCH, SECONDS, costs, "wall")
+        for count, costs in found.items()
+    ]
+    say(
+        "two processes: "
+        + ", ".join(f"{point.value:g}: {min(point.ns_per_step):.0f} ns" for point in points)
+    )
     return points
 
 

@@ -17,18 +17,32 @@ def description(cores, peak_GFLOPs, vector_bits):
         "processor": _processor(),
         "cores used": f"{len(cores)} (every time but the last table's was taken on one)",
         "caches": ", ".join(_caches()) or "unknown",
-        "vector instructions": ", ".join(name for name in VECTORS if features.get(name)) or "unknown",
-        "fused multiply-adds": f"{peak_GFLOPs:.1f} GFLOP/s float64 on one core, measured with vectors of {vector_bits} bits",
+        "vector instructions": (
+            ", ".join(name for name in VECTORS if features.get(name)) or "unknown"
+        ),
+        "fused multiply-adds": (
+            f"{peak_GFLOPs:.1f} GFLOP/s float64 on one core, measured with vectors of {vector_bits}"
+            " bits"
+        ),
         "operating system": f"{platform.system()} {platform.machine()}",
-        "Python, NumPy, SciPy": f"{platform.python_version()}, {version('numpy')}, {version('scipy')}",
-        "compiler": f"numba {version('numba')}, llvmlite {version('llvmlite')}, LLVM {'.'.join(map(str, llvmlite.binding.llvm_version_info))}, "
-                    f"target {llvmlite.binding.get_host_cpu_name()}",  # fmt: skip
+        "Python, NumPy, SciPy": (
+            f"{platform.python_version()}, {version('numpy')}, {version('scipy')}"
+        ),
+        "compiler": (
+            f"numba {version('numba')}, llvmlite {version('llvmlite')}, LLVM"
+            f" {'.'.join(map(str, llvmlite.binding.llvm_version_info))}, target"
+            f" {llvmlite.binding.get_host_cpu_name()}"
+        ),
     }
 
 
 def allowed_cores():
     """Return the numbers of the cores that this process may use."""
-    return sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else list(range(os.cpu_count() or 1))
+    return (
+        sorted(os.sched_getaffinity(0))
+        if hasattr(os, "sched_getaffinity")
+        else list(range(os.cpu_count() or 1))
+    )
 
 
 def _processor():
@@ -46,7 +60,10 @@ def _caches():
     found = []
     for folder in sorted(Path("/sys/devices/system/cpu/cpu0/cache").glob("index*")):
         try:
-            level, kind, size = ((folder / name).read_text(encoding="ascii").strip() for name in ("level", "type", "size"))
+            level, kind, size = (
+                (folder / name).read_text(encoding="ascii").strip()
+                for name in ("level", "type", "size")
+            )
         except OSError:
             continue
         found.append(f"L{level}{'' if kind == 'Unified' else kind[0].lower()} {size}")

@@ -1,4 +1,6 @@
-"""The project itself, through its public path: cases in, displacement records, statistics and energies out."""
+"""The project itself, through its public path: cases in, displacement records, statistics and
+energies out.
+"""
 
 from dataclasses import dataclass
 from functools import cache
@@ -6,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from benchmarks.problem import RATE, SENSORS, STRIDE
-from vibroimpact.integrate import ENERGY_TERMS, Schedule, march_lanes
+from vibroimpact.integration.batch import ENERGY_TERMS, Schedule, march_lanes
 
 SAMPLING_HZ = RATE // STRIDE
 
@@ -33,7 +35,8 @@ def schedule_of(seconds, step=SAME_STEP):
 
 
 def march_ours(problem, forces, schedule, touching=True):
-    """Return [Lanes]: the runs of forces (step + 1, case) N, index k at step k, in as many batches as the library asks for.
+    """Return [Lanes]: the runs of forces (step + 1, case) N, index k at step k, in as many batches
+    as the library asks for.
 
     A force that ends before the schedule's last step goes on as zero.
     """
@@ -41,23 +44,34 @@ def march_ours(problem, forces, schedule, touching=True):
     cases = forces.shape[1]
     # The library's force begins one step before time 0.
     padded = np.zeros((max(schedule.steps + 2, len(forces) + 1), cases))
-    padded[1:len(forces) + 1] = forces
+    padded[1 : len(forces) + 1] = forces
     width = batch_width(cases)
-    return [_march(problem, padded[:, first:first + width], schedule, touching) for first in range(0, cases, width)]
+    return [
+        _march(problem, padded[:, first : first + width], schedule, touching)
+        for first in range(0, cases, width)
+    ]
 
 
 def displacement(problem, forces, seconds, touching=True):
-    """Return (sample, sensor) m of the first case at the SENSORS, samples every STRIDE steps from time 0 on."""
+    """Return (sample, sensor) m of the first case at the SENSORS, samples every STRIDE steps from
+    time 0 on.
+    """
     lanes = march_ours(problem, forces, schedule_of(seconds), touching)[0]
-    return lanes.displacement[0, [problem.model.sensor_names.index(name) for name in SENSORS]].T.astype(float)
+    return lanes.displacement[
+        0, [problem.model.sensor_names.index(name) for name in SENSORS]
+    ].T.astype(float)
 
 
 def contact_fraction(problem, seconds):
-    """Return the fraction of the first `seconds` in which a support bears a force, mean over supports."""
+    """Return the fraction of the first `seconds` in which a support bears a force, mean over
+    supports.
+    """
     schedule = schedule_of(seconds)
     # Statistics begin when the output filter is full: the force waits for it.
     waiting = schedule.steps - schedule.samples * STRIDE
-    lanes = march_ours(problem, np.concatenate([np.zeros(max(waiting, 0)), problem.force(seconds)]), schedule)[0]
+    lanes = march_ours(
+        problem, np.concatenate([np.zeros(max(waiting, 0)), problem.force(seconds)]), schedule
+    )[0]
     return float(np.mean(lanes.tally["contact_steps"]) / lanes.steps)
 
 
@@ -70,12 +84,20 @@ def _march(problem, forces, schedule, touching):
     cases = forces.shape[1]
     offset = np.repeat(problem.offset[:, :, None], cases, axis=2)
     gap = np.full(cases, problem.contact_gap(touching))
-    return march_lanes(problem.model, schedule, gap, offset, lambda first, count: forces[first:first + count, None, :])
+    return march_lanes(
+        problem.model,
+        schedule,
+        gap,
+        offset,
+        lambda first, count: forces[first : first + count, None, :],
+    )
 
 
 @cache
 def batch_width(cases):
-    """Return how many of `cases` the library takes in one call: all, or a half, a quarter, ... of them."""
-    import vibroimpact.kernels as kernels
+    """Return how many of `cases` the library takes in one call: all, or a half, a quarter, ... of
+    them.
+    """
+    from vibroimpact.integration import kernels
 
     return cases if cases <= kernels.LANES else batch_width(-(-cases // 2))

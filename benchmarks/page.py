@@ -1,4 +1,6 @@
-"""docs/performance.md: the tables of a benchmark in words and columns, written anew at every run."""
+"""docs/performance.md: the tables of a benchmark in words and columns, written anew at every
+run.
+"""
 
 import numpy as np
 
@@ -45,18 +47,27 @@ GROWTH = {
 
 
 def write_page(path, rows, growth, peers, absent, machine, figure, work_precision=""):
-    """Write the page: rows (table.COLUMNS), growth (table.GROWTH_COLUMNS), peers (table.PEER_COLUMNS), sentences, {what: value}, figure's path.
+    """Write the page: rows (table.COLUMNS), growth (table.GROWTH_COLUMNS), peers
+    (table.PEER_COLUMNS), sentences, {what: value}, figure's path.
 
-    Rows may come from their files, with text for numbers. work_precision: that section (work_precision_page.section).
+    Rows may come from their files, with text for numbers. work_precision: that section
+    (work_precision_page.section).
     """
     rows, growth, peers = (typed(each) for each in (rows, growth, peers))
-    parts = [INTRODUCTION, f"![Ratios of CPU time]({figure})\n", "## Machine\n", _table(("what", "on this machine"), machine.items())]
+    parts = [
+        INTRODUCTION,
+        f"![Ratios of CPU time]({figure})\n",
+        "## Machine\n",
+        _table(("what", "on this machine"), machine.items()),
+    ]
     for case in dict.fromkeys(row["case"] for row in rows):
         parts += [f"## {case}\n", _times(case, rows), _steps(case, rows), _peak(case, rows)]
     parts += ["## Growth\n", *_growth(growth), _cores(rows)] if growth else []
     parts += [work_precision] if work_precision else []
     parts += ["## What each peer solves, and whether it agrees\n", *_agreement(peers)]
-    parts += ["Not measured:\n\n" + "".join(f"- {sentence}\n" for sentence in absent)] if absent else []
+    parts += (
+        ["Not measured:\n\n" + "".join(f"- {sentence}\n" for sentence in absent)] if absent else []
+    )
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(part for part in parts if part))
 
@@ -79,7 +90,11 @@ def _ratio(row):
 
 def _span(seconds):
     """Return seconds as people say them."""
-    for limit, factor, unit in ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (float("inf"), 3600.0, "h")):
+    for limit, factor, unit in (
+        (120.0, 1.0, "s"),
+        (7200.0, 60.0, "min"),
+        (float("inf"), 3600.0, "h"),
+    ):
         if seconds < limit:
             return f"{seconds / factor:.3g} {unit}"
 
@@ -88,55 +103,128 @@ def _times(case, rows):
     """Return the table of CPU seconds and ratios of a case."""
     rows = [row for row in rows if row["case"] == case and row["unit"] == SECONDS]
     quantities = list(dict.fromkeys(row["quantity"] for row in rows))
-    lines = [(f"ours, {quantity}", cost, _span(RECORD_S * cost), *[""] * len(quantities)) for quantity, cost in _ours(rows).items()]
+    lines = [
+        (f"ours, {quantity}", cost, _span(RECORD_S * cost), *[""] * len(quantities))
+        for quantity, cost in _ours(rows).items()
+    ]
     for peer in dict.fromkeys(row["peer"] for row in rows):
         found = {row["quantity"]: row for row in rows if row["peer"] == peer}
         cost = next(iter(found.values()))["peer_median"]
-        lines.append((peer, cost, _span(RECORD_S * cost), *[_ratio(found[quantity]) if quantity in found else "" for quantity in quantities]))
-    return _table(("code", "CPU s per simulated s", f"{RECORD_S:g} s record", *(f"/ ours, {quantity}" for quantity in quantities)), lines)
+        lines.append(
+            (
+                peer,
+                cost,
+                _span(RECORD_S * cost),
+                *[_ratio(found[quantity]) if quantity in found else "" for quantity in quantities],
+            )
+        )
+    return _table(
+        (
+            "code",
+            "CPU s per simulated s",
+            f"{RECORD_S:g} s record",
+            *(f"/ ours, {quantity}" for quantity in quantities),
+        ),
+        lines,
+    )
 
 
 def _steps(case, rows):
     """Return the sentence of nanoseconds per step."""
-    rows = [row for row in rows if row["case"] == case and row["unit"] == NANOSECONDS and row["peer"] != PEAK]
-    parts = [f"ours, {quantity.partition(',')[0]}, {value:.0f}" for quantity, value in _ours(rows).items()]
-    parts += [f"{peer} {value:.0f}" for peer, value in {row["peer"]: row["peer_median"] for row in rows}.items()]
-    return f"Nanoseconds per step and run of the codes that do the same step: {'; '.join(parts)}.\n" if rows else ""
+    rows = [
+        row
+        for row in rows
+        if row["case"] == case and row["unit"] == NANOSECONDS and row["peer"] != PEAK
+    ]
+    parts = [
+        f"ours, {quantity.partition(',')[0]}, {value:.0f}"
+        for quantity, value in _ours(rows).items()
+    ]
+    parts += [
+        f"{peer} {value:.0f}"
+        for peer, value in {row["peer"]: row["peer_median"] for row in rows}.items()
+    ]
+    return (
+        f"Nanoseconds per step and run of the codes that do the same step: {'; '.join(parts)}.\n"
+        if rows
+        else ""
+    )
 
 
 def _peak(case, rows):
     """Return the sentence of the fraction of the FMA peak."""
     found = [row for row in rows if row["case"] == case and row["peer"] == PEAK]
-    shares = [[f"{100.0 * row[f'ratio_{name}']:.2g}" for name in ("median", "min", "max")] for row in found]
-    parts = [f"{middle} % ({low} to {high} %) as {row['quantity'].partition(',')[0]}" for row, (middle, low, high) in zip(found, shares, strict=True)]
-    return (f"Of this core's FMA peak ours uses {', '.join(parts)}: the step's own arithmetic would take {found[0]['peer_median']:.0f} ns "
-            "(counted in `benchmarks/peak.py`; output filter, statistics and energies do not count).\n") if found else ""  # fmt: skip
+    shares = [
+        [f"{100.0 * row[f'ratio_{name}']:.2g}" for name in ("median", "min", "max")]
+        for row in found
+    ]
+    parts = [
+        f"{middle} % ({low} to {high} %) as {row['quantity'].partition(',')[0]}"
+        for row, (middle, low, high) in zip(found, shares, strict=True)
+    ]
+    return (
+        f"Of this core's FMA peak ours uses {', '.join(parts)}: the step's own arithmetic would"
+        f" take {found[0]['peer_median']:.0f} ns (counted in `benchmarks/peak.py`; output filter,"
+        " statistics and energies do not count).\n"
+        if found
+        else ""
+    )
 
 
 def _growth(growth):
     """Yield a table per curve."""
     for varied in dict.fromkeys(row["varied"] for row in growth):
         others = [name for name in ("modes", "contact points") if name != varied]
-        lines = [(row["value"], *(row[name.replace(" ", "_")] for name in others), 100.0 * row["contact_fraction"], row["ns_per_step_median"],
-                  f"{three_digits(row['ns_per_step_min'])} to {three_digits(row['ns_per_step_max'])}")
-                 for row in growth if row["varied"] == varied]  # fmt: skip
+        lines = [
+            (
+                row["value"],
+                *(row[name.replace(" ", "_")] for name in others),
+                100.0 * row["contact_fraction"],
+                row["ns_per_step_median"],
+                f"{three_digits(row['ns_per_step_min'])} to {three_digits(row['ns_per_step_max'])}",
+            )
+            for row in growth
+            if row["varied"] == varied
+        ]
         yield f"{GROWTH.get(varied, '')}\n"
-        yield _table((varied, *others, "time in contact, %", "ns per step and run", "smallest to largest"), lines)
+        yield _table(
+            (varied, *others, "time in contact, %", "ns per step and run", "smallest to largest"),
+            lines,
+        )
 
 
 def _cores(rows):
     """Return the sentence of two processes against one."""
-    return "".join(f"Two processes on two cores do {_ratio(row)} times the work of one.\n" for row in rows if row["peer"] == "ours, one process")
+    return "".join(
+        f"Two processes on two cores do {_ratio(row)} times the work of one.\n"
+        for row in rows
+        if row["peer"] == "ours, one process"
+    )
 
 
 def _agreement(peers):
     """Yield a paragraph of what the peers solve and a table of the checks."""
     notes = {row["peer"]: (row["version"], row["note"]) for row in peers}
     yield "".join(f"- {peer} {version}: {note}.\n" for peer, (version, note) in notes.items())
-    lines = [(row["case"], row["peer"], row["simulated_s"], 100.0 * row["contact_fraction"], *(f"{row[name]:.0e}" for name in NAMES),
-              row["failure"] or row["agrees"]) for row in peers]  # fmt: skip
-    limits = [f"{name.replace('_', ' ')} (to {peers[0][f'{name}_tolerance']:.0e})" for name in NAMES] if peers else NAMES
-    yield _table(("case", "peer", "s per timed run", "time in contact, %", *limits, "agrees"), lines)
+    lines = [
+        (
+            row["case"],
+            row["peer"],
+            row["simulated_s"],
+            100.0 * row["contact_fraction"],
+            *(f"{row[name]:.0e}" for name in NAMES),
+            row["failure"] or row["agrees"],
+        )
+        for row in peers
+    ]
+    limits = (
+        [f"{name.replace('_', ' ')} (to {peers[0][f'{name}_tolerance']:.0e})" for name in NAMES]
+        if peers
+        else NAMES
+    )
+    yield _table(
+        ("case", "peer", "s per timed run", "time in contact, %", *limits, "agrees"), lines
+    )
 
 
 def _ours(rows):

@@ -19,8 +19,9 @@ def itself(problem):
 class Marcher:
     """A peer set up for one problem, started from rest at every call.
 
-    march: force (step + 1,) N, or (step + 1, batch), at k / RATE: what is timed. displacement: the same force -> (sample, sensor) m at the
-    SENSORS, every STRIDE-th step; None: march returns it (of its first run where there are several).
+    march: force (step + 1,) N, or (step + 1, batch), at k / RATE: what is timed. displacement: the
+    same force -> (sample, sensor) m at the SENSORS, every STRIDE-th step; None: march returns it
+    (of its first run where there are several).
     """
 
     march: Callable
@@ -33,10 +34,12 @@ class Marcher:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What a peer's displacement may differ by, each sensor relative to its own largest value in ours.
+    """What a peer's displacement may differ by, each sensor relative to its own largest value in
+    ours.
 
-    linear: without contact; first_impacts: up to FIRST_IMPACTS_S; rms: RMS over the whole check. Impacts multiply small differences, and the
-    records of ours have passed the output filter, which takes 1e-3 of the displacement out of an impact.
+    linear: without contact; first_impacts: up to FIRST_IMPACTS_S; rms: RMS over the whole check.
+    Impacts multiply small differences, and the records of ours have passed the output filter, which
+    takes 1e-3 of the displacement out of an impact.
     """
 
     linear: float = 1.0e-3
@@ -46,11 +49,13 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Peer:
-    """A code and how it is used. start: (problem, touching) -> Marcher; touching False: the same force, the obstacles out of reach.
+    """A code and how it is used. start: (problem, touching) -> Marcher; touching False: the same
+    force, the obstacles out of reach.
 
-    seconds: simulated per timed run; batch: runs side by side; same_step: integrates with the project's own step, so that nanoseconds per
-    step compare; centred: its obstacles cannot be moved off the tube's axis; note: what it solves, and where that differs; problem_of: problem ->
-    the problem whose answer of ours it is checked against.
+    seconds: simulated per timed run; batch: runs side by side; same_step: integrates with the
+    project's own step, so that nanoseconds per step compare; centred: its obstacles cannot be moved
+    off the tube's axis; note: what it solves, and where that differs; problem_of: problem -> the
+    problem whose answer of ours it is checked against.
     """
 
     name: str

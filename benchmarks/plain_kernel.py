@@ -1,15 +1,21 @@
-"""The plain peer: the same implicit Newmark step as a numba loop over one run, the way one would first write it."""
+"""The plain peer: the same implicit Newmark step as a numba loop over one run, the way one would
+first write it.
+"""
 
 import numpy as np
 from numba import njit
 
 
 @njit(cache=True, fastmath=True)
-def march_plain(shapes, drive_shape, coefficients, compliance, stiffness, gap, offset, drive, q, v, passes):
-    """Advance (q, v) in place through the force record drive (step + 1,); return steps with contact.
+def march_plain(
+    shapes, drive_shape, coefficients, compliance, stiffness, gap, offset, drive, q, v, passes
+):
+    """Advance (q, v) in place through the force record drive (step + 1,); return steps with
+    contact.
 
-    shapes (row, mode), rows x then y of each point; coefficients (6, mode) of newmark.newmark_map, without the
-    loss; compliance (row, row); stiffness (point,); offset (row,); ``passes`` fixed-point passes per step.
+    shapes (row, mode), rows x then y of each point; coefficients (6, mode) of newmark.newmark_map,
+    without the loss; compliance (row, row); stiffness (point,); offset (row,); ``passes``
+    fixed-point passes per step.
     """
     rows, modes = shapes.shape
     points = rows // 2
@@ -20,7 +26,11 @@ def march_plain(shapes, drive_shape, coefficients, compliance, stiffness, gap, o
         for r in range(rows):
             free[r] = 0.0
         for i in range(modes):
-            ahead = coefficients[3, i] * q[i] + coefficients[4, i] * v[i] + coefficients[5, i] * drive_shape[i] * f
+            ahead = (
+                coefficients[3, i] * q[i]
+                + coefficients[4, i] * v[i]
+                + coefficients[5, i] * drive_shape[i] * f
+            )
             for r in range(rows):
                 free[r] += shapes[r, i] * ahead
         for r in range(rows):
@@ -44,8 +54,12 @@ def march_plain(shapes, drive_shape, coefficients, compliance, stiffness, gap, o
             total = drive_shape[i] * f
             for r in range(rows):
                 total += shapes[r, i] * (force[r] + new[r])
-            velocity = coefficients[0, i] * v[i] + coefficients[1, i] * q[i] + coefficients[2, i] * total
-            q[i] = coefficients[3, i] * q[i] + coefficients[4, i] * v[i] + coefficients[5, i] * total
+            velocity = (
+                coefficients[0, i] * v[i] + coefficients[1, i] * q[i] + coefficients[2, i] * total
+            )
+            q[i] = (
+                coefficients[3, i] * q[i] + coefficients[4, i] * v[i] + coefficients[5, i] * total
+            )
             v[i] = velocity
         for r in range(rows):
             force[r] = new[r]

@@ -7,56 +7,142 @@ import numpy as np
 
 from benchmarks.problem import RATE
 
-COLUMNS = ("case", "quantity", "unit", "ours_median", "peer", "peer_median", "ratio_median", "ratio_min", "ratio_max")
-GROWTH_COLUMNS = ("varied", "value", "modes", "contact_points", "supports", "batch", "duration_s", "contact_fraction", "clock",
-                  "ns_per_step_median", "ns_per_step_min", "ns_per_step_max", "s_per_simulated_s_median")  # fmt: skip
-PEER_COLUMNS = ("case", "peer", "version", "simulated_s", "contact_fraction", "linear", "linear_tolerance",
-                "first_impacts", "first_impacts_tolerance", "rms", "rms_tolerance", "agrees", "failure", "note")  # fmt: skip
+COLUMNS = (
+    "case",
+    "quantity",
+    "unit",
+    "ours_median",
+    "peer",
+    "peer_median",
+    "ratio_median",
+    "ratio_min",
+    "ratio_max",
+)
+GROWTH_COLUMNS = (
+    "varied",
+    "value",
+    "modes",
+    "contact_points",
+    "supports",
+    "batch",
+    "duration_s",
+    "contact_fraction",
+    "clock",
+    "ns_per_step_median",
+    "ns_per_step_min",
+    "ns_per_step_max",
+    "s_per_simulated_s_median",
+)
+PEER_COLUMNS = (
+    "case",
+    "peer",
+    "version",
+    "simulated_s",
+    "contact_fraction",
+    "linear",
+    "linear_tolerance",
+    "first_impacts",
+    "first_impacts_tolerance",
+    "rms",
+    "rms_tolerance",
+    "agrees",
+    "failure",
+    "note",
+)
 MACHINE_COLUMNS = ("what", "value")
-WORDS = ("case", "quantity", "unit", "peer", "version", "agrees", "failure", "note", "varied", "clock")  # columns that hold no number
+WORDS = (
+    "case",
+    "quantity",
+    "unit",
+    "peer",
+    "version",
+    "agrees",
+    "failure",
+    "note",
+    "varied",
+    "clock",
+)  # columns that hold no number
 SECONDS, NANOSECONDS = "CPU s per simulated s", "ns per step"
 
 
 def benchmark_rows(pairs):
-    """Return [{column: value}] of Pairs: CPU seconds per simulated second; ns per step where the peer does the same step.
+    """Return [{column: value}] of Pairs: CPU seconds per simulated second; ns per step where the
+    peer does the same step.
 
-    A ratio is the peer's time over ours, pair by pair: how many times faster ours is. Against the FMA peak it is the fraction of it used.
+    A ratio is the peer's time over ours, pair by pair: how many times faster ours is. Against the
+    FMA peak it is the fraction of it used.
     """
     rows = []
     for pair in pairs:
         ours, theirs = np.array(pair.ours), np.array(pair.theirs)
         units = [(SECONDS, 1.0)] if not pair.bound else []
         units += [(NANOSECONDS, 1.0e9 / RATE)] if pair.same_step else []
-        rows += [_row(pair.case, pair.quantity, unit, factor * ours, pair.peer, factor * theirs) for unit, factor in units]
+        rows += [
+            _row(pair.case, pair.quantity, unit, factor * ours, pair.peer, factor * theirs)
+            for unit, factor in units
+        ]
     return rows
 
 
 def cores_rows(points, case):
-    """Return the row of two processes against one, from the Growth of `processes`; [] without them."""
-    by_count = {point.value: np.array(point.cost) for point in points if point.varied == "processes"}
+    """Return the row of two processes against one, from the Growth of `processes`; [] without
+    them.
+    """
+    by_count = {
+        point.value: np.array(point.cost) for point in points if point.varied == "processes"
+    }
     if set(by_count) != {1, 2}:
         return []
-    return [_row(case, "two processes on two cores", "wall s per simulated s", by_count[2], "ours, one process", by_count[1])]
+    return [
+        _row(
+            case,
+            "two processes on two cores",
+            "wall s per simulated s",
+            by_count[2],
+            "ours, one process",
+            by_count[1],
+        )
+    ]
 
 
 def growth_rows(points):
     """Return [{column: value}] of Growth points."""
-    return [{"varied": point.varied, "value": point.value, "modes": point.modes, "contact_points": point.contact_points,
-             "supports": point.supports, "batch": point.batch, "duration_s": point.duration_s, "contact_fraction": point.contact_fraction,
-             "clock": point.clock, "ns_per_step_median": float(np.median(point.ns_per_step)), "ns_per_step_min": float(min(point.ns_per_step)),
-             "ns_per_step_max": float(max(point.ns_per_step)), "s_per_simulated_s_median": float(np.median(point.cost))}
-            for point in points]  # fmt: skip
+    return [
+        {
+            "varied": point.varied,
+            "value": point.value,
+            "modes": point.modes,
+            "contact_points": point.contact_points,
+            "supports": point.supports,
+            "batch": point.batch,
+            "duration_s": point.duration_s,
+            "contact_fraction": point.contact_fraction,
+            "clock": point.clock,
+            "ns_per_step_median": float(np.median(point.ns_per_step)),
+            "ns_per_step_min": float(min(point.ns_per_step)),
+            "ns_per_step_max": float(max(point.ns_per_step)),
+            "s_per_simulated_s_median": float(np.median(point.cost)),
+        }
+        for point in points
+    ]
 
 
 def write_csv(path, columns, rows):
-    """Write rows ({column: value}) as CSV; numbers with six digits. Raises ValueError for a row with other columns."""
+    """Write rows ({column: value}) as CSV; numbers with six digits. Raises ValueError for a row
+    with other columns.
+    """
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         for row in rows:
             if set(row) != set(columns):
                 raise ValueError(f"{path}: columns {sorted(row)}, expected {sorted(columns)}")
-            writer.writerow({name: f"{value:.6g}" if isinstance(value, float) else value for name, value in row.items()})
+            writer.writerow(
+                {
+                    name: f"{value:.6g}" if isinstance(value, float) else value
+                    for name, value in row.items()
+                }
+            )
 
 
 def read_csv(path):
@@ -68,8 +154,16 @@ def read_csv(path):
 
 
 def typed(rows):
-    """Return rows with text that is a number, but for versions and names, as a number: whole ones as int."""
-    return [{name: value if name in WORDS or not isinstance(value, str) else _number(value) for name, value in row.items()} for row in rows]
+    """Return rows with text that is a number, but for versions and names, as a number: whole ones
+    as int.
+    """
+    return [
+        {
+            name: value if name in WORDS or not isinstance(value, str) else _number(value)
+            for name, value in row.items()
+        }
+        for row in rows
+    ]
 
 
 def _number(text):

@@ -6,9 +6,14 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from vibroimpact.figures.style import BLUE, GREY, RED
 
 # scheme -> (colour, marker, label, where the number of steps stands beside a point, in points)
-STYLES = {"newmark": (BLUE, "o", "Newmark, average acceleration", (5, 4), "left"),
-          "exact": (RED, "s", "exact modal step, force linear in the step", (-5, -10), "right")}  # fmt: skip
-TITLES = {"R3": "R3, contact times: error / length of a contact", "R11": "R11, statistics: against the exact law"}
+STYLES = {
+    "newmark": (BLUE, "o", "Newmark, average acceleration", (5, 4), "left"),
+    "exact": (RED, "s", "exact modal step, force linear in the step", (-5, -10), "right"),
+}
+TITLES = {
+    "R3": "R3, contact times: error / length of a contact",
+    "R11": "R11, statistics: against the exact law",
+}
 UNSEEN = 2.0  # standard errors of the seeds below which no difference is told
 
 
@@ -32,11 +37,26 @@ def _panel(axis, rows):
         cost = [1e3 * row["cpu_s_per_simulated_s"] for row in own]
         axis.plot(cost, [row["error"] for row in own], color=colour, marker=marker, label=label)
         for row, at in zip(own, cost, strict=True):
-            axis.annotate(f"{row['steps_per_second'] / 1000:g}", (at, row["error"]), beside, textcoords="offset points", ha=side, fontsize=7, color=colour)
+            axis.annotate(
+                f"{row['steps_per_second'] / 1000:g}",
+                (at, row["error"]),
+                beside,
+                textcoords="offset points",
+                ha=side,
+                fontsize=7,
+                color=colour,
+            )
     floor = UNSEEN * max(row["standard_error"] for row in rows)
     low = 0.3 * min(row["error"] for row in rows)
     if floor > 0.0:
-        axis.axhspan(low, floor, color=GREY, alpha=0.2, linewidth=0, label="below two standard errors of the seeds: nothing told")
+        axis.axhspan(
+            low,
+            floor,
+            color=GREY,
+            alpha=0.2,
+            linewidth=0,
+            label="below two standard errors of the seeds: nothing told",
+        )
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_ylim(low, 3.0 * max(floor, *(row["error"] for row in rows)))

@@ -21,13 +21,40 @@ work instead of 0.2 %) and the very tips of force and stress peaks, which a long
 
 
 def section(rows, figure):
-    """Return the Markdown of rows (work_precision.COLUMNS, numbers or their text) and the figure's path."""
-    lines = ["problem", "steps per second", "Newmark: error", "CPU ms per simulated s", "exact step: error", "CPU ms per simulated s", "standard error"]
+    """Return the Markdown of rows (work_precision.COLUMNS, numbers or their text) and the figure's
+    path.
+    """
+    lines = [
+        "problem",
+        "steps per second",
+        "Newmark: error",
+        "CPU ms per simulated s",
+        "exact step: error",
+        "CPU ms per simulated s",
+        "standard error",
+    ]
     table = [lines, ["---"] * len(lines)]
     for case, rate in dict.fromkeys((row["case"], float(row["steps_per_second"])) for row in rows):
-        found = {row["scheme"]: row for row in rows if (row["case"], float(row["steps_per_second"])) == (case, rate)}
-        cells = [text for scheme in ("newmark", "exact")
-                 for text in (f"{float(found[scheme]['error']):.2g}", three_digits(1e3 * float(found[scheme]["cpu_s_per_simulated_s"])))]  # fmt: skip
+        found = {
+            row["scheme"]: row
+            for row in rows
+            if (row["case"], float(row["steps_per_second"])) == (case, rate)
+        }
+        cells = [
+            text
+            for scheme in ("newmark", "exact")
+            for text in (
+                f"{float(found[scheme]['error']):.2g}",
+                three_digits(1e3 * float(found[scheme]["cpu_s_per_simulated_s"])),
+            )
+        ]
         spread = float(found["exact"]["standard_error"])
         table.append([case, f"{rate:.0f}", *cells, f"{spread:.1g}" if spread else ""])
-    return "\n".join([TEXT, f"![Error against CPU time]({figure})\n", *("| " + " | ".join(line) + " |" for line in table), ""])
+    return "\n".join(
+        [
+            TEXT,
+            f"![Error against CPU time]({figure})\n",
+            *("| " + " | ".join(line) + " |" for line in table),
+            "",
+        ]
+    )

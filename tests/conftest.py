@@ -3,13 +3,15 @@
 import os
 from pathlib import Path
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # as the workflow's jobs have it: threads on small matrices cost more than they bring
+os.environ.setdefault(
+    "OMP_NUM_THREADS", "1"
+)  # as the workflow's jobs have it: threads on small matrices cost more than they bring
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import pytest  # noqa: E402
+import pytest
 
-from vibroimpact.config import load_config  # noqa: E402
-from vibroimpact.reduction import build_model  # noqa: E402
+from vibroimpact.config.reading import load_config
+from vibroimpact.reduction.reduced_model import build_model
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 

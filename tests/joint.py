@@ -1,4 +1,6 @@
-"""Three masses in a row with a joint between the last two, under a multisine: an integrator of its own, for tests of the completion."""
+"""Three masses in a row with a joint between the last two, under a multisine: an integrator of its
+own, for tests of the completion.
+"""
 
 import numpy as np
 
@@ -16,7 +18,9 @@ LEVELS = (0.5, 2.0, 4.0, 6.0)  # N RMS
 
 
 def matrices():
-    """(M, C, K) of the three masses, (3, 3) each, the joint's linear spring and damper among them."""
+    """(M, C, K) of the three masses, (3, 3) each, the joint's linear spring and damper among
+    them.
+    """
     rows = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]])
     return np.diag(MASS), rows.T @ np.diag(DAMPERS) @ rows, rows.T @ np.diag(SPRINGS) @ rows
 
@@ -25,19 +29,26 @@ def multisine(seed=3):
     """(time,) N of unit RMS: every line of BAND with a random phase, one period."""
     frequency = np.fft.rfftfreq(PERIOD, 1.0 / RATE)
     inside = (frequency >= BAND[0]) & (frequency <= BAND[1])
-    lines = np.where(inside, np.exp(2j * np.pi * np.random.default_rng(seed).uniform(size=frequency.size)), 0.0)
+    lines = np.where(
+        inside, np.exp(2j * np.pi * np.random.default_rng(seed).uniform(size=frequency.size)), 0.0
+    )
     signal = np.fft.irfft(lines, PERIOD)
     return signal / signal.std()
 
 
 def simulate(periods=4):
-    """{law: (force (level, time), acceleration (level, 3, time))} over some periods from rest, by Runge-Kutta, all laws side by side.
+    """{law: (force (level, time), acceleration (level, 3, time))} over some periods from rest, by
+    Runge-Kutta, all laws side by side.
 
-    The slider is a state of its own with the rate STICK * (relative velocity), or nothing while it slips outwards.
+    The slider is a state of its own with the rate STICK * (relative velocity), or nothing while it
+    slips outwards.
     """
     mass, damping, stiffness = matrices()
     inverse = np.linalg.inv(mass)
-    fine = np.fft.irfft(np.pad(np.fft.rfft(multisine()) * 2 * SUBSTEPS, (0, PERIOD * SUBSTEPS - PERIOD // 2)), PERIOD * 2 * SUBSTEPS)
+    fine = np.fft.irfft(
+        np.pad(np.fft.rfft(multisine()) * 2 * SUBSTEPS, (0, PERIOD * SUBSTEPS - PERIOD // 2)),
+        PERIOD * 2 * SUBSTEPS,
+    )
     loads = np.tile(LEVELS, len(LAWS))
     kind = np.repeat(np.arange(len(LAWS)), len(LEVELS))
 
@@ -70,4 +81,7 @@ def simulate(periods=4):
             state = state + step / 6.0 * (a + 2.0 * b + 2.0 * c + d)
             state[6] = np.clip(state[6], -SLIP, SLIP)
     force = np.tile(multisine(), periods) * np.array(LEVELS)[:, None]
-    return {name: (force, kept[:, :, kind == number].transpose(2, 1, 0)) for number, name in enumerate(LAWS)}
+    return {
+        name: (force, kept[:, :, kind == number].transpose(2, 1, 0))
+        for number, name in enumerate(LAWS)
+    }

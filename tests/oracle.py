@@ -1,14 +1,17 @@
-"""Slow twins: the same quantities from their definitions, for the compiled code to be held against."""
+"""Slow twins: the same quantities from their definitions, for the compiled code to be held
+against.
+"""
 
 import numpy as np
 from scipy.signal import cont2discrete
 
 
 def newmark_contact(model, gap, offset, drive, dt):
-    """Contact-point displacement (step, contact_point, 2) and force on the structure (step, contact_point, 2).
+    """Contact-point displacement (step, contact_point, 2) and force on the structure (step,
+    contact_point, 2).
 
-    Textbook Newmark average acceleration in (q, v, a), dense, contact forces iterated to round-off at every step.
-    gap m; offset (contact_point, 2) m; drive (step + 1, force_channel) N; from rest.
+    Textbook Newmark average acceleration in (q, v, a), dense, contact forces iterated to round-off
+    at every step. gap m; offset (contact_point, 2) m; drive (step + 1, force_channel) N; from rest.
     """
     shapes = model.contact_shapes.reshape(model.omega.size, -1)
     q, v = np.zeros(model.omega.size), np.zeros(model.omega.size)
@@ -34,9 +37,22 @@ def newmark_contact(model, gap, offset, drive, dt):
 
 
 def exact_contact(model, gap, offset, drive, dt):
-    """Like newmark_contact for the exact modal step: the ramp-invariant discrete system of scipy.signal, mode by mode."""
-    systems = [cont2discrete((np.array([[0.0, 1.0], [-(w**2), -c]]), np.array([[0.0], [1.0]]), np.eye(2), np.zeros((2, 1))), dt, "foh")
-               for w, c in zip(model.omega, model.damping, strict=True)]  # fmt: skip
+    """Like newmark_contact for the exact modal step: the ramp-invariant discrete system of
+    scipy.signal, mode by mode.
+    """
+    systems = [
+        cont2discrete(
+            (
+                np.array([[0.0, 1.0], [-(w**2), -c]]),
+                np.array([[0.0], [1.0]]),
+                np.eye(2),
+                np.zeros((2, 1)),
+            ),
+            dt,
+            "foh",
+        )
+        for w, c in zip(model.omega, model.damping, strict=True)
+    ]
     A, B, through = (np.array([system[index] for system in systems]) for index in (0, 1, 3))
     B, through = B[..., 0], through[..., 0]
     shapes = model.contact_shapes.reshape(model.omega.size, -1)
@@ -61,7 +77,9 @@ def exact_contact(model, gap, offset, drive, dt):
 
 
 def radial_force(model, gap, offset, displacement):
-    """Unilateral force of a circular obstacle on the structure (contact_point, 2), displacement likewise."""
+    """Unilateral force of a circular obstacle on the structure (contact_point, 2), displacement
+    likewise.
+    """
     out = np.zeros_like(displacement)
     for p, stiffness in enumerate(model.contact_stiffness):
         arm = displacement[p] - offset[p] - model.centre_offset[p]

@@ -1,8 +1,10 @@
-"""Two masses with a law between them, driven at the upper one: simulated by Runge-Kutta, as campaigns that a user would bring."""
+"""Two masses with a law between them, driven at the upper one: simulated by Runge-Kutta, as
+campaigns that a user would bring.
+"""
 
 import numpy as np
 
-from vibroimpact.campaign import Channel, Level, campaign_dataset
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 
 MASS = (2.0, 1.0)  # kg
 GROUND, JOINT = (1.2e4, 8.0), (8.0e3, 6.0)  # N/m and N s/m
@@ -32,22 +34,33 @@ def _bouc_wen(w, speed, z):
     return z, 4.0e3 * speed - 1.2e3 * np.abs(speed) * z + 0.4e3 * speed * np.abs(z)
 
 
-LAWS = {"nothing": _nothing, "cubic": _cubic, "friction": _friction, "bouc_wen": _bouc_wen}  # law(relative displacement, speed, state) -> force, rate of the state
+LAWS = {
+    "nothing": _nothing,
+    "cubic": _cubic,
+    "friction": _friction,
+    "bouc_wen": _bouc_wen,
+}  # law(relative displacement, speed, state) -> force, rate of the state
 
 
 def force_of(periodic, periods, seed=5):
-    """(2 * SUBSTEPS * time,) N of unit RMS: every line of BAND with a random phase, or Gaussian without a period."""
+    """(2 * SUBSTEPS * time,) N of unit RMS: every line of BAND with a random phase, or Gaussian
+    without a period.
+    """
     draw = np.random.default_rng(seed)
     size = PERIOD if periodic else PERIOD * periods
     frequency = np.fft.rfftfreq(size, 1.0 / RATE)
-    lines = np.exp(2j * np.pi * draw.uniform(size=frequency.size)) * (1.0 if periodic else draw.rayleigh(size=frequency.size))
+    lines = np.exp(2j * np.pi * draw.uniform(size=frequency.size)) * (
+        1.0 if periodic else draw.rayleigh(size=frequency.size)
+    )
     lines[(frequency < BAND[0]) | (frequency > BAND[1])] = 0.0
     fine = np.fft.irfft(np.pad(lines, (0, size * SUBSTEPS - size // 2)), size * 2 * SUBSTEPS)
     return np.tile(fine / fine.std(), periods if periodic else 1)
 
 
 def simulate(law, force, levels=LEVELS):
-    """(force (level, time), acceleration (level, 2, time)) from rest under force (2 * SUBSTEPS * time,) times each level."""
+    """(force (level, time), acceleration (level, 2, time)) from rest under force (2 * SUBSTEPS *
+    time,) times each level.
+    """
     loads, step = np.array(levels), 1.0 / (RATE * SUBSTEPS)
 
     def rate(state, push):
@@ -75,14 +88,33 @@ def simulate(law, force, levels=LEVELS):
 
 
 def campaign(law, periodic=True, periods=4, levels=LEVELS, splits=SPLITS, turned=False):
-    """The campaign Dataset of a law, without its period stated. turned: the sensor at the drive counts against the force."""
+    """The campaign Dataset of a law, without its period stated. turned: the sensor at the drive
+    counts against the force.
+    """
     force, response = simulate(law, force_of(periodic, periods), levels)
-    response = response + NOISE * response[0, 1].std() * np.random.default_rng(1).standard_normal(response.shape)
+    response = response + NOISE * response[0, 1].std() * np.random.default_rng(1).standard_normal(
+        response.shape
+    )
     if turned:
         response[:, 0] *= -1.0
     up = (0.0, 0.0, 1.0)
-    places = (("upper", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0) if turned else up), ("lower", (0.0, 0.0, -0.5), up))
+    places = (
+        ("upper", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0) if turned else up),
+        ("lower", (0.0, 0.0, -0.5), up),
+    )
     channels = [Channel(*place, "m s-2", "acceleration") for place in places]
     drive = Channel("shaker", (0.0, 0.0, 0.0), up, "N", "force")
-    records = [Level(f"{level:g} N", np.nan, 0, split) for level, split in zip(levels, splits, strict=True)]
-    return campaign_dataset(force[:, None], response, channels, [drive], records, RATE, antialias="none", start_up="rest", source="two masses, simulated")
+    records = [
+        Level(f"{level:g} N", np.nan, 0, split) for level, split in zip(levels, splits, strict=True)
+    ]
+    return campaign_dataset(
+        force[:, None],
+        response,
+        channels,
+        [drive],
+        records,
+        RATE,
+        antialias="none",
+        start_up="rest",
+        source="two masses, simulated",
+    )

@@ -19,7 +19,10 @@ def peers():
     except ImportError as error:
         raise PeerAbsent(f"diffrax cannot be imported ({error}): {INSTALL}") from error
     jax.config.update("jax_enable_x64", True)
-    note = "the same reduced model and law; step chosen by the solver, rtol 1e-6, the force linear between the steps of ours"
+    note = (
+        "the same reduced model and law; step chosen by the solver, rtol 1e-6, the force linear"
+        " between the steps of ours"
+    )
     return [Peer("diffrax Tsit5", diffrax.__version__, note, start, 0.1, Tolerance())]
 
 
@@ -30,9 +33,14 @@ def start(problem, touching=True):
     import jax.numpy as jnp
 
     model, modes = problem.model, problem.model.modes
-    square, damping, drive = jnp.asarray(model.omega**2), jnp.asarray(model.damping), jnp.asarray(model.drive_shapes[:, 0])
-    shapes, sensors = jnp.asarray(model.contact_shapes.reshape(model.modes, -1).T), jnp.asarray(problem.sensor_shapes)
-    stiffness, offset, gap = jnp.asarray(model.contact_stiffness), jnp.asarray(problem.offset.ravel()), problem.contact_gap(touching)
+    square = jnp.asarray(model.omega**2)
+    damping = jnp.asarray(model.damping)
+    drive = jnp.asarray(model.drive_shapes[:, 0])
+    shapes = jnp.asarray(model.contact_shapes.reshape(model.modes, -1).T)
+    sensors = jnp.asarray(problem.sensor_shapes)
+    stiffness = jnp.asarray(model.contact_stiffness)
+    offset = jnp.asarray(problem.offset.ravel())
+    gap = problem.contact_gap(touching)
 
     def slope(t, y, force):
         q, v = y[:modes], y[modes:]
@@ -42,15 +50,29 @@ def start(problem, touching=True):
         d = (shapes @ q - offset).reshape(-1, 2)
         distance = jnp.sqrt(jnp.sum(d * d, axis=1))
         pull = jnp.where(distance > gap, stiffness * (gap / jnp.maximum(distance, gap) - 1.0), 0.0)
-        return jnp.concatenate([v, drive * f - damping * v - square * q + shapes.T @ (pull[:, None] * d).ravel()])
+        return jnp.concatenate(
+            [v, drive * f - damping * v - square * q + shapes.T @ (pull[:, None] * d).ravel()]
+        )
 
     def run(force):
         last = (force.size - 1) / RATE
         times = jnp.minimum(jnp.arange(0, force.size, STRIDE) / RATE, last)
-        control = diffrax.PIDController(rtol=RELATIVE, atol=jnp.repeat(jnp.asarray(ABSOLUTE), modes))
+        control = diffrax.PIDController(
+            rtol=RELATIVE, atol=jnp.repeat(jnp.asarray(ABSOLUTE), modes)
+        )
         saved = diffrax.SaveAt(ts=times, fn=lambda t, y, args: y[:modes] @ sensors)
-        found = diffrax.diffeqsolve(diffrax.ODETerm(slope), diffrax.Tsit5(), 0.0, last, FIRST_STEP_S, jnp.zeros(2 * modes), args=force, saveat=saved,
-                                    stepsize_controller=control, max_steps=MOST_STEPS)  # fmt: skip
+        found = diffrax.diffeqsolve(
+            diffrax.ODETerm(slope),
+            diffrax.Tsit5(),
+            0.0,
+            last,
+            FIRST_STEP_S,
+            jnp.zeros(2 * modes),
+            args=force,
+            saveat=saved,
+            stepsize_controller=control,
+            max_steps=MOST_STEPS,
+        )
         return found.ys
 
     return Marcher(partial(_march, jax.jit(run)))

@@ -1,4 +1,6 @@
-"""Exudyn: its general second-order object on the modes, Newmark with modified Newton, force and contact in a user function compiled by numba."""
+"""Exudyn: its general second-order object on the modes, Newmark with modified Newton, force and
+contact in a user function compiled by numba.
+"""
 
 import sys
 from contextlib import redirect_stdout
@@ -10,28 +12,43 @@ from numba import njit
 from benchmarks.peer import INSTALL, Marcher, Peer, PeerAbsent, Tolerance
 from benchmarks.problem import RATE, STRIDE
 
-NEWTON = 1.0e-5  # relative and absolute tolerance of the residual, both of the size that Exudyn starts from (1e-8 costs a quarter more)
+# relative and absolute tolerance of the residual, both of the size that Exudyn starts from (1e-8
+# costs a quarter more)
+NEWTON = 1.0e-5
 
 
 def peers():
     """Return [Peer]. Raises PeerAbsent."""
     exudyn = _exudyn()
-    note = "the same reduced model, step and law, the matrices sparse (its fastest setting here); coordinates kept every 25 steps"
-    return [Peer("Exudyn, modal", exudyn.__version__, note, start, 0.2, Tolerance(), same_step=True)]
+    note = (
+        "the same reduced model, step and law, the matrices sparse (its fastest setting here);"
+        " coordinates kept every 25 steps"
+    )
+    return [
+        Peer("Exudyn, modal", exudyn.__version__, note, start, 0.2, Tolerance(), same_step=True)
+    ]
 
 
 def start(problem, touching=True):
     """Return the Marcher; it builds the system anew at every call (milliseconds)."""
     model = problem.model
-    constants = (np.ascontiguousarray(model.contact_shapes.reshape(model.modes, -1).T), model.drive_shapes[:, 0].copy(),
-                 model.contact_stiffness, problem.contact_gap(touching), problem.offset.ravel())  # fmt: skip
+    constants = (
+        np.ascontiguousarray(model.contact_shapes.reshape(model.modes, -1).T),
+        model.drive_shapes[:, 0].copy(),
+        model.contact_stiffness,
+        problem.contact_gap(touching),
+        problem.offset.ravel(),
+    )
 
     def march(force):
         def push(_system, t, _number, q, _velocity):
             return _modal_force(t, np.asarray(q), force, *constants)
 
         system, sensor = _system(_exudyn(), model, push)
-        system.SolveDynamic(_settings(_exudyn(), len(force) - 1), solverType=_exudyn().DynamicSolverType.GeneralizedAlpha)
+        system.SolveDynamic(
+            _settings(_exudyn(), len(force) - 1),
+            solverType=_exudyn().DynamicSolverType.GeneralizedAlpha,
+        )
         return system.GetSensorStoredData(sensor)[:, 1:] @ problem.sensor_shapes
 
     return Marcher(march)
@@ -42,7 +59,7 @@ def _exudyn():
     try:
         with redirect_stdout(StringIO()):
             import exudyn
-            import exudyn.itemInterface  # noqa: F401
+            import exudyn.itemInterface
     except ImportError as error:
         raise PeerAbsent(f"Exudyn cannot be imported ({error}): {INSTALL}") from error
     return exudyn
@@ -52,12 +69,30 @@ def _system(exudyn, model, push):
     """Return (system, sensor number): q'' + damping q' + omega² q = push(...)."""
     items, rest = exudyn.itemInterface, np.zeros(model.modes)
     system = exudyn.SystemContainer().AddSystem()
-    node = system.AddNode(items.NodeGenericODE2(referenceCoordinates=rest, initialCoordinates=rest, initialCoordinates_t=rest,
-                                                numberOfODE2Coordinates=model.modes))  # fmt: skip
-    system.AddObject(items.ObjectGenericODE2(
-        nodeNumbers=[node], massMatrix=_diagonal(exudyn, np.ones(model.modes)), stiffnessMatrix=_diagonal(exudyn, model.omega**2),
-        dampingMatrix=_diagonal(exudyn, model.damping), forceUserFunction=push))  # fmt: skip
-    sensor = system.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=exudyn.OutputVariableType.Coordinates))
+    node = system.AddNode(
+        items.NodeGenericODE2(
+            referenceCoordinates=rest,
+            initialCoordinates=rest,
+            initialCoordinates_t=rest,
+            numberOfODE2Coordinates=model.modes,
+        )
+    )
+    system.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=[node],
+            massMatrix=_diagonal(exudyn, np.ones(model.modes)),
+            stiffnessMatrix=_diagonal(exudyn, model.omega**2),
+            dampingMatrix=_diagonal(exudyn, model.damping),
+            forceUserFunction=push,
+        )
+    )
+    sensor = system.AddSensor(
+        items.SensorNode(
+            nodeNumber=node,
+            storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Coordinates,
+        )
+    )
     system.Assemble()
     return system, sensor
 
@@ -72,7 +107,9 @@ def _diagonal(exudyn, values):
 
 
 def _settings(exudyn, steps):
-    """Return the settings of a run: average acceleration, the Jacobian of the modes alone, no files, no printing."""
+    """Return the settings of a run: average acceleration, the Jacobian of the modes alone, no
+    files, no printing.
+    """
     settings = exudyn.SimulationSettings()
     march = settings.timeIntegration
     march.numberOfSteps, march.endTime, march.verboseMode = steps, steps / RATE, 0

@@ -18,11 +18,24 @@ def peers():
     except ImportError as error:
         raise PeerAbsent(f"JAX cannot be imported ({error}): {INSTALL}") from error
     jax.config.update("jax_enable_x64", True)
-    note = ("the same reduced model, step and law in float64 on one core; three displacements kept, no statistics or energies; a step costs the "
-            "same with and without contact")  # fmt: skip
+    note = (
+        "the same reduced model, step and law in float64 on one core; three displacements kept, no"
+        " statistics or energies; a step costs the same with and without contact"
+    )
     tolerance = Tolerance()
-    return [Peer("JAX lax.scan", jax.__version__, note, start, 1.0, tolerance, same_step=True),
-            Peer(f"JAX lax.scan, batch of {BATCH}", jax.__version__, note, start, 0.02, tolerance, same_step=True, batch=BATCH)]
+    return [
+        Peer("JAX lax.scan", jax.__version__, note, start, 1.0, tolerance, same_step=True),
+        Peer(
+            f"JAX lax.scan, batch of {BATCH}",
+            jax.__version__,
+            note,
+            start,
+            0.02,
+            tolerance,
+            same_step=True,
+            batch=BATCH,
+        ),
+    ]
 
 
 def start(problem, touching=True):
@@ -35,7 +48,9 @@ def start(problem, touching=True):
     shapes = jnp.asarray(model.contact_shapes.reshape(model.modes, -1).T)
     compliance = (shapes * c5) @ shapes.T
     drive, sensors = jnp.asarray(model.drive_shapes[:, 0]), jnp.asarray(problem.sensor_shapes)
-    stiffness, offset, gap = jnp.asarray(model.contact_stiffness), jnp.asarray(problem.offset.ravel()), problem.contact_gap(touching)
+    stiffness = jnp.asarray(model.contact_stiffness)
+    offset = jnp.asarray(problem.offset.ravel())
+    gap = problem.contact_gap(touching)
 
     def contact(u):
         d = (u - offset).reshape(-1, 2)

@@ -1,4 +1,6 @@
-"""OpenSees: beam elements with consistent mass and gap springs, Newmark, modified Newton on a matrix that is factorised once."""
+"""OpenSees: beam elements with consistent mass and gap springs, Newmark, modified Newton on a
+matrix that is factorised once.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -7,12 +9,21 @@ import numpy as np
 
 from benchmarks.peer import INSTALL, Marcher, Peer, PeerAbsent, Tolerance
 from benchmarks.problem import RATE, SMALL_BASIS, STRIDE, tube_problem
-from vibroimpact.validation import judges_opensees
-from vibroimpact.validation.judges_presence import JudgeAbsent, opensees
+from vibroimpact.validation.judges import opensees as judges_opensees
+from vibroimpact.validation.judges.presence import JudgeAbsent, opensees
 
 MASS_PER_S, STIFFNESS_S = 1.0, 2.0e-6  # Rayleigh: modal damping would fill OpenSees' matrices
-MESH = {"structure.mesh.elements_per_span": 5, "structure.mesh.elements_per_bend": 20}  # 282 equations, few for the tube's 0 to 7500 Hz
-RAYLEIGH = {"damping": {"kind": "rayleigh", "mass_coefficient_per_s": MASS_PER_S, "stiffness_coefficient_s": STIFFNESS_S}}
+MESH = {
+    "structure.mesh.elements_per_span": 5,
+    "structure.mesh.elements_per_bend": 20,
+}  # 282 equations, few for the tube's 0 to 7500 Hz
+RAYLEIGH = {
+    "damping": {
+        "kind": "rayleigh",
+        "mass_coefficient_per_s": MASS_PER_S,
+        "stiffness_coefficient_s": STIFFNESS_S,
+    }
+}
 LAST_INCREMENT_M, NEWTON_PASSES = 1.0e-9, 50
 ALONG, ACROSS = 1, 2  # OpenSees' numbers of x and y
 
@@ -22,12 +33,29 @@ def peers():
     try:
         opensees()
     except JudgeAbsent as error:
-        raise PeerAbsent(f"{str(error).partition(':')[0]}: {INSTALL}; its compiled part needs Python 3.11 on Linux") from error
+        raise PeerAbsent(
+            f"{str(error).partition(':')[0]}: {INSTALL}; its compiled part needs Python 3.11 on"
+            " Linux"
+        ) from error
     from importlib.metadata import version
 
-    note = ("finite elements, 49 nodes, 282 equations, Rayleigh damping; gap springs along x and y, a square hole in place of a round one (the "
-            "same while the tube moves across its plane, as here); the matrix factorised once, three times faster than its plain Newton")  # fmt: skip
-    return [Peer("OpenSees, beams", version("openseespy"), note, start, 0.05, Tolerance(), centred=True, problem_of=twin)]
+    note = (
+        "finite elements, 49 nodes, 282 equations, Rayleigh damping; gap springs along x and y, a"
+        " square hole in place of a round one (the same while the tube moves across its plane, as"
+        " here); the matrix factorised once, three times faster than its plain Newton"
+    )
+    return [
+        Peer(
+            "OpenSees, beams",
+            version("openseespy"),
+            note,
+            start,
+            0.05,
+            Tolerance(),
+            centred=True,
+            problem_of=twin,
+        )
+    ]
 
 
 def twin(problem):
@@ -59,7 +87,9 @@ def start(problem, touching=True):
 
 
 def _gap_springs(ops, nodes, support, gap):
-    """Two gap springs back to back along x and along y at every contact point; the peer's obstacles are centred."""
+    """Two gap springs back to back along x and along y at every contact point; the peer's obstacles
+    are centred.
+    """
     stiffness = support.stiffness_N_per_m / support.points
     for number, node in enumerate(nodes.contact):
         above, below = 2 * number + 1001, 2 * number + 1002

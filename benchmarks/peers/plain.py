@@ -1,4 +1,6 @@
-"""The plain peer: the same step as a numba loop over one run, the way one would first write it (benchmarks/plain_kernel.py)."""
+"""The plain peer: the same step as a numba loop over one run, the way one would first write it
+(benchmarks/plain_kernel.py).
+"""
 
 import numba
 import numpy as np
@@ -14,16 +16,22 @@ PASSES = 3
 def peers():
     """Return [Peer]; numba is always there."""
     note = "the same reduced model, step and law; no output filter, statistics or energies"
-    return [Peer("plain numba loop", numba.__version__, note, start, 1.0, Tolerance(), same_step=True)]
+    return [
+        Peer("plain numba loop", numba.__version__, note, start, 1.0, Tolerance(), same_step=True)
+    ]
 
 
 def start(problem, touching=True):
     """Return the Marcher."""
+
     def march(force):
         return march_to_end(problem, force, touching)[0]
 
     def displacement(force):
-        ends = [march_to_end(problem, force[:last + 1], touching)[0] for last in range(0, len(force), STRIDE)]
+        ends = [
+            march_to_end(problem, force[: last + 1], touching)[0]
+            for last in range(0, len(force), STRIDE)
+        ]
         return np.array(ends) @ problem.sensor_shapes
 
     return Marcher(march, displacement)
@@ -36,6 +44,17 @@ def march_to_end(problem, force, touching=True, passes=PASSES):
     shapes = np.ascontiguousarray(model.contact_shapes.reshape(model.modes, -1).T)
     compliance = (shapes * coefficients[5]) @ shapes.T
     q, v = np.zeros(model.modes), np.zeros(model.modes)
-    march_plain(shapes, model.drive_shapes[:, 0].copy(), coefficients, compliance, model.contact_stiffness, problem.contact_gap(touching),
-                problem.offset.ravel(), force, q, v, passes)  # fmt: skip
+    march_plain(
+        shapes,
+        model.drive_shapes[:, 0].copy(),
+        coefficients,
+        compliance,
+        model.contact_stiffness,
+        problem.contact_gap(touching),
+        problem.offset.ravel(),
+        force,
+        q,
+        v,
+        passes,
+    )
     return q, v

@@ -8,18 +8,31 @@ from scipy.integrate import solve_ivp
 from benchmarks.peer import Marcher, Peer, Tolerance
 from benchmarks.problem import RATE, STRIDE
 
-RELATIVE, ABSOLUTE = 1.0e-6, (1.0e-9, 1.0e-6)  # of displacement (kg^1/2 m) and velocity (kg^1/2 m/s)
+RELATIVE, ABSOLUTE = (
+    1.0e-6,
+    (
+        1.0e-9,
+        1.0e-6,
+    ),
+)  # of displacement (kg^1/2 m) and velocity (kg^1/2 m/s)
 
 
 def peers():
     """Return [Peer]; SciPy is always there."""
-    note = "the same reduced model and law; step chosen by the solver, rtol 1e-6, the force linear between the steps of ours"
+    note = (
+        "the same reduced model and law; step chosen by the solver, rtol 1e-6, the force linear"
+        " between the steps of ours"
+    )
     tolerance = Tolerance()
-    return [Peer(f"SciPy {method}", scipy.__version__, note, starter(method), 0.1, tolerance) for method in ("RK45", "LSODA")]
+    return [
+        Peer(f"SciPy {method}", scipy.__version__, note, starter(method), 0.1, tolerance)
+        for method in ("RK45", "LSODA")
+    ]
 
 
 def starter(method):
     """Return the start function of a solver of solve_ivp."""
+
     def start(problem, touching=True):
         right_hand_side = modal_slope(problem, touching)
         modes = problem.model.modes
@@ -28,7 +41,16 @@ def starter(method):
         def march(force):
             last = (len(force) - 1) / RATE
             samples = np.minimum(np.arange(0, len(force), STRIDE) / RATE, last)
-            found = solve_ivp(right_hand_side, (0.0, last), np.zeros(2 * modes), method, samples, args=(force,), rtol=RELATIVE, atol=absolute)
+            found = solve_ivp(
+                right_hand_side,
+                (0.0, last),
+                np.zeros(2 * modes),
+                method,
+                samples,
+                args=(force,),
+                rtol=RELATIVE,
+                atol=absolute,
+            )
             if not found.success:
                 raise RuntimeError(f"solve_ivp {method}: {found.message}")
             return found.y[:modes].T @ problem.sensor_shapes
@@ -41,8 +63,15 @@ def starter(method):
 def modal_slope(problem, touching):
     """Return f(t, y, force) -> (2 mode,): the derivative of y = (q, v)."""
     model = problem.model
-    constants = (model.omega**2, model.damping, np.ascontiguousarray(model.contact_shapes.reshape(model.modes, -1).T),
-                 model.drive_shapes[:, 0].copy(), model.contact_stiffness, problem.contact_gap(touching), problem.offset.ravel())  # fmt: skip
+    constants = (
+        model.omega**2,
+        model.damping,
+        np.ascontiguousarray(model.contact_shapes.reshape(model.modes, -1).T),
+        model.drive_shapes[:, 0].copy(),
+        model.contact_stiffness,
+        problem.contact_gap(touching),
+        problem.offset.ravel(),
+    )
     return lambda t, y, force: _slope(t, y, force, *constants)
 
 

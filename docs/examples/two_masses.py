@@ -1,7 +1,9 @@
-"""A bench test that never was: two masses with a stop behind a clearance between them, as five CSV files and a campaign.yaml beside them.
+"""A bench test that never was: two masses with a stop behind a clearance between them, as five CSV
+files and a campaign.yaml beside them.
 
-python docs/examples/two_masses.py FOLDER. Needs NumPy alone. The upper mass hangs on a spring and is driven by a multisine; an accelerometer sits
-on each mass; between the masses a spring, and a stop that the lower mass hits when it is 0.6 mm away from its rest.
+python docs/examples/two_masses.py FOLDER. Needs NumPy alone. The upper mass hangs on a spring and
+is driven by a multisine; an accelerometer sits on each mass; between the masses a spring, and a
+stop that the lower mass hits when it is 0.6 mm away from its rest.
 """
 
 import sys
@@ -34,7 +36,11 @@ records:
 def multisine():
     """Force at 2 * SUBSTEPS points per sample over one period, 1 N RMS."""
     frequency = np.fft.rfftfreq(PERIOD, 1.0 / RATE)
-    lines = np.where((frequency >= BAND[0]) & (frequency <= BAND[1]), np.exp(2j * np.pi * np.random.default_rng(4).uniform(size=frequency.size)), 0.0)
+    lines = np.where(
+        (frequency >= BAND[0]) & (frequency <= BAND[1]),
+        np.exp(2j * np.pi * np.random.default_rng(4).uniform(size=frequency.size)),
+        0.0,
+    )
     force = np.fft.irfft(np.pad(lines, (0, PERIOD * SUBSTEPS - PERIOD // 2)), PERIOD * 2 * SUBSTEPS)
     return force / force.std()
 
@@ -43,8 +49,14 @@ def rate(state, force):
     """Time derivative of (positions, velocities) of both masses, all levels side by side."""
     x, v = state[:2], state[2:]
     away, speed = x[1] - x[0], v[1] - v[0]
-    between = STIFFNESS[1] * away + DAMPING[1] * speed + STOP * np.sign(away) * np.maximum(np.abs(away) - CLEARANCE, 0.0)
-    return np.concatenate([v, [(force - STIFFNESS[0] * x[0] - DAMPING[0] * v[0] + between) / UPPER, -between / LOWER]])
+    between = (
+        STIFFNESS[1] * away
+        + DAMPING[1] * speed
+        + STOP * np.sign(away) * np.maximum(np.abs(away) - CLEARANCE, 0.0)
+    )
+    return np.concatenate(
+        [v, [(force - STIFFNESS[0] * x[0] - DAMPING[0] * v[0] + between) / UPPER, -between / LOWER]]
+    )
 
 
 def main(folder):
@@ -65,9 +77,22 @@ def main(folder):
     rows[:, 1:] += NOISE * np.random.default_rng(9).standard_normal(rows[:, 1:].shape)
     folder.mkdir(parents=True, exist_ok=True)
     for index, name in enumerate(LEVELS):
-        table = np.column_stack([np.arange(len(rows)) / RATE, rows[:, 0, index], rows[:, 1:, index] / G])
-        np.savetxt(folder / f"{name}.csv", table, delimiter=",", fmt="%.8g", header="time,shaker [N],upper [g],lower [g]", comments="")
-    lines = [f"  - {{name: {name.replace('_', ' ')}, file: {name}.csv, split: {'holdout' if name == HELD_OUT else 'fit'}}}\n" for name in LEVELS]
+        table = np.column_stack(
+            [np.arange(len(rows)) / RATE, rows[:, 0, index], rows[:, 1:, index] / G]
+        )
+        np.savetxt(
+            folder / f"{name}.csv",
+            table,
+            delimiter=",",
+            fmt="%.8g",
+            header="time,shaker [N],upper [g],lower [g]",
+            comments="",
+        )
+    lines = [
+        f"  - {{name: {name.replace('_', ' ')}, file: {name}.csv, split:"
+        f" {'holdout' if name == HELD_OUT else 'fit'}}}\n"
+        for name in LEVELS
+    ]
     (folder / "campaign.yaml").write_text(SIDECAR + "".join(lines))
 
 

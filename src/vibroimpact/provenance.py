@@ -1,4 +1,6 @@
-"""Where a result comes from: digests of the configuration and of the source, versions, and the library files that a script imports."""
+"""Where a result comes from: digests of the configuration and of the source, versions, and the
+library files that a script imports.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ import hashlib
 import json
 import platform
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,9 @@ DIGEST_LENGTH = 16
 
 
 def config_digest(params: Mapping[str, Any]) -> str:
-    """Return 16 hexadecimal digits that stand for the keys and values of one stage (stages.stage_params), in any order."""
+    """Return 16 hexadecimal digits that stand for the keys and values of one stage
+    (stages.stage_params), in any order.
+    """
     text = json.dumps(params, sort_keys=True, default=dict)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
 
@@ -26,9 +30,16 @@ def config_digest(params: Mapping[str, Any]) -> str:
 def source_digest(files: Iterable[Path | str]) -> str:
     """Return 16 hexadecimal digits that stand for the names and contents of library files."""
     digest = hashlib.sha256()
-    for file in sorted(map(Path, files), key=lambda file: file.name):
-        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    for name, file in sorted((_name_in_package(file), file) for file in map(Path, files)):
+        digest.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()[:DIGEST_LENGTH]
+
+
+def _name_in_package(file: Path) -> str:
+    """Return the path of a file from its package's folder on, wherever the checkout lies."""
+    parts = file.parts
+    last = max((at for at, part in enumerate(parts) if part == PACKAGE), default=len(parts) - 2)
+    return "/".join(parts[last + 1 :])
 
 
 @lru_cache(maxsize=1)
@@ -44,18 +55,24 @@ def versions() -> dict[str, str]:
 
 
 def origin(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
-    """Return the attributes that every written file carries: digests of a stage's keys and sources, and versions."""
+    """Return the attributes that every written file carries: digests of a stage's keys and sources,
+    and versions.
+    """
     library = [file for file in files if Path(file).suffix == ".py"]
-    return {"config_digest": config_digest(params), "source_digest": source_digest(library),
-            "versions": " ".join(f"{name} {version}" for name, version in versions().items())}
+    return {
+        "config_digest": config_digest(params),
+        "source_digest": source_digest(library),
+        "versions": " ".join(f"{name} {version}" for name, version in versions().items()),
+    }
 
 
 def imported_files(script: Path | str, source: Path | str) -> list[Path]:
     """Return the library files that a script imports, directly or through others, sorted.
 
-    script: a Python file. source: the folder that holds the package (src). Imports inside functions count; so does the __init__.py of
-    every package on the way. Nothing is executed: imports made from computed names are not seen.
-    Raises SyntaxError when a file is not Python, FileNotFoundError when the script does not exist.
+    script: a Python file. source: the folder that holds the package (src). Imports inside functions
+    count; so does the __init__.py of every package on the way. Nothing is executed: imports made
+    from computed names are not seen. Raises SyntaxError when a file is not Python,
+    FileNotFoundError when the script does not exist.
     """
     source = Path(source)
     found: set[Path] = set()
@@ -69,14 +86,20 @@ def imported_files(script: Path | str, source: Path | str) -> list[Path]:
     return sorted(found)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _imports(file: Path, source: Path, _changed_at: int) -> frozenset[Path]:
-    """Return the library files that a file imports itself. Remembered: the scripts share most of what they import."""
-    return frozenset(module for name in _imported_names(file, source) for module in _files_of(name, source))
+    """Return the library files that a file imports itself. Remembered: the scripts share most of
+    what they import.
+    """
+    return frozenset(
+        module for name in _imported_names(file, source) for module in _files_of(name, source)
+    )
 
 
 def _imported_names(file: Path, source: Path) -> set[str]:
-    """Return the dotted names that a file imports and that may be modules of the package, e.g. vibroimpact.cases."""
+    """Return the dotted names that a file imports and that may be modules of the package, e.g.
+    vibroimpact.cases.
+    """
     names: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), filename=str(file))):
         if isinstance(node, ast.Import):
@@ -89,7 +112,9 @@ def _imported_names(file: Path, source: Path) -> set[str]:
 
 
 def _package_above(file: Path, source: Path, level: int) -> str:
-    """Return the dotted package that `level` leading dots mean in a file; '' for an absolute import."""
+    """Return the dotted package that `level` leading dots mean in a file; '' for an absolute
+    import.
+    """
     if level == 0:
         return ""
     parts = file.resolve().relative_to(source.resolve()).parts[:-1]
@@ -97,7 +122,9 @@ def _package_above(file: Path, source: Path, level: int) -> str:
 
 
 def _files_of(name: str, source: Path) -> list[Path]:
-    """Return the files that importing a dotted name executes: each package's __init__.py and the module itself."""
+    """Return the files that importing a dotted name executes: each package's __init__.py and the
+    module itself.
+    """
     files, folder = [], source
     for part in name.split("."):
         if (folder / f"{part}.py").is_file():

@@ -1,8 +1,9 @@
-"""All netCDF and table reading and writing: one place, one declaration of every variable of a record."""
+"""All netCDF and table reading and writing: one place, one declaration of every variable of a
+record.
+"""
 
 import csv
 import os
-from dataclasses import fields
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -10,29 +11,28 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from .laws import ContactLaws, LocalLaws
-from .model import ModalModel
 
 class RecordError(Exception):
     """A file that can not be read or written; the message names it."""
 
 
-LAWS = {"contact_laws": ContactLaws, "local_laws": LocalLaws}  # fields of the model that are tables themselves
-
-
 def write_record(dataset: xr.Dataset, path) -> None:
-    """Write a dataset of numbers and texts as netCDF-4, whole or not at all. Raises TypeError for other contents."""
+    """Write a dataset of numbers and texts as netCDF-4, whole or not at all. Raises TypeError for
+    other contents.
+    """
     with RecordFile(path, dataset):
         pass
 
 
 class RecordFile:
-    """A netCDF-4 file, filled piece by piece: under a temporary name in the same folder until the end of `with`, then renamed.
+    """A netCDF-4 file, filled piece by piece: under a temporary name in the same folder until the
+    end of `with`, then renamed.
 
-    dataset: what is known from the start (numbers and texts, else TypeError); parts {name: (dimensions, type, attributes)}: what comes
-    later through `put`, of dimensions with sizes {dimension: length}. Left with an error no file remains.
-    float32 time series are stored as they are: their noise does not compress, and deflating it costs more than the simulation.
-    Written without Dataset.to_netcdf, which takes twice as long for files of many small variables.
+    dataset: what is known from the start (numbers and texts, else TypeError); parts {name:
+    (dimensions, type, attributes)}: what comes later through `put`, of dimensions with sizes
+    {dimension: length}. Left with an error no file remains. float32 time series are stored as they
+    are: their noise does not compress, and deflating it costs more than the simulation. Written
+    without Dataset.to_netcdf, which takes twice as long for files of many small variables.
     """
 
     def __init__(self, path, dataset: xr.Dataset, parts=None, sizes=None):
@@ -45,9 +45,15 @@ class RecordFile:
             for name, size in (dict(dataset.sizes) | (sizes or {})).items():
                 self._file.createDimension(name, size)
             unnamed = _put_variables(self._file, dataset, parts or {})
-            self._file.setncatts({"title": "vibroimpact record", **dataset.attrs, "Conventions": "CF-1.11",
-                                  "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
-                                  **({"coordinates": " ".join(unnamed)} if unnamed else {})})  # fmt: skip
+            self._file.setncatts(
+                {
+                    "title": "vibroimpact record",
+                    **dataset.attrs,
+                    "Conventions": "CF-1.11",
+                    "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
+                    **({"coordinates": " ".join(unnamed)} if unnamed else {}),
+                }
+            )
         except BaseException:
             self._close(keep=False)
             raise
@@ -72,7 +78,9 @@ class RecordFile:
 
 
 def _put_variables(file, dataset, parts) -> list[str]:
-    """Create all variables and write those of the dataset; return the coordinates off the dimensions that no variable names."""
+    """Create all variables and write those of the dataset; return the coordinates off the
+    dimensions that no variable names.
+    """
     beside = {name: set(dataset[name].dims) for name in dataset.coords if name not in dataset.sizes}
     named = set()
     for name, variable in dataset.variables.items():
@@ -80,8 +88,12 @@ def _put_variables(file, dataset, parts) -> list[str]:
         text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
         if not text and values.dtype.kind not in "fiu":
             raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
-        mine = {} if name in dataset.coords else _coordinates_attribute(variable.dims, beside, named)
-        stored = _create(file, name, str if text else values.dtype, variable.dims, variable.attrs | mine)
+        mine = (
+            {} if name in dataset.coords else _coordinates_attribute(variable.dims, beside, named)
+        )
+        stored = _create(
+            file, name, str if text else values.dtype, variable.dims, variable.attrs | mine
+        )
         if values.size:
             stored[...] = values.astype(object) if text else values
     for name, (dims, dtype, attributes) in parts.items():
@@ -97,16 +109,20 @@ def _create(file, name, dtype, dims, attributes):
 
 
 def _coordinates_attribute(dims, beside, named):
-    """The attribute that names a variable's coordinates off its dimensions, by the CF conventions; they are added to the set `named`."""
+    """The attribute that names a variable's coordinates off its dimensions, by the CF conventions;
+    they are added to the set `named`.
+    """
     mine = [name for name, needed in beside.items() if needed <= set(dims)]
     named.update(mine)
     return {"coordinates": " ".join(mine)} if mine else {}
 
 
 def read_record(path, names=None) -> xr.Dataset:
-    """The dataset of a file of write_record, loaded, file closed; names: the variables wanted, all where left out.
+    """The dataset of a file of write_record, loaded, file closed; names: the variables wanted, all
+    where left out.
 
-    Raises RecordError when there is no such file or it is not netCDF, KeyError when a variable is missing.
+    Raises RecordError when there is no such file or it is not netCDF, KeyError when a variable is
+    missing.
     """
     try:
         with netCDF4.Dataset(path) as file:
@@ -117,11 +133,20 @@ def read_record(path, names=None) -> xr.Dataset:
                 data[name], others = _variable(file.variables[name])
                 beside.update(others)
             if names is not None:
-                coordinates = {*beside, *(dim for variable in data.values() for dim in variable.dims)} & set(file.variables)
-                data.update({name: _variable(file.variables[name])[0] for name in coordinates - set(data)})
-            attributes = {name: file.getncattr(name) for name in file.ncattrs() if name != "coordinates"}
+                coordinates = {
+                    *beside,
+                    *(dim for variable in data.values() for dim in variable.dims),
+                } & set(file.variables)
+                data.update(
+                    {name: _variable(file.variables[name])[0] for name in coordinates - set(data)}
+                )
+            attributes = {
+                name: file.getncattr(name) for name in file.ncattrs() if name != "coordinates"
+            }
     except OSError as error:
-        raise RecordError(f"{path}: can not be read as netCDF ({error}): delete it and run again") from error
+        raise RecordError(
+            f"{path}: can not be read as netCDF ({error}): delete it and run again"
+        ) from error
     sizes = {dim for variable in data.values() for dim in variable.dims}
     coords = {name: data.pop(name) for name in list(data) if name in beside | sizes}
     return xr.Dataset(data, coords, attributes)
@@ -135,33 +160,50 @@ def _variable(stored):
 
 
 def read_dataset(path) -> xr.Dataset:
-    """The dataset of a netCDF file of any origin, decoded by the CF conventions, loaded, file closed. Raises RecordError."""
+    """The dataset of a netCDF file of any origin, decoded by the CF conventions, loaded, file
+    closed. Raises RecordError.
+    """
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
     except OSError as error:
-        raise RecordError(f"{path}: can not be read as netCDF ({error}): delete it and run again") from error
+        raise RecordError(
+            f"{path}: can not be read as netCDF ({error}): delete it and run again"
+        ) from error
 
 
 def read_variable(path) -> tuple[dict[str, np.ndarray], dict]:
-    """Every numeric variable of a netCDF file by name, and its global attributes (for files of any origin)."""
+    """Every numeric variable of a netCDF file by name, and its global attributes (for files of any
+    origin).
+    """
     try:
         with netCDF4.Dataset(path) as file:
-            known = {name: np.ma.filled(variable[:], np.nan) for name, variable in file.variables.items()
-                     if variable.dtype != str and variable.dtype.kind in "fiu"}  # fmt: skip
+            known = {
+                name: np.ma.filled(variable[:], np.nan)
+                for name, variable in file.variables.items()
+                if variable.dtype != str and variable.dtype.kind in "fiu"
+            }
             return known, {name: file.getncattr(name) for name in file.ncattrs()}
     except OSError as error:
         raise RecordError(f"{path}: can not be read as netCDF ({error})") from error
 
 
 def read_hdf5_arrays(path) -> dict[str, np.ndarray]:
-    """Every array of numbers of an HDF5 file as MATLAB v7.3 writes them: group.name, axes in MATLAB's order. Raises RecordError."""
-    import h5py  # imported here: its HDF5 library is another than netCDF4's, and other stages need only that one
+    """Every array of numbers of an HDF5 file as MATLAB v7.3 writes them: group.name, axes in
+    MATLAB's order. Raises RecordError.
+    """
+    # imported here: its HDF5 library is another than netCDF4's, and other stages need only that one
+    import h5py
 
     found = {}
 
     def collect(name, item):
-        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and not name.startswith("#") and "MATLAB_empty" not in item.attrs:
+        if (
+            isinstance(item, h5py.Dataset)
+            and item.dtype.kind in "fiu"
+            and not name.startswith("#")
+            and "MATLAB_empty" not in item.attrs
+        ):
             found[name.replace("/", ".")] = item[()].T
 
     try:
@@ -172,41 +214,9 @@ def read_hdf5_arrays(path) -> dict[str, np.ndarray]:
     return found
 
 
-def write_model(model: ModalModel, path, attributes: dict | None = None) -> None:
-    """Write a reduced model as netCDF: one variable per field, SI units as in ModalModel."""
-    data = {}
-    for item in fields(ModalModel):
-        value = getattr(model, item.name)
-        if item.name in LAWS:
-            for column in fields(value):
-                array = np.asarray(getattr(value, column.name))
-                data[f"{item.name}_{column.name}"] = (tuple(f"{item.name}_{column.name}_{axis}" for axis in range(array.ndim)), array)
-        elif item.name.endswith("_names"):
-            data[item.name] = ((f"{item.name[:-6]}",), np.array(value, dtype=object if value else str))
-        else:
-            data[item.name] = (tuple(f"{item.name}_{axis}" for axis in range(np.ndim(value))), np.asarray(value))
-    write_record(xr.Dataset(data, attrs={"title": "vibroimpact reduced model", **(attributes or {})}), path)
-
-
-def read_model(path) -> ModalModel:
-    """The reduced model of a file written by write_model. Raises RecordError, and ValueError when a field is missing."""
-    dataset = read_record(path)
-    values = {}
-    for item in fields(ModalModel):
-        names = [f"{item.name}_{column.name}" for column in fields(LAWS[item.name])] if item.name in LAWS else [item.name]
-        for name in names:
-            if name not in dataset:
-                raise ValueError(f"{path}: has no '{name}': it was written by another version, delete it and run again")
-        if item.name in LAWS:
-            values[item.name] = LAWS[item.name](*(dataset[name].values for name in names))
-            continue
-        value = dataset[item.name].values
-        values[item.name] = tuple(str(name) for name in value) if item.name.endswith("_names") else value
-    return ModalModel(**values)
-
-
 def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
-    """Write rows (all with the same keys) as CSV: floats in full precision, NaN as 'nan'. Atomic like write_record.
+    """Write rows (all with the same keys) as CSV: floats in full precision, NaN as 'nan'. Atomic
+    like write_record.
 
     columns: the header of a table that may have no rows.
     """
@@ -215,7 +225,9 @@ def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
 
 
 def write_cells(columns, rows, path) -> None:
-    """Write rows of plain Python values (columns,) under a header as CSV. Atomic like write_record."""
+    """Write rows of plain Python values (columns,) under a header as CSV. Atomic like
+    write_record.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
@@ -247,16 +259,22 @@ def read_text(path) -> str:
 
 
 def read_table(path) -> list[dict]:
-    """Rows of a CSV table; what reads as a number is one. Raises RecordError when there is no such file."""
+    """Rows of a CSV table; what reads as a number is one. Raises RecordError when there is no such
+    file.
+    """
     try:
         with open(path, newline="", encoding="utf-8") as file:
-            return [{key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+            return [
+                {key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)
+            ]
     except OSError as error:
         raise RecordError(f"{path}: can not be read ({error.strerror})") from error
 
 
 def _plain(value):
-    return float(value) if isinstance(value, np.floating) else value  # csv writes a float in full, a float32 in its own few digits
+    return (
+        float(value) if isinstance(value, np.floating) else value
+    )  # csv writes a float in full, a float32 in its own few digits
 
 
 def _number(text):
@@ -269,7 +287,9 @@ def _number(text):
 
 
 def plain(value):
-    """Return nested values as JSON and YAML know them: without numpy types, None for what is not finite."""
+    """Return nested values as JSON and YAML know them: without numpy types, None for what is not
+    finite.
+    """
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):

@@ -29,12 +29,18 @@ class Stopwatch(dict):
             self[name] = self.get(name, 0.0) + value
 
     def line(self) -> str:
-        """The line for a log, that seconds_in reads: CPU seconds: kernel 7.012, spectra 0.840, all 9.310. All: of the process, until now."""
-        return "CPU seconds: " + ", ".join(f"{name} {seconds:.3f}" for name, seconds in {**self, "all": process_time()}.items())
+        """The line for a log, that seconds_in reads: CPU seconds: kernel 7.012, spectra 0.840, all
+        9.310. All: of the process, until now.
+        """
+        return "CPU seconds: " + ", ".join(
+            f"{name} {seconds:.3f}" for name, seconds in {**self, "all": process_time()}.items()
+        )
 
 
 def seconds_in(log: str) -> dict[str, float]:
-    """{name: CPU seconds} of the last line of a Stopwatch in the text of a log; nothing where there is none."""
+    """{name: CPU seconds} of the last line of a Stopwatch in the text of a log; nothing where there
+    is none.
+    """
     lines = LINE.findall(log)
     pairs = (part.rsplit(" ", 1) for part in lines[-1].split(", ")) if lines else ()
     return {name: float(seconds) for name, seconds in pairs}

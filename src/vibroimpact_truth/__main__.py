@@ -1,8 +1,10 @@
-"""Command line: a seeded set of sealed campaigns, one campaign by name, or the strength of the amounts.
+"""Command line: a seeded set of sealed campaigns, one campaign by name, or the strength of the
+amounts.
 
-    python -m vibroimpact_truth --out FOLDER --seed S --count N [--shard 0/1] [--duration 20] [--tube dev|stand_in] [--list]
-    python -m vibroimpact_truth one --out x.nc --effect gap --set factor=1.25 [--effect dry_friction --set mu=0.2] [--truth x.json]
-    python -m vibroimpact_truth calibrate [effect ...]
+python -m vibroimpact_truth --out FOLDER --seed S --count N [--shard 0/1] [--duration 20] [--tube
+dev|stand_in] [--list] python -m vibroimpact_truth one --out x.nc --effect gap --set factor=1.25
+[--effect dry_friction --set mu=0.2] [--truth x.json] python -m vibroimpact_truth calibrate [effect
+...]
 """
 
 import argparse
@@ -53,25 +55,39 @@ def levels(text):
 
 def options():
     """The parser of all three commands."""
-    parser = argparse.ArgumentParser(prog="python -m vibroimpact_truth", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m vibroimpact_truth",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("command", nargs="?", default="draw", choices=("draw", "one", "calibrate"))
     parser.add_argument("names", nargs="*", help="calibrate: effects, all by default")
     parser.add_argument("--out", help="draw: a folder, truths go to FOLDER/truth; one: the file")
-    parser.add_argument("--truth", help="one: file of the truth, by default the same name with .truth.json")
+    parser.add_argument(
+        "--truth", help="one: file of the truth, by default the same name with .truth.json"
+    )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--count", type=int, default=24)
     parser.add_argument("--shard", default="0/1", help="i/n: every n-th campaign from the i-th on")
-    parser.add_argument("--list", action="store_true", help="tell what would be made, and make nothing")
+    parser.add_argument(
+        "--list", action="store_true", help="tell what would be made, and make nothing"
+    )
     parser.add_argument("--effect", action=Hide, dest="effects")
     parser.add_argument("--set", action=Hide, dest="effects", metavar="KEY=VALUE")
     parser.add_argument("--duration", type=float, default=20.0, help="s per record")
     parser.add_argument("--tube", default="stand_in", choices=sorted(TUBES))
-    parser.add_argument("--change", action="append", default=[], metavar="KEY=VALUE", help="a field of the tube")
+    parser.add_argument(
+        "--change", action="append", default=[], metavar="KEY=VALUE", help="a field of the tube"
+    )
     parser.add_argument("--levels", type=levels, default=LEVELS, metavar="N:PERCENT:SPLIT,...")
     parser.add_argument("--force", help="take the forces of this campaign file")
-    parser.add_argument("--contact-force", action="store_true", help="channels of the plates' forces")
+    parser.add_argument(
+        "--contact-force", action="store_true", help="channels of the plates' forces"
+    )
     parser.add_argument("--noise-floor", action="store_true", help="write noise_floor_rms")
-    parser.add_argument("--no-twin", action="store_true", help="do not run the bare twin that states the strength")
+    parser.add_argument(
+        "--no-twin", action="store_true", help="do not run the bare twin that states the strength"
+    )
     for name, value in (("gain", 0.02), ("frequency", 0.003), ("damping", 0.10)):
         parser.add_argument(f"--{name}-scatter", type=float, default=value)
     parser.add_argument("--noise", type=float, default=0.01)
@@ -80,9 +96,19 @@ def options():
 
 def shared(given):
     """Fields of Plan that the command line gives."""
-    return {"tube": given.tube, "changes": dict(keyed(text) for text in given.change), "levels": given.levels, "duration": given.duration,
-            "gain_scatter": given.gain_scatter, "frequency_scatter": given.frequency_scatter, "damping_scatter": given.damping_scatter,
-            "noise": given.noise, "contact_force": given.contact_force, "noise_floor": given.noise_floor, "drive_force": given.force}
+    return {
+        "tube": given.tube,
+        "changes": dict(keyed(text) for text in given.change),
+        "levels": given.levels,
+        "duration": given.duration,
+        "gain_scatter": given.gain_scatter,
+        "frequency_scatter": given.frequency_scatter,
+        "damping_scatter": given.damping_scatter,
+        "noise": given.noise,
+        "contact_force": given.contact_force,
+        "noise_floor": given.noise_floor,
+        "drive_force": given.force,
+    }
 
 
 def make_set(given):
@@ -119,7 +145,12 @@ def main(arguments=None):
         parser.error("--out is needed")
     elif given.command == "one":
         path = Path(given.out)
-        made(Plan((given.seed,), tuple(given.effects or ()), "one", **shared(given)), path, given.truth or path.with_suffix(".truth.json"), not given.no_twin)
+        made(
+            Plan((given.seed,), tuple(given.effects or ()), "one", **shared(given)),
+            path,
+            given.truth or path.with_suffix(".truth.json"),
+            not given.no_twin,
+        )
     else:
         make_set(given)
 

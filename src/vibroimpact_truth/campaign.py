@@ -1,4 +1,6 @@
-"""One campaign from a plan: rig, forces, records, instruments, file and the sealed truth beside it."""
+"""One campaign from a plan: rig, forces, records, instruments, file and the sealed truth beside
+it.
+"""
 
 import json
 import os
@@ -18,8 +20,15 @@ from vibroimpact_truth.writer import write_campaign
 
 SAMPLING = 2048.0
 BAND = (5.0, 200.0)
-CHANNELS = (("apex", "y"), ("apex", "x"), ("bend45_right", "y"), ("left_leg_upper", "y"), ("left_leg_upper", "x"), ("right_leg_upper", "y"),
-            ("left_leg_lower", "y"))  # fmt: skip
+CHANNELS = (
+    ("apex", "y"),
+    ("apex", "x"),
+    ("bend45_right", "y"),
+    ("left_leg_upper", "y"),
+    ("left_leg_upper", "x"),
+    ("right_leg_upper", "y"),
+    ("left_leg_lower", "y"),
+)
 UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 LEVELS = ((0.5, 1.3, "fit"), (3.0, 1.3, "fit"), (10.0, 1.3, "fit"), (10.0, 0.9, "holdout"))
 TWINS = 3  # runs with and without what is hidden that state the strength
@@ -28,8 +37,10 @@ FORCE, SCATTER, GAINS, NOISE, START, SECOND = range(6)  # random streams of a ca
 
 @dataclass(frozen=True)
 class Plan:
-    """What a campaign is to be. effects: (id, {parameter: value}) each, of the rig or of the instruments; levels: (N RMS, gap in % of the
-    diameter, split) each; scatters are one sigma, relative; noise relative to the largest channel RMS of the lowest level."""
+    """What a campaign is to be. effects: (id, {parameter: value}) each, of the rig or of the
+    instruments; levels: (N RMS, gap in % of the diameter, split) each; scatters are one sigma,
+    relative; noise relative to the largest channel RMS of the lowest level.
+    """
 
     seed: tuple
     effects: tuple = ()
@@ -53,7 +64,9 @@ class Plan:
 
 
 def band_limited(rng, samples, sampling, band=BAND):
-    """(time,) Gaussian noise with a flat spectrum within `band` Hz and unit RMS, periodic over the record."""
+    """(time,) Gaussian noise with a flat spectrum within `band` Hz and unit RMS, periodic over the
+    record.
+    """
     frequency = np.fft.rfftfreq(samples, 1.0 / sampling)
     inside = (frequency >= band[0]) & (frequency <= band[1])
     spectrum = np.zeros(len(frequency), complex)
@@ -70,7 +83,12 @@ def forces(plan):
         with netCDF4.Dataset(plan.drive_force) as file:
             return np.asarray(file["force"][:, 0], float)
     samples = round(plan.duration * SAMPLING)
-    return np.array([load * band_limited(plan.stream(FORCE, number), samples, SAMPLING) for number, (load, _, _) in enumerate(plan.levels)])
+    return np.array(
+        [
+            load * band_limited(plan.stream(FORCE, number), samples, SAMPLING)
+            for number, (load, _, _) in enumerate(plan.levels)
+        ]
+    )
 
 
 def build_rig(plan, hidden=True):
@@ -83,20 +101,42 @@ def build_rig(plan, hidden=True):
 
 
 def records_of(plan, force, hidden=True, start_stream=0, only=None):
-    """Noise-free (record, channel, time) responses of a plan, and the share of time in contact (record, plate); `only` records of a split."""
+    """Noise-free (record, channel, time) responses of a plan, and the share of time in contact
+    (record, plate); `only` records of a split.
+    """
     rig = build_rig(plan, hidden)
-    scatter = {"frequency": lambda n: 1.0 + plan.frequency_scatter * plan.stream(SCATTER, 0).standard_normal(n),
-               "damping": lambda n: np.maximum(1.0 + plan.damping_scatter * plan.stream(SCATTER, 1).standard_normal(n), 0.3)}
+    scatter = {
+        "frequency": (
+            lambda n: 1.0 + plan.frequency_scatter * plan.stream(SCATTER, 0).standard_normal(n)
+        ),
+        "damping": lambda n: np.maximum(
+            1.0 + plan.damping_scatter * plan.stream(SCATTER, 1).standard_normal(n), 0.3
+        ),
+    }
     reduced = reduce_rig(rig, [(place, UNIT[axis]) for place, axis in CHANNELS], scatter)
     factors = np.array([plate.gap_factor for plate in rig.plates])
     found, contact = [], []
     for number, (load, percent, split) in enumerate(plan.levels):
         if only not in (None, split):
             continue
-        second = rig.unmeasured and rig.unmeasured[2] * load * band_limited(plan.stream(SECOND, number), force.shape[1], SAMPLING)
-        record = run_record(reduced, force[number], factors * percent * 0.01 * rig.tube.outer_diameter, SAMPLING, plan.steps_per_second,
-                            plan.stream(START, number, start_stream), number * force.shape[1] / SAMPLING, second)
-        plates = record.reaction.reshape(-1, force.shape[1]) if plan.contact_force else np.zeros((0, force.shape[1]))
+        second = rig.unmeasured and rig.unmeasured[2] * load * band_limited(
+            plan.stream(SECOND, number), force.shape[1], SAMPLING
+        )
+        record = run_record(
+            reduced,
+            force[number],
+            factors * percent * 0.01 * rig.tube.outer_diameter,
+            SAMPLING,
+            plan.steps_per_second,
+            plan.stream(START, number, start_stream),
+            number * force.shape[1] / SAMPLING,
+            second,
+        )
+        plates = (
+            record.reaction.reshape(-1, force.shape[1])
+            if plan.contact_force
+            else np.zeros((0, force.shape[1]))
+        )
         found.append(np.concatenate([record.acceleration, plates]))
         contact.append(record.contact)
     return np.array(found), np.array(contact)
@@ -106,26 +146,50 @@ def channels_of(plan):
     """What the file tells of every channel, and of the drive."""
     tube = TUBES[plan.tube].with_changes(**plan.changes)
     arcs = named_places(tube)
-    channels = [{"name": f"{place}_{axis}", "units": "m s-2", "kind": "acceleration", "point": tube.position(arcs[place]),
-                 "direction": UNIT[axis]} for place, axis in CHANNELS]
+    channels = [
+        {
+            "name": f"{place}_{axis}",
+            "units": "m s-2",
+            "kind": "acceleration",
+            "point": tube.position(arcs[place]),
+            "direction": UNIT[axis],
+        }
+        for place, axis in CHANNELS
+    ]
     if plan.contact_force:
-        channels += [{"name": f"plate_{side}_{axis}", "units": "N", "kind": "contact_force", "direction": UNIT[axis],
-                      "point": tube.position(tube.leg_height(side, tube.plate_height))} for side in ("left", "right") for axis in ("x", "y")]
+        channels += [
+            {
+                "name": f"plate_{side}_{axis}",
+                "units": "N",
+                "kind": "contact_force",
+                "direction": UNIT[axis],
+                "point": tube.position(tube.leg_height(side, tube.plate_height)),
+            }
+            for side in ("left", "right")
+            for axis in ("x", "y")
+        ]
     drive = {"name": "shaker", "point": tube.position(arcs["drive"]), "direction": (0.0, 1.0, 0.0)}
     return channels, drive
 
 
 def noise_of(plan, response):
-    """(channel,) noise RMS that goes with the (record, channel, time) responses of all records of a plan."""
+    """(channel,) noise RMS that goes with the (record, channel, time) responses of all records of a
+    plan.
+    """
     rms = np.sqrt(np.mean(response**2, axis=-1))
     lowest = int(np.argmin([load for load, _, _ in plan.levels]))
     accelerations = np.arange(response.shape[1]) < len(CHANNELS)
-    # A force cell has one range for all levels: its noise is a share of the largest record, where the lowest may not touch at all.
-    return plan.noise * np.where(accelerations, rms[lowest, accelerations].max(), rms[:, ~accelerations].max(initial=0.0))
+    # A force cell has one range for all levels: its noise is a share of the largest record, where
+    # the lowest may not touch at all.
+    return plan.noise * np.where(
+        accelerations, rms[lowest, accelerations].max(), rms[:, ~accelerations].max(initial=0.0)
+    )
 
 
 def measured(plan, force, response, noise, stream=0, hidden=True):
-    """(force, response) as the instruments give them, with noise RMS (channel,); without hidden faults where not `hidden`."""
+    """(force, response) as the instruments give them, with noise RMS (channel,); without hidden
+    faults where not `hidden`.
+    """
     names = [channel["name"] for channel in channels_of(plan)[0]]
     gains = 1.0 + plan.gain_scatter * plan.stream(GAINS).standard_normal(len(names))
     data = Measured(force.copy(), response * gains[:, None], names, SAMPLING)
@@ -137,32 +201,57 @@ def measured(plan, force, response, noise, stream=0, hidden=True):
 
 
 def strength(plan, force, seen, noise):
-    """excess of the hold-out records of seen (record, channel, time) over the same with nothing hidden."""
-    rows, count = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"], len(CHANNELS)
+    """excess of the hold-out records of seen (record, channel, time) over the same with nothing
+    hidden.
+    """
+    rows = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
+    count = len(CHANNELS)
 
     def twins(hidden, first):
         """Hold-out records from TWINS other starts, as measured."""
         runs = [records_of(plan, force, hidden, first + k, "holdout")[0] for k in range(TWINS)]
-        return [measured(plan, force[rows], run, noise, first + k, hidden)[1][:, :count] for k, run in enumerate(runs)]
+        return [
+            measured(plan, force[rows], run, noise, first + k, hidden)[1][:, :count]
+            for k, run in enumerate(runs)
+        ]
 
-    return excess(seen[rows][:, :count], twins(False, 1), twins(True, 1 + TWINS), noise[:count], SAMPLING)
+    return excess(
+        seen[rows][:, :count], twins(False, 1), twins(True, 1 + TWINS), noise[:count], SAMPLING
+    )
 
 
 def make_campaign(plan, path, truth_path=None, twin=True):
-    """Write the campaign of a plan to `path` and its truth to `truth_path`; twin: also run it with nothing hidden, to state its strength."""
+    """Write the campaign of a plan to `path` and its truth to `truth_path`; twin: also run it with
+    nothing hidden, to state its strength.
+    """
     force = forces(plan)
     response, contact = records_of(plan, force)
     noise = noise_of(plan, response)
     force_seen, seen = measured(plan, force, response, noise)
     tube = TUBES[plan.tube].with_changes(**plan.changes)
-    records = [{"name": f"L{load:g}_G{percent:g}_{number}", "gap": percent * 0.01 * tube.outer_diameter, "split": split,
-                "repeat": sum(other == (load, percent, split) for other in plan.levels[:number])}
-               for number, (load, percent, split) in enumerate(plan.levels)]
+    records = [
+        {
+            "name": f"L{load:g}_G{percent:g}_{number}",
+            "gap": percent * 0.01 * tube.outer_diameter,
+            "split": split,
+            "repeat": sum(other == (load, percent, split) for other in plan.levels[:number]),
+        }
+        for number, (load, percent, split) in enumerate(plan.levels)
+    ]
     channels, drive = channels_of(plan)
     truth = {"file": Path(path).name, **asdict(plan), "contact_share": contact.round(4).tolist()}
     if twin:
         truth["strength"] = strength(plan, force, seen, noise)
-    write_campaign(path, force_seen, seen, channels, drive, records, SAMPLING, noise if plan.noise_floor else None)
+    write_campaign(
+        path,
+        force_seen,
+        seen,
+        channels,
+        drive,
+        records,
+        SAMPLING,
+        noise if plan.noise_floor else None,
+    )
     if truth_path is not None:
         truth_path = Path(truth_path)
         truth_path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,9 +1,12 @@
-"""Curved cubic beam elements: stiffness, mass and interpolation of a tube in space, the two planes apart.
+"""Curved cubic beam elements: stiffness, mass and interpolation of a tube in space, the two planes
+apart.
 
-Four nodes on the true centreline, displacement and rotation each interpolated by cubic Lagrange polynomials in arc length, the tangent
-taken exactly at every integration point. Strains by the general Timoshenko curved beam, Gamma = u' + t x theta and kappa = theta'.
-Stiffness by three Gauss points (reduced: neither shear nor membrane locks), mass by four (exact). Degrees of freedom per node, global axes:
-plane "y" (out of plane) uy, rx, rz; plane "x" (in plane) ux, uz, ry. Source: K.-J. Bathe, Finite Element Procedures (1996), section 5.4.
+Four nodes on the true centreline, displacement and rotation each interpolated by cubic Lagrange
+polynomials in arc length, the tangent taken exactly at every integration point. Strains by the
+general Timoshenko curved beam, Gamma = u' + t x theta and kappa = theta'. Stiffness by three Gauss
+points (reduced: neither shear nor membrane locks), mass by four (exact). Degrees of freedom per
+node, global axes: plane "y" (out of plane) uy, rx, rz; plane "x" (in plane) ux, uz, ry. Source:
+K.-J. Bathe, Finite Element Procedures (1996), section 5.4.
 """
 
 import numpy as np
@@ -26,19 +29,33 @@ def lagrange(xi):
 
 
 def strain_rows(plane, tangent, value, slope):
-    """(3, 12) strains per unit dof: plane "y" shear, torsion, bending; plane "x" stretch, shear, bending. slope is d/ds [1/m]."""
+    """(3, 12) strains per unit dof: plane "y" shear, torsion, bending; plane "x" stretch, shear,
+    bending. slope is d/ds [1/m].
+    """
     tx, tz = tangent
     zero = np.zeros(4)
     if plane == "y":
-        rows = [(slope, tz * value, -tx * value), (zero, tx * slope, tz * slope), (zero, tz * slope, -tx * slope)]
+        rows = [
+            (slope, tz * value, -tx * value),
+            (zero, tx * slope, tz * slope),
+            (zero, tz * slope, -tx * slope),
+        ]
     else:
-        rows = [(tx * slope, tz * slope, zero), (tz * slope, -tx * slope, -value), (zero, zero, slope)]
+        rows = [
+            (tx * slope, tz * slope, zero),
+            (tz * slope, -tx * slope, -value),
+            (zero, zero, slope),
+        ]
     return np.array([np.column_stack(row).ravel() for row in rows])
 
 
 def rigidity(section, plane):
     """(3,) stiffness of the strains of a plane: N, N m² and N m² ("y"), or N, N and N m² ("x")."""
-    return np.array([section["kGA"], section["GJ"], section["EI"]] if plane == "y" else [section["EA"], section["kGA"], section["EI"]])
+    return np.array(
+        [section["kGA"], section["GJ"], section["EI"]]
+        if plane == "y"
+        else [section["EA"], section["kGA"], section["EI"]]
+    )
 
 
 def inertia(section, plane, tangent, fluid):
@@ -58,19 +75,35 @@ def inertia(section, plane, tangent, fluid):
 
 
 class Mesh:
-    """A mesh of the tube: elements of at most element_length m, two within each plate, and the assembled matrices of a plane.
+    """A mesh of the tube: elements of at most element_length m, two within each plate, and the
+    assembled matrices of a plane.
 
-    ends: (element + 1,) arc lengths in m. Nodes: 3 element + 1; the roots are the first and the last.
+    ends: (element + 1,) arc lengths in m. Nodes: 3 element + 1; the roots are the first and the
+    last.
     """
 
     def __init__(self, tube, element_length=0.036):
-        low, high = tube.plate_height - 0.5 * tube.plate_length, tube.plate_height + 0.5 * tube.plate_length
+        low = tube.plate_height - 0.5 * tube.plate_length
+        high = tube.plate_height + 0.5 * tube.plate_length
         marks = [0.0, low, high, tube.leg]  # elements end where plates end, and are short between
         marks += [tube.length - s for s in reversed(marks)]
-        sizes = [element_length, 0.5 * tube.plate_length, element_length, element_length, element_length, 0.5 * tube.plate_length, element_length]
-        pieces = [(a, b, max(1, int(np.ceil((b - a) / size - 1e-9)))) for a, b, size in zip(marks[:-1], marks[1:], sizes, strict=True)]
+        sizes = [
+            element_length,
+            0.5 * tube.plate_length,
+            element_length,
+            element_length,
+            element_length,
+            0.5 * tube.plate_length,
+            element_length,
+        ]
+        pieces = [
+            (a, b, max(1, int(np.ceil((b - a) / size - 1e-9))))
+            for a, b, size in zip(marks[:-1], marks[1:], sizes, strict=True)
+        ]
         self.tube = tube
-        self.ends = np.concatenate([np.linspace(a, b, n + 1)[:-1] for a, b, n in pieces] + [[tube.length]])
+        self.ends = np.concatenate(
+            [np.linspace(a, b, n + 1)[:-1] for a, b, n in pieces] + [[tube.length]]
+        )
         self.nodes = 3 * (len(self.ends) - 1) + 1
 
     def matrices(self, plane, fluid=0.0):
@@ -83,7 +116,9 @@ class Mesh:
             half, dofs = 0.5 * (b - a), slice(9 * e, 9 * e + 12)
             for xi, weight in zip(*STIFFNESS_RULE, strict=True):
                 value, slope = lagrange(xi)
-                rows = strain_rows(plane, self.tube.tangent(0.5 * (a + b) + half * xi), value, slope / half)
+                rows = strain_rows(
+                    plane, self.tube.tangent(0.5 * (a + b) + half * xi), value, slope / half
+                )
                 stiffness[dofs, dofs] += weight * half * (rows.T * law) @ rows
             for xi, weight in zip(*MASS_RULE, strict=True):
                 value, _ = lagrange(xi)
@@ -101,6 +136,8 @@ class Mesh:
         return row
 
     def direction_rows(self, s, direction):
-        """Rows (dof of "y",) and (dof of "x",) of the displacement along direction (3,) at arc length s [m]."""
+        """Rows (dof of "y",) and (dof of "x",) of the displacement along direction (3,) at arc
+        length s [m].
+        """
         x, y, z = direction
         return y * self.row(s, 0), x * self.row(s, 0) + z * self.row(s, 1)

@@ -1,4 +1,6 @@
-"""The tubes: centreline of a U-tube by arc length, section constants, and the two tubes that campaigns are made of."""
+"""The tubes: centreline of a U-tube by arc length, section constants, and the two tubes that
+campaigns are made of.
+"""
 
 from dataclasses import dataclass, replace
 from math import pi
@@ -10,8 +12,9 @@ import numpy as np
 class Tube:
     """A U-tube in the x-z plane, roots at x = -+bend_radius, z = 0; SI units, angles in rad.
 
-    plate_height: mid-height z of both plates; plate_length: their height; contact_nodes per plate, edges included, sharing plate_stiffness
-    [N/m] equally; drive_angle: on the bend, from the apex towards the left leg; shear_coefficient: inf has no shear and no rotary inertia.
+    plate_height: mid-height z of both plates; plate_length: their height; contact_nodes per plate,
+    edges included, sharing plate_stiffness [N/m] equally; drive_angle: on the bend, from the apex
+    towards the left leg; shear_coefficient: inf has no shear and no rotary inertia.
     """
 
     outer_diameter: float
@@ -37,19 +40,39 @@ class Tube:
 
     @property
     def section(self) -> dict:
-        """EA [N], EI [N m²], GJ [N m²], kGA [N], mass [kg/m], inertia rho I [kg m], polar rho J [kg m]."""
+        """EA [N], EI [N m²], GJ [N m²], kGA [N], mass [kg/m], inertia rho I [kg m], polar rho J [kg
+        m].
+        """
         outer, inner = 0.5 * self.outer_diameter, 0.5 * self.outer_diameter - self.wall
         area, second = pi * (outer**2 - inner**2), 0.25 * pi * (outer**4 - inner**4)
         shear = 0.5 * self.young / (1.0 + self.poisson)
-        return {"EA": self.young * area, "EI": self.young * second, "GJ": 2.0 * shear * second, "kGA": self.shear_coefficient * shear * area,
-                "mass": self.density * area, "inertia": self.density * second, "polar": 2.0 * self.density * second}
+        return {
+            "EA": self.young * area,
+            "EI": self.young * second,
+            "GJ": 2.0 * shear * second,
+            "kGA": self.shear_coefficient * shear * area,
+            "mass": self.density * area,
+            "inertia": self.density * second,
+            "polar": 2.0 * self.density * second,
+        }
 
     def position(self, s):
         """(…, 3) position in m at arc length s [m] from the left root."""
         s = np.asarray(s, float)
-        angle = np.clip((s - self.leg) / self.bend_radius, 0.0, pi)  # 0 where the bend begins on the left, pi on the right
-        rise = np.where(s < self.leg, s, np.where(s > self.length - self.leg, self.length - s, self.leg))
-        return np.stack([-self.bend_radius * np.cos(angle), np.zeros_like(s), rise + self.bend_radius * np.sin(angle)], axis=-1)
+        angle = np.clip(
+            (s - self.leg) / self.bend_radius, 0.0, pi
+        )  # 0 where the bend begins on the left, pi on the right
+        rise = np.where(
+            s < self.leg, s, np.where(s > self.length - self.leg, self.length - s, self.leg)
+        )
+        return np.stack(
+            [
+                -self.bend_radius * np.cos(angle),
+                np.zeros_like(s),
+                rise + self.bend_radius * np.sin(angle),
+            ],
+            axis=-1,
+        )
 
     def tangent(self, s):
         """(…, 2) x and z of the unit tangent at arc length s [m]."""
@@ -57,7 +80,9 @@ class Tube:
         return np.stack([np.sin(angle), np.cos(angle)], axis=-1)
 
     def bend(self, angle: float) -> float:
-        """Arc length in m of a point of the bend, angle [rad] from the apex, positive towards the right leg."""
+        """Arc length in m of a point of the bend, angle [rad] from the apex, positive towards the
+        right leg.
+        """
         return self.leg + self.bend_radius * (0.5 * pi + angle)
 
     def leg_height(self, side: str, z: float) -> float:
@@ -65,9 +90,13 @@ class Tube:
         return z if side == "left" else self.length - z
 
     def plate_nodes(self, side: str):
-        """(contact_nodes,) arc lengths in m of the contact nodes of the plate of a side, upwards."""
+        """(contact_nodes,) arc lengths in m of the contact nodes of the plate of a side,
+        upwards.
+        """
         half = 0.5 * self.plate_length if self.contact_nodes > 1 else 0.0
-        heights = np.linspace(self.plate_height - half, self.plate_height + half, self.contact_nodes)
+        heights = np.linspace(
+            self.plate_height - half, self.plate_height + half, self.contact_nodes
+        )
         return np.array([self.leg_height(side, z) for z in heights])
 
     def with_changes(self, **changes):
@@ -76,16 +105,30 @@ class Tube:
 
 
 TUBES = {
-    "stand_in": Tube(outer_diameter=0.02222, wall=0.00127, leg=0.70, bend_radius=0.30, plate_height=0.35),
-    "dev": Tube(outer_diameter=0.01905, wall=0.00109, leg=0.625, bend_radius=0.30, plate_height=0.25),
+    "stand_in": Tube(
+        outer_diameter=0.02222, wall=0.00127, leg=0.70, bend_radius=0.30, plate_height=0.35
+    ),
+    "dev": Tube(
+        outer_diameter=0.01905, wall=0.00109, leg=0.625, bend_radius=0.30, plate_height=0.25
+    ),
 }
 
 
 def named_places(tube: Tube) -> dict:
     """Arc length in m of the places that sensors, masses and springs are put at, by name."""
-    def upper(side):  # between the plate and the bend, off the middle, as in the development campaigns
+
+    def upper(
+        side,
+    ):  # between the plate and the bend, off the middle, as in the development campaigns
         return tube.leg_height(side, tube.plate_height + 0.5227 * (tube.leg - tube.plate_height))
 
-    return {"apex": tube.bend(0.0), "drive": tube.bend(-tube.drive_angle), "bend45_right": tube.bend(pi / 4), "bend45_left": tube.bend(-pi / 4),
-            "left_leg_upper": upper("left"), "right_leg_upper": upper("right"), "left_leg_lower": 0.716 * tube.plate_height,
-            "right_leg_lower": tube.leg_height("right", 0.716 * tube.plate_height)}
+    return {
+        "apex": tube.bend(0.0),
+        "drive": tube.bend(-tube.drive_angle),
+        "bend45_right": tube.bend(pi / 4),
+        "bend45_left": tube.bend(-pi / 4),
+        "left_leg_upper": upper("left"),
+        "right_leg_upper": upper("right"),
+        "left_leg_lower": 0.716 * tube.plate_height,
+        "right_leg_lower": tube.leg_height("right", 0.716 * tube.plate_height),
+    }

@@ -1,6 +1,8 @@
-"""The effects that can be hidden in a rig: one function per id, changing a Rig in place; parameters in SI, named as in the catalogue.
+"""The effects that can be hidden in a rig: one function per id, changing a Rig in place; parameters
+in SI, named as in the catalogue.
 
-EFFECTS are of the catalogue, STRANGERS are not. `places` are the names of geometry.named_places; `plates` is "both", "left" or "right".
+EFFECTS are of the catalogue, STRANGERS are not. `places` are the names of geometry.named_places;
+`plates` is "both", "left" or "right".
 """
 
 import numpy as np
@@ -8,7 +10,9 @@ import numpy as np
 from vibroimpact_truth.rig import Element, LooseMass
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-HERTZ_POINTS = 5  # the catalogue states the coefficient per contact point of a plate with five; here the plate's total is kept
+# the catalogue states the coefficient per contact point of a plate with five; here the plate's
+# total is kept
+HERTZ_POINTS = 5
 
 
 def chosen(rig, plates):
@@ -47,7 +51,9 @@ def hertz(rig, coefficient=2.0e8, plates="both"):
 
 
 def dry_friction(rig, mu=0.2, slip_speed=0.0, plates="both"):
-    """Coulomb friction mu of the plates: a Dahl bristle, or tanh(v / slip_speed [m/s]) where slip_speed is positive."""
+    """Coulomb friction mu of the plates: a Dahl bristle, or tanh(v / slip_speed [m/s]) where
+    slip_speed is positive.
+    """
     for plate in chosen(rig, plates):
         plate.friction, plate.slip_speed = mu, slip_speed
 
@@ -59,7 +65,9 @@ def support_offset(rig, offset_x=0.0, offset_y=1.0e-4, plates="both"):
 
 
 def foliate_obstacle(rig, lobes=4, depth=2.0e-4, angle=0.3, shape="lobes", plates="both"):
-    """Hole with `lobes` lands at the angle [rad]: shape "lobes" has arcs with recesses of depth [m] between them, "lands" is flat lands."""
+    """Hole with `lobes` lands at the angle [rad]: shape "lobes" has arcs with recesses of depth [m]
+    between them, "lands" is flat lands.
+    """
     for plate in chosen(rig, plates):
         plate.profile, plate.lobes, plate.depth, plate.angle = shape, lobes, depth, angle
 
@@ -129,7 +137,9 @@ def quadratic_drag(rig, drag=20.0):
 
 
 def coulomb_friction(rig, force=1.0, place="apex", direction="y"):
-    """Friction of a limit [N] between a place and the ground, a Dahl bristle that yields in 10 micrometres."""
+    """Friction of a limit [N] between a place and the ground, a Dahl bristle that yields in 10
+    micrometres.
+    """
     rig.elements.append(Element("coulomb", place, AXES[direction], (force, force / 1.0e-5)))
 
 
@@ -139,7 +149,9 @@ def clearance(rig, half_gap=5.0e-4, stiffness=5.0e4, place="apex", direction="y"
 
 
 def force_misalignment(rig, angle=0.3):
-    """The force turned by angle [rad] about the tube's axis, from y towards the outside of the bend."""
+    """The force turned by angle [rad] about the tube's axis, from y towards the outside of the
+    bend.
+    """
     rig.drive_angle += angle
 
 
@@ -149,7 +161,9 @@ def loose_mass(rig, mass=0.05, clearance=2.0e-4, place="apex"):
 
 
 def hysteretic_root(rig, stiffness=3.0e3, limit=0.3, translation=1.0e9, rotation=1.2e4):
-    """Roots on springs, of whose rotation [N m/rad] a part `stiffness` slips by hysteresis at the limit [N m] (Bouc-Wen)."""
+    """Roots on springs, of whose rotation [N m/rad] a part `stiffness` slips by hysteresis at the
+    limit [N m] (Bouc-Wen).
+    """
     rig.root = (translation, rotation)
     for root in ("left_root", "right_root"):
         for axis in ("rx", "ry"):
@@ -173,14 +187,49 @@ def unmeasured_force(rig, rms=0.5, place="right_leg_upper", direction="y"):
 
 
 def tilted_plate(rig, slope=0.012, direction="y", plates="left"):
-    """Plates whose axis leans by the slope [rad] against the tube, so that they touch at an edge first."""
+    """Plates whose axis leans by the slope [rad] against the tube, so that they touch at an edge
+    first.
+    """
     for plate in chosen(rig, plates):
         plate.tilt = tuple(slope * np.array(AXES[direction][:2]))
 
 
-EFFECTS = {function.__name__: function for function in (
-    gap, contact_stiffness, contact_damping, hunt_crossley, hertz, dry_friction, support_offset, foliate_obstacle, preload, plate_flexibility,
-    root_stiffness, modal_damping, mode_frequency_error, added_mass, lateral_stinger, fluid_added_mass_damping, cubic_stiffness,
-    quadratic_stiffness, saturation_stiffness, quadratic_drag, coulomb_friction, clearance, force_misalignment)}  # fmt: skip
-STRANGERS = {function.__name__: function for function in (
-    loose_mass, hysteretic_root, drifting_gap, one_sided_stop, unmeasured_force, tilted_plate)}  # fmt: skip
+EFFECTS = {
+    function.__name__: function
+    for function in (
+        gap,
+        contact_stiffness,
+        contact_damping,
+        hunt_crossley,
+        hertz,
+        dry_friction,
+        support_offset,
+        foliate_obstacle,
+        preload,
+        plate_flexibility,
+        root_stiffness,
+        modal_damping,
+        mode_frequency_error,
+        added_mass,
+        lateral_stinger,
+        fluid_added_mass_damping,
+        cubic_stiffness,
+        quadratic_stiffness,
+        saturation_stiffness,
+        quadratic_drag,
+        coulomb_friction,
+        clearance,
+        force_misalignment,
+    )
+}
+STRANGERS = {
+    function.__name__: function
+    for function in (
+        loose_mass,
+        hysteretic_root,
+        drifting_gap,
+        one_sided_stop,
+        unmeasured_force,
+        tilted_plate,
+    )
+}

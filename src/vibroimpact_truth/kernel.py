@@ -1,10 +1,13 @@
-"""The compiled march: kick, drift, kick with the drift exact. All compiled code of the package is in this file.
+"""The compiled march: kick, drift, kick with the drift exact. All compiled code of the package is
+in this file.
 
-Per step h: v += h × (all forces at the displacement now), then every mode turns exactly as a damped oscillator left alone. Symmetric, of
-second order, symplectic where nothing is lost; linear motion has no period error at any step. The force of a contact sees the modes kept
-plus the static compliance of those left out (`residual`), by two passes of a contraction of about 0.03.
-Sources: E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), XIII.1 (impulse method); P. Dahl, AIAA J. 14 (1976)
-1675-1682 (friction); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102 (1976) 249-263 (hysteresis).
+Per step h: v += h × (all forces at the displacement now), then every mode turns exactly as a damped
+oscillator left alone. Symmetric, of second order, symplectic where nothing is lost; linear motion
+has no period error at any step. The force of a contact sees the modes kept plus the static
+compliance of those left out (`residual`), by two passes of a contraction of about 0.03. Sources: E.
+Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), XIII.1 (impulse method); P.
+Dahl, AIAA J. 14 (1976) 1675-1682 (friction); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102 (1976)
+249-263 (hysteresis).
 """
 
 from typing import NamedTuple
@@ -12,25 +15,42 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-SHAPES, ROWS, NODES = 4, 8, 8  # shapes that the nodes of a plate follow in one plane; rows projected at once; places for nodes of a plate
-RUNAWAY = 1.0e6  # m sqrt(kg), where a march is given up; false for what is no number, as isfinite is not with these flags
-# Without references counted (nothing here allocates): counting them costs as much as the contact itself.
+# shapes that the nodes of a plate follow in one plane; rows projected at once; places for nodes of
+# a plate
+SHAPES = 4
+ROWS = 8
+NODES = 8
+# m sqrt(kg), where a march is given up; false for what is no number, as isfinite is not with these
+# flags
+RUNAWAY = 1.0e6
+# Without references counted (nothing here allocates): counting them costs as much as the contact
+# itself.
 NRT = {"cache": True, "error_model": "numpy", "_nrt": False}
 FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 # Columns of the table of plates.
 STIFFNESS, DAMPING, HUNT, HERTZ, MU, BRISTLE, SLIP_SPEED, MOBILITY = 0, 1, 2, 3, 4, 5, 6, 7
-GAP, GAP_RATE, OFFSET_X, OFFSET_Y, PROFILE, LOBES, DEPTH, ANGLE, LAND = 8, 9, 10, 11, 12, 13, 14, 15, 16
+GAP = 8
+GAP_RATE = 9
+OFFSET_X = 10
+OFFSET_Y = 11
+PROFILE = 12
+LOBES = 13
+DEPTH = 14
+ANGLE = 15
+LAND = 16
 PLATE_MASS, PLATE_STIFFNESS, PLATE_DAMPING, PLATE_COLUMNS = 17, 18, 19, 20
 LOOSE_MASS, LOOSE_GAP, LOOSE_STIFFNESS, LOOSE_DAMPING = 0, 1, 2, 3
 
 
 class Contacts(NamedTuple):
-    """Contact nodes, eight places per plate, unused ones with no share. The rows of a plate's nodes span few shapes: rows = lift × shape.
+    """Contact nodes, eight places per plate, unused ones with no share. The rows of a plate's nodes
+    span few shapes: rows = lift × shape.
 
-    lift_y, lift_x (plate, SHAPES, node); share (plate, node) of the plate's stiffness; residual_y, residual_x (plate, node, node) m/N; tilt_y,
-    tilt_x (plate, node) m: the hole's axis beside the plate's centre; shape_y (8, y mode), shape_x (8, x mode): SHAPES rows per plate, two
-    plates at most.
+    lift_y, lift_x (plate, SHAPES, node); share (plate, node) of the plate's stiffness; residual_y,
+    residual_x (plate, node, node) m/N; tilt_y, tilt_x (plate, node) m: the hole's axis beside the
+    plate's centre; shape_y (8, y mode), shape_x (8, x mode): SHAPES rows per plate, two plates at
+    most.
     """
 
     lift_y: np.ndarray
@@ -45,8 +65,10 @@ class Contacts(NamedTuple):
 
 
 class Locals(NamedTuple):
-    """Local elements: law (element,), parameters (element, 4), rows (element, mode); loose masses (mass, 4), rows (mass, mode) along y and x;
-    drag N s²/m² per station (station,) and its rows (station, mode) across the tube along y and in plane."""
+    """Local elements: law (element,), parameters (element, 4), rows (element, mode); loose masses
+    (mass, 4), rows (mass, mode) along y and x; drag N s²/m² per station (station,) and its rows
+    (station, mode) across the tube along y and in plane.
+    """
 
     law: np.ndarray
     parameters: np.ndarray
@@ -60,7 +82,9 @@ class Locals(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a march changes: q, v (mode,), bristle, contact force fx, fy (plate, node), memory (element,), plate (plate, 4), loose (mass, 4)."""
+    """What a march changes: q, v (mode,), bristle, contact force fx, fy (plate, node), memory
+    (element,), plate (plate, 4), loose (mass, 4).
+    """
 
     q: np.ndarray
     v: np.ndarray
@@ -74,7 +98,9 @@ class State(NamedTuple):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def obstacle(table, gap, x, y):
-    """Penetration (negative when free) and outward normal of the obstacle of a plate nearest to (x, y); one land only where it has lands."""
+    """Penetration (negative when free) and outward normal of the obstacle of a plate nearest to (x,
+    y); one land only where it has lands.
+    """
     radius = np.sqrt(x * x + y * y)
     kind = int(table[PROFILE])
     if kind == 0:
@@ -88,7 +114,8 @@ def obstacle(table, gap, x, y):
     if kind == 1:
         nx, ny = np.cos(table[ANGLE] + nearest), np.sin(table[ANGLE] + nearest)
         return x * nx + y * ny - gap, nx, ny
-    # Lobes: an arc of radius gap over each land, then a sine-squared recess of the depth between the lands.
+    # Lobes: an arc of radius gap over each land, then a sine-squared recess of the depth between
+    # the lands.
     off = turn - nearest
     beyond = abs(off) - table[LAND]
     edge, slope = gap, 0.0
@@ -106,8 +133,12 @@ def obstacle(table, gap, x, y):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def normal_force(table, share, depth, rate):
-    """Normal force in N, never a pull, of a node that carries `share` of the plate: penetration m and its rate m/s."""
-    elastic = table[STIFFNESS] * depth if table[HERTZ] == 0.0 else table[HERTZ] * depth * np.sqrt(depth)
+    """Normal force in N, never a pull, of a node that carries `share` of the plate: penetration m
+    and its rate m/s.
+    """
+    elastic = (
+        table[STIFFNESS] * depth if table[HERTZ] == 0.0 else table[HERTZ] * depth * np.sqrt(depth)
+    )
     return max(0.0, share * (elastic * (1.0 + table[HUNT] * rate) + table[DAMPING] * rate))
 
 
@@ -115,12 +146,19 @@ def normal_force(table, share, depth, rate):
 def friction_force(table, share, bristle, normal, speed, step):
     """Tangential force in N on the tube and the bristle deflection in m after this step.
 
-    A Dahl bristle, integrated exactly over a step of constant speed; with a slip speed, Coulomb smoothed by tanh, limited so that it
-    can not turn the sliding round within a step.
+    A Dahl bristle, integrated exactly over a step of constant speed; with a slip speed, Coulomb
+    smoothed by tanh, limited so that it can not turn the sliding round within a step.
     """
     limit = table[MU] * normal
     if table[SLIP_SPEED] > 0.0:
-        return -np.sign(speed) * min(limit * np.tanh(abs(speed) / table[SLIP_SPEED]), 0.5 * abs(speed) / (step * table[MOBILITY])), 0.0
+        return (
+            -np.sign(speed)
+            * min(
+                limit * np.tanh(abs(speed) / table[SLIP_SPEED]),
+                0.5 * abs(speed) / (step * table[MOBILITY]),
+            ),
+            0.0,
+        )
     if limit == 0.0:
         return 0.0, 0.0
     stiffness = share * table[BRISTLE]
@@ -133,10 +171,12 @@ def friction_force(table, share, bristle, normal, speed, step):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def element_force(law, p, d, v, memory, step):
-    """Force in N (or N m) of a local element at displacement d, rate v, and its memory after this step; p: its parameters.
+    """Force in N (or N m) of a local element at displacement d, rate v, and its memory after this
+    step; p: its parameters.
 
-    linear k, c; cubic k3; quadratic k2; saturation k, limit (smooth); coulomb limit, bristle stiffness; clearance half gap, k; bouc_wen k, limit
-    (the spring k of the structure made hysteretic); one_sided k, distance; drag c.
+    linear k, c; cubic k3; quadratic k2; saturation k, limit (smooth); coulomb limit, bristle
+    stiffness; clearance half gap, k; bouc_wen k, limit (the spring k of the structure made
+    hysteretic); one_sided k, distance; drag c.
     """
     if law == 0:
         return -p[0] * d - p[1] * v, memory
@@ -154,7 +194,9 @@ def element_force(law, p, d, v, memory, step):
     if law == 5:
         over = max(0.0, d - p[0]) + min(0.0, d + p[0])
         return -p[1] * over, memory
-    if law == 6:  # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²), and the structure's own k d is given back
+    if (
+        law == 6
+    ):  # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²), and the structure's own k d is given back
         end = p[1] / p[0]
         share = memory / end
         memory += step * v * (1.0 - (0.5 + 0.5 * np.sign(v * memory)) * share * share)
@@ -200,15 +242,42 @@ def project(rows, first, q, out):
 
 @njit(fastmath=FAST, **NRT)
 def advance(rows, q, v, turn, step, force, drive, extra, load, place):
-    """Kick every mode by force × drive + extra + loads on the eight rows, turn it exactly, and project the new place on the rows.
+    """Kick every mode by force × drive + extra + loads on the eight rows, turn it exactly, and
+    project the new place on the rows.
 
-    Plain: v += step (force drive + extra + rows' load); q, v = turn (q, v); place = rows q. One pass, as memory is what it costs.
+    Plain: v += step (force drive + extra + rows' load); q, v = turn (q, v); place = rows q. One
+    pass, as memory is what it costs.
     """
     a = b = c = d = e = f = g = h = 0.0
-    l0, l1, l2, l3, l4, l5, l6, l7 = load[0], load[1], load[2], load[3], load[4], load[5], load[6], load[7]
+    l0 = load[0]
+    l1 = load[1]
+    l2 = load[2]
+    l3 = load[3]
+    l4 = load[4]
+    l5 = load[5]
+    l6 = load[6]
+    l7 = load[7]
     for m in range(len(q)):
-        r0, r1, r2, r3, r4, r5, r6, r7 = rows[0, m], rows[1, m], rows[2, m], rows[3, m], rows[4, m], rows[5, m], rows[6, m], rows[7, m]
-        kick = force * drive[m] + extra[m] + l0 * r0 + l1 * r1 + l2 * r2 + l3 * r3 + l4 * r4 + l5 * r5 + l6 * r6 + l7 * r7
+        r0 = rows[0, m]
+        r1 = rows[1, m]
+        r2 = rows[2, m]
+        r3 = rows[3, m]
+        r4 = rows[4, m]
+        r5 = rows[5, m]
+        r6 = rows[6, m]
+        r7 = rows[7, m]
+        kick = (
+            force * drive[m]
+            + extra[m]
+            + l0 * r0
+            + l1 * r1
+            + l2 * r2
+            + l3 * r3
+            + l4 * r4
+            + l5 * r5
+            + l6 * r6
+            + l7 * r7
+        )
         u, w = q[m], v[m] + step * kick
         x = turn[0, m] * u + turn[1, m] * w
         q[m] = x
@@ -221,12 +290,23 @@ def advance(rows, q, v, turn, step, force, drive, extra, load, place):
         f += r5 * x
         g += r6 * x
         h += r7 * x
-    place[0], place[1], place[2], place[3], place[4], place[5], place[6], place[7] = a, b, c, d, e, f, g, h
+    place[0], place[1], place[2], place[3], place[4], place[5], place[6], place[7] = (
+        a,
+        b,
+        c,
+        d,
+        e,
+        f,
+        g,
+        h,
+    )
 
 
 @njit(fastmath=FAST, **NRT)
 def lifted(lift, p, amplitude, nodes):
-    """nodes[p, :] = displacement (or rate) of the nodes of plate p from the amplitudes (8,) of the shapes."""
+    """nodes[p, :] = displacement (or rate) of the nodes of plate p from the amplitudes (8,) of the
+    shapes.
+    """
     for i in range(NODES):
         nodes[p, i] = 0.0
     for k in range(SHAPES):
@@ -237,7 +317,9 @@ def lifted(lift, p, amplitude, nodes):
 
 @njit(fastmath=FAST, **NRT)
 def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, step):
-    """Force fx, fy in N on the tube of a node at (ux, uy) from the plate's centre, moving at the rates; and its bristle."""
+    """Force fx, fy in N on the tube of a node at (ux, uy) from the plate's centre, moving at the
+    rates; and its bristle.
+    """
     depth, nx, ny = obstacle(table, gap, ux, uy)
     if depth <= 0.0:
         return 0.0, 0.0, 0.0
@@ -249,12 +331,23 @@ def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, step):
 
 
 @njit(fastmath=FAST, **NRT)
-def contact_forces(contacts, plates, state, place_y, place_x, load_y, load_x, work, elapsed, ramp, step, touching):
-    """load_y, load_x (8,): forces of all contacts on the shapes, at their places (8,); touching (plate,) 1.0 where a node touches.
+def contact_forces(
+    contacts, plates, state, place_y, place_x, load_y, load_x, work, elapsed, ramp, step, touching
+):
+    """load_y, load_x (8,): forces of all contacts on the shapes, at their places (8,); touching
+    (plate,) 1.0 where a node touches.
 
-    work (8, plate, 8): displacements x and y, the same with the residual, rates x and y, rates of the shapes x and y.
+    work (8, plate, 8): displacements x and y, the same with the residual, rates x and y, rates of
+    the shapes x and y.
     """
-    ux, uy, ex, ey, wx, wy, rate_x, rate_y = work[0], work[1], work[2], work[3], work[4], work[5], work[6, 0], work[7, 0]
+    ux = work[0]
+    uy = work[1]
+    ex = work[2]
+    ey = work[3]
+    wx = work[4]
+    wy = work[5]
+    rate_x = work[6, 0]
+    rate_y = work[7, 0]
     fx, fy = state.fx, state.fy
     rates_known = False
     for k in range(ROWS):
@@ -289,8 +382,17 @@ def contact_forces(contacts, plates, state, place_y, place_x, load_y, load_x, wo
                     ex[p, i] += contacts.residual_x[p, j, i] * fx[p, j]
                     ey[p, i] += contacts.residual_y[p, j, i] * fy[p, j]
             for i in range(NODES):
-                fx[p, i], fy[p, i], bristle = node_forces(plates[p], contacts.share[p, i], gap, ex[p, i], ey[p, i], wx[p, i] - state.plate[p, 2],
-                                                          wy[p, i] - state.plate[p, 3], state.bristle[p, i], step)
+                fx[p, i], fy[p, i], bristle = node_forces(
+                    plates[p],
+                    contacts.share[p, i],
+                    gap,
+                    ex[p, i],
+                    ey[p, i],
+                    wx[p, i] - state.plate[p, 2],
+                    wy[p, i] - state.plate[p, 3],
+                    state.bristle[p, i],
+                    step,
+                )
                 if last:
                     state.bristle[p, i] = bristle
         for k in range(SHAPES):
@@ -319,17 +421,29 @@ def plate_step(plates, state, step, resultant):
         table = plates[p]
         if table[PLATE_MASS] > 0.0:
             for k in range(2):
-                load = -resultant[p, k] - table[PLATE_STIFFNESS] * state.plate[p, k] - table[PLATE_DAMPING] * state.plate[p, 2 + k]
+                load = (
+                    -resultant[p, k]
+                    - table[PLATE_STIFFNESS] * state.plate[p, k]
+                    - table[PLATE_DAMPING] * state.plate[p, 2 + k]
+                )
                 state.plate[p, 2 + k] += step * load / table[PLATE_MASS]
                 state.plate[p, k] += step * state.plate[p, 2 + k]
 
 
 @njit(fastmath=FAST, **NRT)
 def local_kick(local, state, kick, step):
-    """Add the forces of local elements, drag and loose masses to the modal kick; loose masses are kicked and moved here."""
+    """Add the forces of local elements, drag and loose masses to the modal kick; loose masses are
+    kicked and moved here.
+    """
     for e in range(len(local.law)):
-        force, state.memory[e] = element_force(local.law[e], local.parameters[e], dot(local.row[e], state.q), dot(local.row[e], state.v),
-                                               state.memory[e], step)
+        force, state.memory[e] = element_force(
+            local.law[e],
+            local.parameters[e],
+            dot(local.row[e], state.q),
+            dot(local.row[e], state.v),
+            state.memory[e],
+            step,
+        )
         add(kick, local.row[e], force)
     for s in range(len(local.drag)):
         wy, wx = dot(local.drag_y[s], state.v), dot(local.drag_x[s], state.v)
@@ -337,13 +451,18 @@ def local_kick(local, state, kick, step):
         add(kick, local.drag_y[s], factor * wy)
         add(kick, local.drag_x[s], factor * wx)
     for b in range(len(local.loose)):
-        mass, gap, stiffness, damping = local.loose[b, 0], local.loose[b, 1], local.loose[b, 2], local.loose[b, 3]
+        mass = local.loose[b, 0]
+        gap = local.loose[b, 1]
+        stiffness = local.loose[b, 2]
+        damping = local.loose[b, 3]
         x = state.loose[b, 0] - dot(local.loose_x[b], state.q)
         y = state.loose[b, 1] - dot(local.loose_y[b], state.q)
         radius = np.sqrt(x * x + y * y)
         if radius > gap:
             nx, ny = x / radius, y / radius
-            rate = nx * (state.loose[b, 2] - dot(local.loose_x[b], state.v)) + ny * (state.loose[b, 3] - dot(local.loose_y[b], state.v))
+            rate = nx * (state.loose[b, 2] - dot(local.loose_x[b], state.v)) + ny * (
+                state.loose[b, 3] - dot(local.loose_y[b], state.v)
+            )
             force = max(0.0, stiffness * (radius - gap) + damping * rate)
             add(kick, local.loose_x[b], force * nx)
             add(kick, local.loose_y[b], force * ny)
@@ -354,16 +473,43 @@ def local_kick(local, state, kick, step):
 
 
 @njit(fastmath=FAST, cache=True, error_model="numpy")
-def march(split, turn, contacts, plates, local, drive, force, other, unmeasured, dead, ramp, sensors, step, stride, start, state, out, reaction, touched):
-    """March len(force) steps; out (sample, channel) displacements m, reaction (sample, 2 plate) N, one sample per `stride` steps.
+def march(
+    split,
+    turn,
+    contacts,
+    plates,
+    local,
+    drive,
+    force,
+    other,
+    unmeasured,
+    dead,
+    ramp,
+    sensors,
+    step,
+    stride,
+    start,
+    state,
+    out,
+    reaction,
+    touched,
+):
+    """March len(force) steps; out (sample, channel) displacements m, reaction (sample, 2 plate) N,
+    one sample per `stride` steps.
 
-    split: number of the "y" modes, which come first. turn (4, mode): the exact drift q' = t0 q + t1 v, v' = t2 q + t3 v. drive (mode,) and force (step,) N; other (mode,) and unmeasured (step or
-    0,) N a second one; dead (mode,) dead load, ramp (step or 1,) its factor, and that of the offsets. sensors (channel, mode), channels a multiple of 8. start: time in s at the first step. touched
-    (plate,) is increased by the steps in contact. Returns the number of the step at which the state is no longer finite, or -1.
+    split: number of the "y" modes, which come first. turn (4, mode): the exact drift q' = t0 q + t1
+    v, v' = t2 q + t3 v. drive (mode,) and force (step,) N; other (mode,) and unmeasured (step or
+    0,) N a second one; dead (mode,) dead load, ramp (step or 1,) its factor, and that of the
+    offsets. sensors (channel, mode), channels a multiple of 8. start: time in s at the first step.
+    touched (plate,) is increased by the steps in contact. Returns the number of the step at which
+    the state is no longer finite, or -1.
     """
     modes, count = len(state.q), len(plates)
     extra, work = np.zeros(modes), np.zeros((8, max(count, 1), NODES))
-    place_y, place_x, load_y, load_x = np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS)
+    place_y = np.zeros(ROWS)
+    place_x = np.zeros(ROWS)
+    load_y = np.zeros(ROWS)
+    load_x = np.zeros(ROWS)
     resultant, touching, sample = np.zeros((count, 2)), np.ones(count), np.zeros(len(sensors))
     qy, qx, vy, vx = state.q[:split], state.q[split:], state.v[:split], state.v[split:]
     turn_y, turn_x = turn[:, :split].copy(), turn[:, split:].copy()
@@ -380,7 +526,20 @@ def march(split, turn, contacts, plates, local, drive, force, other, unmeasured,
             second = unmeasured[n] if len(unmeasured) else 0.0
             for m in range(modes):
                 extra[m] = scale * dead[m] + second * other[m]
-        contact_forces(contacts, plates, state, place_y, place_x, load_y, load_x, work, start + n * step, scale, step, touching)
+        contact_forces(
+            contacts,
+            plates,
+            state,
+            place_y,
+            place_x,
+            load_y,
+            load_x,
+            work,
+            start + n * step,
+            scale,
+            step,
+            touching,
+        )
         for p in range(count):
             touched[p] += touching[p]
         if has_local:

@@ -1,4 +1,6 @@
-"""One record: the rig marched from rest under a force, its accelerations and plate forces decimated to the sampling frequency."""
+"""One record: the rig marched from rest under a force, its accelerations and plate forces decimated
+to the sampling frequency.
+"""
 
 from dataclasses import dataclass
 
@@ -9,12 +11,18 @@ from vibroimpact_truth import kernel
 
 STRIDE = 4  # steps per sample before decimation: 40960 Hz, where the modes end at 15000 Hz
 SETTLE_S = 2.5  # dead loads and offsets are brought in this slowly, before the record
-PASS_HZ, STOP_HZ, STOP_DB = 800.0, 1024.0, 86.0  # "fir80" of the contract at 2048 Hz, with 6 dB in hand
+PASS_HZ, STOP_HZ, STOP_DB = (
+    800.0,
+    1024.0,
+    86.0,
+)  # "fir80" of the contract at 2048 Hz, with 6 dB in hand
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """acceleration (channel, time) m/s² and reaction (plate, 2, time) N on the tube at the sampling frequency; contact (plate,) share of time."""
+    """acceleration (channel, time) m/s² and reaction (plate, 2, time) N on the tube at the sampling
+    frequency; contact (plate,) share of time.
+    """
 
     acceleration: np.ndarray
     reaction: np.ndarray
@@ -30,12 +38,21 @@ def upsample(force, factor):
 
 
 def anti_alias(fast, factor):
-    """Linear-phase filter (odd number of taps) at `fast` Hz before keeping every `factor`-th sample; edges scale with the sampling frequency."""
+    """Linear-phase filter (odd number of taps) at `fast` Hz before keeping every `factor`-th
+    sample; edges scale with the sampling frequency.
+    """
     scale = fast / factor / 2048.0
     width = (STOP_HZ - PASS_HZ) * scale
     taps = int(np.ceil((STOP_DB - 7.95) / (2.285 * 2.0 * np.pi * width / fast))) + 1
-    half = -(-taps // (2 * factor)) * factor  # a whole number of kept samples, so that the delay can be removed exactly
-    return firwin(2 * half + 1, 0.5 * (PASS_HZ + STOP_HZ) * scale, window=("kaiser", kaiser_beta(STOP_DB)), fs=fast)
+    half = (
+        -(-taps // (2 * factor)) * factor
+    )  # a whole number of kept samples, so that the delay can be removed exactly
+    return firwin(
+        2 * half + 1,
+        0.5 * (PASS_HZ + STOP_HZ) * scale,
+        window=("kaiser", kaiser_beta(STOP_DB)),
+        fs=fast,
+    )
 
 
 def decimate(series, factor, taps):
@@ -46,54 +63,110 @@ def decimate(series, factor, taps):
 
 
 def accelerations(displacement, step):
-    """(…, time) second differences over `step` [s] of displacements that begin at rest, 0.02 dB low at 1 kHz.
+    """(…, time) second differences over `step` [s] of displacements that begin at rest, 0.02 dB low
+    at 1 kHz.
 
-    Not the modal forces at the kicks: there omega² q answers a steady force g by g (1 - (omega step)²/12), which would leave the sensors near
-    a plate with a share of the contact force at frequencies where they hardly move.
+    Not the modal forces at the kicks: there omega² q answers a steady force g by g (1 - (omega
+    step)²/12), which would leave the sensors near a plate with a share of the contact force at
+    frequencies where they hardly move.
     """
     change = np.diff(displacement, axis=-1, prepend=displacement[..., :1])
     return np.diff(change, axis=-1, append=change[..., -1:]) / step**2
 
 
 def rest_state(reduced, imperfection, rng):
-    """A State at rest but for a seeded push of `imperfection` m on the first in-plane modes, so that nothing rides on round-off."""
+    """A State at rest but for a seeded push of `imperfection` m on the first in-plane modes, so
+    that nothing rides on round-off.
+    """
     modes, plates = len(reduced.frequency), len(reduced.plates)
-    state = kernel.State(np.zeros(modes), np.zeros(modes), *np.zeros((3, plates, kernel.NODES)), np.zeros(len(reduced.local.law)),
-                         np.zeros((plates, 4)), np.zeros((len(reduced.local.loose), 4)))
+    state = kernel.State(
+        np.zeros(modes),
+        np.zeros(modes),
+        *np.zeros((3, plates, kernel.NODES)),
+        np.zeros(len(reduced.local.law)),
+        np.zeros((plates, 4)),
+        np.zeros((len(reduced.local.loose), 4)),
+    )
     first = slice(reduced.split, reduced.split + 4)
     state.q[first] = imperfection * rng.standard_normal(4)
     return state
 
 
 def run_record(reduced, force, gap, sampling, steps_per_second, rng, start=0.0, unmeasured=None):
-    """The Record of a force (time,) N at `sampling` Hz; gap: (plate,) m; start: s of the campaign that went by before it;
-    unmeasured: (time,) N of a second force, or None."""
+    """The Record of a force (time,) N at `sampling` Hz; gap: (plate,) m; start: s of the campaign
+    that went by before it; unmeasured: (time,) N of a second force, or None.
+    """
     factor = round(steps_per_second / sampling)
     step, plates = 1.0 / steps_per_second, reduced.plates.copy()
     plates[:, kernel.GAP] = gap
-    state, turn = rest_state(reduced, 1e-6 * float(np.min(gap)), rng), reduced.turn(1.0 / steps_per_second)
+    state = rest_state(reduced, 1e-6 * float(np.min(gap)), rng)
+    turn = reduced.turn(1.0 / steps_per_second)
     group = (reduced.split, turn, reduced.contacts, plates, reduced.local, reduced.drive)
     touched = np.zeros(len(plates))
-    if reduced.dead.any() or plates[:, [kernel.OFFSET_X, kernel.OFFSET_Y]].any() or reduced.contacts.tilt_y.any() or reduced.contacts.tilt_x.any():
+    if (
+        reduced.dead.any()
+        or plates[:, [kernel.OFFSET_X, kernel.OFFSET_Y]].any()
+        or reduced.contacts.tilt_y.any()
+        or reduced.contacts.tilt_x.any()
+    ):
         count = int(SETTLE_S * steps_per_second)
         grow = 0.5 - 0.5 * np.cos(np.pi * np.minimum(np.arange(count) / (0.8 * count), 1.0))
-        _require_finite(kernel.march(*group, np.zeros(count), reduced.other, np.zeros(0), reduced.dead, grow, reduced.sensors[:0], step, count, start, state,
-                                     np.zeros((1, 0)), np.zeros((1, 2 * len(plates))), touched), step)
+        _require_finite(
+            kernel.march(
+                *group,
+                np.zeros(count),
+                reduced.other,
+                np.zeros(0),
+                reduced.dead,
+                grow,
+                reduced.sensors[:0],
+                step,
+                count,
+                start,
+                state,
+                np.zeros((1, 0)),
+                np.zeros((1, 2 * len(plates))),
+                touched,
+            ),
+            step,
+        )
         touched[:] = 0.0
     steps = len(force) * factor
     second = np.zeros(0) if unmeasured is None else upsample(unmeasured, factor)
     channels = len(reduced.sensors)
     sensors = np.zeros((-(-channels // kernel.ROWS) * kernel.ROWS, len(reduced.frequency)))
     sensors[:channels] = reduced.sensors
-    fast, reaction = np.zeros((steps // STRIDE, len(sensors))), np.zeros((steps // STRIDE, 2 * len(plates)))
-    _require_finite(kernel.march(*group, upsample(force, factor), reduced.other, second, reduced.dead, np.ones(1), sensors, step, STRIDE, start, state, fast,
-                                 reaction, touched), step)
+    fast = np.zeros((steps // STRIDE, len(sensors)))
+    reaction = np.zeros((steps // STRIDE, 2 * len(plates)))
+    _require_finite(
+        kernel.march(
+            *group,
+            upsample(force, factor),
+            reduced.other,
+            second,
+            reduced.dead,
+            np.ones(1),
+            sensors,
+            step,
+            STRIDE,
+            start,
+            state,
+            fast,
+            reaction,
+            touched,
+        ),
+        step,
+    )
     taps = anti_alias(steps_per_second / STRIDE, factor // STRIDE)
-    slow, forces = decimate(accelerations(fast[:, :channels].T, step * STRIDE), factor // STRIDE, taps), decimate(reaction.T, factor // STRIDE, taps)
+    slow = decimate(accelerations(fast[:, :channels].T, step * STRIDE), factor // STRIDE, taps)
+    forces = decimate(reaction.T, factor // STRIDE, taps)
     return Record(slow, forces.reshape(len(plates), 2, -1), touched / steps)
 
 
 def _require_finite(failed, step):
     """Raise FloatingPointError where the march went to infinity."""
     if failed >= 0:
-        raise FloatingPointError(f"the march is no longer finite at t = {failed * step:.4f} s: more steps per second, or weaker parameters")
+        raise FloatingPointError(
+            f"the march is no longer finite at t = {failed * step:.4f} s: more steps per second, or"
+            " weaker parameters"
+        )

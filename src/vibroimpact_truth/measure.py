@@ -1,10 +1,14 @@
-"""What instruments make of the truth: gains, delays, noise, and faults. Ids that end up here leave the rig alone."""
+"""What instruments make of the truth: gains, delays, noise, and faults. Ids that end up here leave
+the rig alone.
+"""
 
 import numpy as np
 
 
 def sensor_gain(data, channel="apex_y", factor=1.15):
-    """A channel, "force", or "all" (the force and every response: the exact alias of a scaled gap) times factor."""
+    """A channel, "force", or "all" (the force and every response: the exact alias of a scaled gap)
+    times factor.
+    """
     if channel in ("force", "all"):
         data.force *= factor
     for number, name in enumerate(data.names):
@@ -53,7 +57,9 @@ INSTRUMENTS = SENSOR_EFFECTS | FAULTS
 
 
 class Measured:
-    """Force (record, time) and response (record, channel, time) on their way through the instruments; names of the channels, sampling Hz."""
+    """Force (record, time) and response (record, channel, time) on their way through the
+    instruments; names of the channels, sampling Hz.
+    """
 
     def __init__(self, force, response, names, sampling):
         self.force, self.response, self.names, self.sampling = force, response, names, sampling

@@ -1,4 +1,6 @@
-"""Modes of a rig, to about 15 kHz, and everything the march needs of them; what the modes left out still yield statically."""
+"""Modes of a rig, to about 15 kHz, and everything the march needs of them; what the modes left out
+still yield statically.
+"""
 
 from dataclasses import dataclass
 
@@ -17,8 +19,10 @@ LANES = 8  # modes of a plane are filled up to a multiple
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """What march needs, and the modes themselves, (mode,): omega2 rad²/s², rate = 2 zeta omega 1/s, frequency Hz, damping ratio, real False for
-    the fillers of 1 Hz; the `split` modes of the "y" plane come first."""
+    """What march needs, and the modes themselves, (mode,): omega2 rad²/s², rate = 2 zeta omega 1/s,
+    frequency Hz, damping ratio, real False for the fillers of 1 Hz; the `split` modes of the "y"
+    plane come first.
+    """
 
     split: int
     omega2: np.ndarray
@@ -40,7 +44,9 @@ class Reduced:
 
 
 def turn_of(omega2, rate, step):
-    """(4, mode) exact drift of damped oscillators, omega2 rad²/s² and rate 2 zeta omega 1/s, over a step [s]; less than critical damping."""
+    """(4, mode) exact drift of damped oscillators, omega2 rad²/s² and rate 2 zeta omega 1/s, over a
+    step [s]; less than critical damping.
+    """
     damped = np.sqrt(omega2 - 0.25 * rate**2)
     decay = np.exp(-0.5 * rate * step)
     sine, cosine = decay * np.sin(damped * step) / damped, decay * np.cos(damped * step)
@@ -48,7 +54,9 @@ def turn_of(omega2, rate, step):
 
 
 class Planes:
-    """The finite-element matrices of a rig in both planes, with its springs, masses, fluid and roots."""
+    """The finite-element matrices of a rig in both planes, with its springs, masses, fluid and
+    roots.
+    """
 
     def __init__(self, rig, element_length=0.036):
         self.rig, self.mesh = rig, Mesh(rig.tube, element_length)
@@ -62,7 +70,10 @@ class Planes:
             for direction in np.eye(3):
                 self._add(self.mass, place, direction, value)
         last = 3 * self.mesh.nodes
-        ends = {"y": ([0, last - 3], [1, 2, last - 2, last - 1]), "x": ([0, 1, last - 3, last - 2], [2, last - 1])}
+        ends = {
+            "y": ([0, last - 3], [1, 2, last - 2, last - 1]),
+            "x": ([0, 1, last - 3, last - 2], [2, last - 1]),
+        }
         self.free = {}
         for plane, (moves, turns) in ends.items():
             self.free[plane] = np.ones(last, bool)
@@ -82,31 +93,43 @@ class Planes:
                 matrices[plane] += value * np.outer(row, row)
 
     def rows(self, place, direction):
-        """{plane: (dof,)} displacement along direction (3,) at a place, or the rotation of the left root about "rx" or "ry"."""
+        """{plane: (dof,)} displacement along direction (3,) at a place, or the rotation of the left
+        root about "rx" or "ry".
+        """
         size = 3 * self.mesh.nodes
         if isinstance(direction, str):
             rows = {"y": np.zeros(size), "x": np.zeros(size)}
             end = 0 if place == "left_root" else size - 3
             rows["y" if direction == "rx" else "x"][end + (1 if direction == "rx" else 2)] = 1.0
             return rows
-        return dict(zip(("y", "x"), self.mesh.direction_rows(self.arc(place), direction), strict=True))
+        return dict(
+            zip(("y", "x"), self.mesh.direction_rows(self.arc(place), direction), strict=True)
+        )
 
     def modes(self, plane, highest=None, extra=()):
-        """(mode,) frequencies [Hz] and (dof, mode) mass-normalised shapes up to `highest` Hz; extra: (row, N/m) springs."""
+        """(mode,) frequencies [Hz] and (dof, mode) mass-normalised shapes up to `highest` Hz;
+        extra: (row, N/m) springs.
+        """
         free = self.free[plane]
         stiffness = self.stiffness[plane].copy()
         for row, value in extra:
             stiffness += value * np.outer(row, row)
         bounds = None if highest is None else (-1.0, (2.0 * np.pi * highest) ** 2)
-        values, vectors = eigh(stiffness[np.ix_(free, free)], self.mass[plane][np.ix_(free, free)], subset_by_value=bounds)
+        values, vectors = eigh(
+            stiffness[np.ix_(free, free)],
+            self.mass[plane][np.ix_(free, free)],
+            subset_by_value=bounds,
+        )
         shapes = np.zeros((len(free), len(values)))
         shapes[free] = vectors
         return np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi), shapes
 
 
 def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
-    """The Reduced rig. sensors: (place, direction (3,)) of the accelerations; scatter: {frequency, damping: factor of a mode by its number
-    from 0 in order of frequency} as functions of the number of modes, or None; highest: Hz of the last mode kept."""
+    """The Reduced rig. sensors: (place, direction (3,)) of the accelerations; scatter: {frequency,
+    damping: factor of a mode by its number from 0 in order of frequency} as functions of the number
+    of modes, or None; highest: Hz of the last mode kept.
+    """
     planes = Planes(rig)
     found = {plane: planes.modes(plane, highest) for plane in ("y", "x")}
     width = {plane: -(-len(found[plane][0]) // LANES) * LANES for plane in found}
@@ -135,7 +158,9 @@ def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
     if rig.fluid[1]:
         for plane, part in where.items():
             across = planes.mesh.matrices(plane, 1.0)[1] - planes.mesh.matrices(plane, 0.0)[1]
-            rate[part] += rig.fluid[1] * np.einsum("im,im->m", found[plane][1], across @ found[plane][1])
+            rate[part] += rig.fluid[1] * np.einsum(
+                "im,im->m", found[plane][1], across @ found[plane][1]
+            )
 
     contacts = _contacts(planes, found, split, modes)
     plates = _plate_table(rig, contacts)
@@ -143,9 +168,21 @@ def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
     for plate in rig.plates:
         middle = float(np.median(rig.tube.plate_nodes(plate.side)))
         dead += project(planes.rows(middle, (plate.preload[0], plate.preload[1], 0.0)))
-    return Reduced(split, omega**2, rate, contacts, plates, _locals(planes, project), project(_drive_rows(planes)),
-                   project(planes.rows(*rig.unmeasured[:2])) if rig.unmeasured else np.zeros(modes), dead,
-                   np.array([project(planes.rows(place, direction)) for place, direction in sensors]), frequency, ratio, real)
+    return Reduced(
+        split,
+        omega**2,
+        rate,
+        contacts,
+        plates,
+        _locals(planes, project),
+        project(_drive_rows(planes)),
+        project(planes.rows(*rig.unmeasured[:2])) if rig.unmeasured else np.zeros(modes),
+        dead,
+        np.array([project(planes.rows(place, direction)) for place, direction in sensors]),
+        frequency,
+        ratio,
+        real,
+    )
 
 
 def _damping(rig, frequency, real):
@@ -156,10 +193,15 @@ def _damping(rig, frequency, real):
 
 
 def _drive_rows(planes):
-    """Rows of the force: along y, turned by drive_angle about the tube's axis towards the outside of the bend."""
+    """Rows of the force: along y, turned by drive_angle about the tube's axis towards the outside
+    of the bend.
+    """
     rig = planes.rig
     tx, tz = rig.tube.tangent(planes.places["drive"])
-    return planes.rows("drive", (-np.sin(rig.drive_angle) * tz, np.cos(rig.drive_angle), np.sin(rig.drive_angle) * tx))
+    return planes.rows(
+        "drive",
+        (-np.sin(rig.drive_angle) * tz, np.cos(rig.drive_angle), np.sin(rig.drive_angle) * tx),
+    )
 
 
 def _contacts(planes, found, split, modes):
@@ -172,7 +214,9 @@ def _contacts(planes, found, split, modes):
     for p, plate in enumerate(rig.plates):
         arcs = rig.tube.plate_nodes(plate.side)
         share[p, : len(arcs)] = 1.0 / len(arcs)
-        tilt[:, p, : len(arcs)] = np.outer(plate.tilt, np.abs(arcs - arcs[0]) - 0.5 * abs(arcs[-1] - arcs[0]))
+        tilt[:, p, : len(arcs)] = np.outer(
+            plate.tilt, np.abs(arcs - arcs[0]) - 0.5 * abs(arcs[-1] - arcs[0])
+        )
     for plane, direction in (("y", (0.0, 1.0, 0.0)), ("x", (1.0, 0.0, 0.0))):
         free = planes.free[plane]
         factor = cho_factor(planes.stiffness[plane][np.ix_(free, free)])
@@ -182,13 +226,29 @@ def _contacts(planes, found, split, modes):
             nodes = slice(0, len(arcs))
             row = np.array([planes.rows(s, direction)[plane] for s in arcs])
             projected = row @ shapes
-            residual[plane][p, nodes, nodes] = (row[:, free] @ cho_solve(factor, row[:, free].T)
-                                                - (projected / (2.0 * np.pi * frequency) ** 2) @ projected.T)  # fmt: skip
+            residual[plane][p, nodes, nodes] = (
+                row[:, free] @ cho_solve(factor, row[:, free].T)
+                - (projected / (2.0 * np.pi * frequency) ** 2) @ projected.T
+            )
             left, size, right = np.linalg.svd(projected, full_matrices=False)
-            kept = min(kernel.SHAPES, len(size))  # seven nodes within 30 mm follow four shapes to about 1e-5
+            kept = min(
+                kernel.SHAPES, len(size)
+            )  # seven nodes within 30 mm follow four shapes to about 1e-5
             lift[plane][p, :kept, nodes] = left[:, :kept].T
-            shape[plane][kernel.SHAPES * p : kernel.SHAPES * p + kept, : len(frequency)] = size[:kept, None] * right[:kept]
-    return kernel.Contacts(lift["y"], lift["x"], share, residual["y"], residual["x"], tilt[1], tilt[0], shape["y"], shape["x"])
+            shape[plane][kernel.SHAPES * p : kernel.SHAPES * p + kept, : len(frequency)] = (
+                size[:kept, None] * right[:kept]
+            )
+    return kernel.Contacts(
+        lift["y"],
+        lift["x"],
+        share,
+        residual["y"],
+        residual["x"],
+        tilt[1],
+        tilt[0],
+        shape["y"],
+        shape["x"],
+    )
 
 
 def _plate_table(rig, contacts):
@@ -198,14 +258,29 @@ def _plate_table(rig, contacts):
         rows = contacts.lift_y[p].T @ contacts.shape_y[kernel.SHAPES * p : kernel.SHAPES * (p + 1)]
         row[kernel.STIFFNESS], row[kernel.DAMPING] = plate.stiffness, plate.damping
         row[kernel.HUNT], row[kernel.HERTZ] = plate.hunt_crossley, plate.hertz
-        row[kernel.MU], row[kernel.BRISTLE], row[kernel.SLIP_SPEED] = plate.friction, plate.stick_ratio * plate.stiffness, plate.slip_speed
-        row[kernel.MOBILITY] = np.linalg.eigvalsh(rows @ rows.T)[-1]  # of the whole plate sliding at once, 1/kg
+        row[kernel.MU], row[kernel.BRISTLE], row[kernel.SLIP_SPEED] = (
+            plate.friction,
+            plate.stick_ratio * plate.stiffness,
+            plate.slip_speed,
+        )
+        row[kernel.MOBILITY] = np.linalg.eigvalsh(rows @ rows.T)[
+            -1
+        ]  # of the whole plate sliding at once, 1/kg
         row[kernel.GAP_RATE] = plate.gap_rate
         row[kernel.OFFSET_X], row[kernel.OFFSET_Y] = plate.offset
-        row[kernel.PROFILE], row[kernel.LOBES], row[kernel.DEPTH] = PROFILES[plate.profile], plate.lobes, plate.depth
+        row[kernel.PROFILE], row[kernel.LOBES], row[kernel.DEPTH] = (
+            PROFILES[plate.profile],
+            plate.lobes,
+            plate.depth,
+        )
         row[kernel.ANGLE], row[kernel.LAND] = plate.angle, plate.land_half_angle
-        row[kernel.PLATE_MASS], row[kernel.PLATE_STIFFNESS] = plate.plate_mass, plate.plate_stiffness
-        row[kernel.PLATE_DAMPING] = 2.0 * PLATE_DAMPING_RATIO * np.sqrt(plate.plate_mass * plate.plate_stiffness)
+        row[kernel.PLATE_MASS], row[kernel.PLATE_STIFFNESS] = (
+            plate.plate_mass,
+            plate.plate_stiffness,
+        )
+        row[kernel.PLATE_DAMPING] = (
+            2.0 * PLATE_DAMPING_RATIO * np.sqrt(plate.plate_mass * plate.plate_stiffness)
+        )
     return table
 
 
@@ -221,13 +296,37 @@ def _locals(planes, project):
         laws.append(LAWS[element.law])
         parameters.append([*element.parameters, *[0.0] * (4 - len(element.parameters))])
     modes = len(project(planes.rows("apex", (0.0, 0.0, 0.0))))
-    loose = np.array([[mass.mass, mass.clearance, mass.stiffness, mass.damping] for mass in rig.loose]).reshape(-1, 4)
-    loose_rows = [np.array([project(planes.rows(mass.place, _across(rig.tube, planes.arc(mass.place))[k])) for mass in rig.loose]).reshape(-1, modes)
-                  for k in range(2)]
-    stations = (np.arange(DRAG_STATIONS) + 0.5) * rig.tube.length / DRAG_STATIONS if rig.drag else []
-    drag_rows = [np.array([project(planes.rows(s, _across(rig.tube, s)[k])) for s in stations]).reshape(-1, modes) for k in range(2)]
-    return kernel.Locals(np.array(laws, np.int64), np.array(parameters, float).reshape(-1, 4), np.array(rows, float).reshape(-1, modes), loose,
-                         loose_rows[0], loose_rows[1], np.full(len(stations), rig.drag * rig.tube.length / DRAG_STATIONS), *drag_rows)
+    loose = np.array(
+        [[mass.mass, mass.clearance, mass.stiffness, mass.damping] for mass in rig.loose]
+    ).reshape(-1, 4)
+    loose_rows = [
+        np.array(
+            [
+                project(planes.rows(mass.place, _across(rig.tube, planes.arc(mass.place))[k]))
+                for mass in rig.loose
+            ]
+        ).reshape(-1, modes)
+        for k in range(2)
+    ]
+    stations = (
+        (np.arange(DRAG_STATIONS) + 0.5) * rig.tube.length / DRAG_STATIONS if rig.drag else []
+    )
+    drag_rows = [
+        np.array([project(planes.rows(s, _across(rig.tube, s)[k])) for s in stations]).reshape(
+            -1, modes
+        )
+        for k in range(2)
+    ]
+    return kernel.Locals(
+        np.array(laws, np.int64),
+        np.array(parameters, float).reshape(-1, 4),
+        np.array(rows, float).reshape(-1, modes),
+        loose,
+        loose_rows[0],
+        loose_rows[1],
+        np.full(len(stations), rig.drag * rig.tube.length / DRAG_STATIONS),
+        *drag_rows,
+    )
 
 
 def _across(tube, s):

@@ -1,20 +1,35 @@
-"""What a test rig is made of: the tube and everything that an effect may change on it. Plain data, SI units."""
+"""What a test rig is made of: the tube and everything that an effect may change on it. Plain data,
+SI units.
+"""
 
 from dataclasses import dataclass, field
 
 from vibroimpact_truth.geometry import Tube
 
-LAWS = {"linear": 0, "cubic": 1, "quadratic": 2, "saturation": 3, "coulomb": 4, "clearance": 5, "bouc_wen": 6, "one_sided": 7, "drag": 8}
+LAWS = {
+    "linear": 0,
+    "cubic": 1,
+    "quadratic": 2,
+    "saturation": 3,
+    "coulomb": 4,
+    "clearance": 5,
+    "bouc_wen": 6,
+    "one_sided": 7,
+    "drag": 8,
+}
 PROFILES = {"circle": 0, "lands": 1, "lobes": 2}
 
 
 @dataclass
 class Plate:
-    """A support plate: radial gap = gap_factor × nominal (+ gap_rate per second of the campaign, relative), centre offset m, laws of the
-    contact (stiffness N/m, damping N s/m, hertz N/m^1.5 are totals of the plate, shared by its nodes; hertz > 0 replaces the stiffness),
-    friction (mu; bristle of stick_ratio × stiffness, or tanh(v / slip_speed) where slip_speed m/s > 0), profile of the hole (lobes or lands,
-    angle rad, depth m, land_half_angle rad), preload N in x and y, a mass [kg] on a spring [N/m] where the plate
-    yields, and the tilt of its axis, rad towards x and y."""
+    """A support plate: radial gap = gap_factor × nominal (+ gap_rate per second of the campaign,
+    relative), centre offset m, laws of the contact (stiffness N/m, damping N s/m, hertz N/m^1.5 are
+    totals of the plate, shared by its nodes; hertz > 0 replaces the stiffness), friction (mu;
+    bristle of stick_ratio × stiffness, or tanh(v / slip_speed) where slip_speed m/s > 0), profile
+    of the hole (lobes or lands, angle rad, depth m, land_half_angle rad), preload N in x and y, a
+    mass [kg] on a spring [N/m] where the plate yields, and the tilt of its axis, rad towards x and
+    y.
+    """
 
     side: str
     stiffness: float
@@ -40,9 +55,11 @@ class Plate:
 
 @dataclass
 class Element:
-    """A local force law between a place of the tube and the ground, or two places; parameters as in kernel.element_force.
+    """A local force law between a place of the tube and the ground, or two places; parameters as in
+    kernel.element_force.
 
-    component: (3,) direction of the displacement, or "rx" or "ry", the rotation of the place "left_root" or "right_root".
+    component: (3,) direction of the displacement, or "rx" or "ry", the rotation of the place
+    "left_root" or "right_root".
     """
 
     law: str
@@ -54,7 +71,9 @@ class Element:
 
 @dataclass
 class LooseMass:
-    """A mass [kg] free within a round clearance [m] inside the tube at a place, wall stiffness N/m and damping N s/m."""
+    """A mass [kg] free within a round clearance [m] inside the tube at a place, wall stiffness N/m
+    and damping N s/m.
+    """
 
     place: str
     mass: float
@@ -67,9 +86,10 @@ class LooseMass:
 class Rig:
     """The tube with its supports and all that is hidden in it.
 
-    springs: (place, direction, N/m) to ground; dashpots likewise in N s/m; masses: (place, kg); root: (N/m, N m/rad) or None, clamped; fluid:
-    (kg/m, N s/m²); drag N s²/m² per metre; mode_factor: {mode number from 1: factor of its frequency}; drive_angle rad about the tube's axis;
-    unmeasured: (place, direction, RMS relative to the drive's) of a second force.
+    springs: (place, direction, N/m) to ground; dashpots likewise in N s/m; masses: (place, kg);
+    root: (N/m, N m/rad) or None, clamped; fluid: (kg/m, N s/m²); drag N s²/m² per metre;
+    mode_factor: {mode number from 1: factor of its frequency}; drive_angle rad about the tube's
+    axis; unmeasured: (place, direction, RMS relative to the drive's) of a second force.
     """
 
     tube: Tube

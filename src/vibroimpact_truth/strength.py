@@ -1,4 +1,6 @@
-"""How strong what is hidden is: excess of the misfit over its floor, against the same campaign with nothing hidden."""
+"""How strong what is hidden is: excess of the misfit over its floor, against the same campaign with
+nothing hidden.
+"""
 
 import numpy as np
 
@@ -11,12 +13,17 @@ def band_powers(series, sampling):
     samples = series.shape[-1]
     window = np.hanning(samples)
     power = np.abs(np.fft.rfft(series * window)) ** 2 * 2.0 / (samples * np.sum(window**2))
-    edges = np.searchsorted(np.fft.rfftfreq(samples, 1.0 / sampling), np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1))
-    return np.stack([power[..., a:b].sum(axis=-1) for a, b in zip(edges[:-1], edges[1:], strict=True)], axis=-1)
+    edges = np.searchsorted(
+        np.fft.rfftfreq(samples, 1.0 / sampling), np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
+    )
+    return np.stack(
+        [power[..., a:b].sum(axis=-1) for a, b in zip(edges[:-1], edges[1:], strict=True)], axis=-1
+    )
 
 
 def distance(one, others, audible, either=False):
-    """RMS over bands and channels, in dB, of band powers one (…, band) against the mean of others (twin, …, band), where `one` is audible.
+    """RMS over bands and channels, in dB, of band powers one (…, band) against the mean of others
+    (twin, …, band), where `one` is audible.
 
     either: also where the mean alone is, as when an effect silences a channel.
     """
@@ -26,11 +33,14 @@ def distance(one, others, audible, either=False):
 
 
 def excess(seen, bare, again, noise, sampling):
-    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of seen (record, channel, time), noise RMS (channel,).
+    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of seen (record, channel,
+    time), noise RMS (channel,).
 
-    bare (twin, record, channel, time): the same with nothing hidden, from other starts; again, as many: with the same hidden. lsd: seen against
-    the mean of the bare; floor: each of seen and again against the mean of the rest. Pairs alone scatter by a factor of 1.7 in 20 s records.
-    The last counts bands that either holds 6 dB above noise, the others those that `seen` does, as the misfit is defined.
+    bare (twin, record, channel, time): the same with nothing hidden, from other starts; again, as
+    many: with the same hidden. lsd: seen against the mean of the bare; floor: each of seen and
+    again against the mean of the rest. Pairs alone scatter by a factor of 1.7 in 20 s records. The
+    last counts bands that either holds 6 dB above noise, the others those that `seen` does, as the
+    misfit is defined.
     """
     edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
     audible = ABOVE_NOISE * (noise**2)[:, None] * np.diff(edges) / (0.5 * sampling)
@@ -38,7 +48,21 @@ def excess(seen, bare, again, noise, sampling):
     found = {}
     for either in (True, False):
         lsd = distance(powers[0], band_powers(np.asarray(bare), sampling), audible, either)
-        floor = np.sqrt(np.mean([distance(one, np.delete(powers, k, axis=0), audible, either) ** 2 for k, one in enumerate(powers)]))
+        floor = np.sqrt(
+            np.mean(
+                [
+                    distance(one, np.delete(powers, k, axis=0), audible, either) ** 2
+                    for k, one in enumerate(powers)
+                ]
+            )
+        )
         value = np.sqrt(max(0.0, lsd**2 - floor**2))
-        found["either_over_floor" if either else "excess_over_floor"] = round(float(value / floor), 2)
-    return {"lsd_dB": round(lsd, 3), "floor_dB": round(float(floor), 3), "excess_dB": round(float(value), 3), **found}
+        found["either_over_floor" if either else "excess_over_floor"] = round(
+            float(value / floor), 2
+        )
+    return {
+        "lsd_dB": round(lsd, 3),
+        "floor_dB": round(float(floor), 3),
+        "excess_dB": round(float(value), 3),
+        **found,
+    }

@@ -1,4 +1,6 @@
-"""The campaign file, written with netCDF4 to the letter of the campaign contract; nothing in it tells what is hidden."""
+"""The campaign file, written with netCDF4 to the letter of the campaign contract; nothing in it
+tells what is hidden.
+"""
 
 import os
 from pathlib import Path
@@ -10,23 +12,45 @@ import numpy as np
 def write_campaign(path, force, response, channels, drive, records, sampling, noise=None):
     """Write a campaign file, under a temporary name first.
 
-    force (record, time) N; response (record, channel, time); channels: {name, units, kind, point (3,) m, direction (3,)} each; drive: the same
-    for the force; records: {name, gap m, repeat, split} each; noise: (channel,) RMS, or None.
+    force (record, time) N; response (record, channel, time); channels: {name, units, kind, point
+    (3,) m, direction (3,)} each; drive: the same for the force; records: {name, gap m, repeat,
+    split} each; noise: (channel,) RMS, or None.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.part{os.getpid()}")
     with netCDF4.Dataset(part, "w") as file:
-        file.setncatts({"Conventions": "CF-1.8", "sampling_frequency": float(sampling), "antialias": "fir80", "start_up": "rest",
-                        "period_samples": np.int64(0), "transient_periods": np.int64(0), "source": "sealed campaign"})
-        for name, size in (("record", len(records)), ("force_channel", 1), ("channel", len(channels)), ("time", force.shape[-1]), ("xyz", 3)):
+        file.setncatts(
+            {
+                "Conventions": "CF-1.8",
+                "sampling_frequency": float(sampling),
+                "antialias": "fir80",
+                "start_up": "rest",
+                "period_samples": np.int64(0),
+                "transient_periods": np.int64(0),
+                "source": "sealed campaign",
+            }
+        )
+        for name, size in (
+            ("record", len(records)),
+            ("force_channel", 1),
+            ("channel", len(channels)),
+            ("time", force.shape[-1]),
+            ("xyz", 3),
+        ):
             file.createDimension(name, size)
         _series(file, "force", ("record", "force_channel", "time"), force[:, None], units="N")
         _series(file, "response", ("record", "channel", "time"), response)
         _described(file, "channel", channels, ("units", "kind"))
         _described(file, "force_channel", [drive], ())
         _text(file, "record_name", "record", [record["name"] for record in records])
-        _numbers(file, "load_rms", ("record",), np.sqrt(np.mean(np.square(force.astype(np.float32), dtype=float), axis=-1)), units="N")
+        _numbers(
+            file,
+            "load_rms",
+            ("record",),
+            np.sqrt(np.mean(np.square(force.astype(np.float32), dtype=float), axis=-1)),
+            units="N",
+        )
         _numbers(file, "gap", ("record",), [record["gap"] for record in records], units="m")
         _numbers(file, "repeat", ("record",), [record["repeat"] for record in records], kind="i8")
         _text(file, "split", "record", [record["split"] for record in records])
@@ -38,7 +62,9 @@ def write_campaign(path, force, response, channels, drive, records, sampling, no
 
 def _series(file, name, dims, values, **attributes):
     """A compressed float32 time series."""
-    variable = file.createVariable(name, "f4", dims, zlib=True, complevel=1, shuffle=True, fill_value=np.float32(np.nan))
+    variable = file.createVariable(
+        name, "f4", dims, zlib=True, complevel=1, shuffle=True, fill_value=np.float32(np.nan)
+    )
     variable.setncatts(attributes)
     variable[:] = values
 
@@ -59,5 +85,7 @@ def _described(file, dim, channels, more):
     """Name, point, direction and `more` of the channels of a dimension."""
     for key in ("name", *more):
         _text(file, f"{dim}_{key}", dim, [channel[key] for channel in channels])
-    _numbers(file, f"{dim}_point", (dim, "xyz"), [channel["point"] for channel in channels], units="m")
+    _numbers(
+        file, f"{dim}_point", (dim, "xyz"), [channel["point"] for channel in channels], units="m"
+    )
     _numbers(file, f"{dim}_direction", (dim, "xyz"), [channel["direction"] for channel in channels])

@@ -3,21 +3,58 @@
 import numpy as np
 import pytest
 
-from vibroimpact.config import check_config
+from vibroimpact.config.reading import check_config
 from vibroimpact.discrepancy.candidates import Candidate
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.reduction import build_model
+from vibroimpact.reduction.reduced_model import build_model
 
 CATALOGUE = {
-    "gap", "contact_stiffness", "contact_damping", "hunt_crossley", "hertz", "dry_friction", "support_offset", "foliate_obstacle", "preload", "plate_flexibility",
-    "root_stiffness", "modal_damping", "mode_frequency_error", "added_mass", "lateral_stinger", "fluid_added_mass_damping", "cubic_stiffness",
-    "quadratic_stiffness", "saturation_stiffness", "quadratic_drag", "coulomb_friction", "clearance", "force_misalignment", "shaker_interaction",
-    "sensor_gain", "sensor_delay",
-}  # fmt: skip
-SCALES = {"one": 1.0, "gap": 2.5e-4, "load": 10.0, "displacement": 2.5e-4, "contact_stiffness": 4.0e6, "hertz": 3.0e8, "gap_force": 20.0, "mass": 0.5,
-          "mass_per_length": 0.2, "tube_translation": 4.6e3, "tube_rotation": 230.0, "tube_damping": 1.5, "damping_per_length": 0.7, "cubic": 7.0e10,
-          "quadratic": 1.8e7, "drag": 20.0}  # fmt: skip
+    "gap",
+    "contact_stiffness",
+    "contact_damping",
+    "hunt_crossley",
+    "hertz",
+    "dry_friction",
+    "support_offset",
+    "foliate_obstacle",
+    "preload",
+    "plate_flexibility",
+    "root_stiffness",
+    "modal_damping",
+    "mode_frequency_error",
+    "added_mass",
+    "lateral_stinger",
+    "fluid_added_mass_damping",
+    "cubic_stiffness",
+    "quadratic_stiffness",
+    "saturation_stiffness",
+    "quadratic_drag",
+    "coulomb_friction",
+    "clearance",
+    "force_misalignment",
+    "shaker_interaction",
+    "sensor_gain",
+    "sensor_delay",
+}
+SCALES = {
+    "one": 1.0,
+    "gap": 2.5e-4,
+    "load": 10.0,
+    "displacement": 2.5e-4,
+    "contact_stiffness": 4.0e6,
+    "hertz": 3.0e8,
+    "gap_force": 20.0,
+    "mass": 0.5,
+    "mass_per_length": 0.2,
+    "tube_translation": 4.6e3,
+    "tube_rotation": 230.0,
+    "tube_damping": 1.5,
+    "damping_per_length": 0.7,
+    "cubic": 7.0e10,
+    "quadratic": 1.8e7,
+    "drag": 20.0,
+}
 OF_THE_MODEL = sorted(effect.id for effect in EFFECTS.values() if not effect.measured)
 
 
@@ -42,32 +79,64 @@ def test_a_variant_is_a_valid_configuration_and_the_original_stays(study_config,
     before = repr(values)
     for location in EFFECTS[name].locations(values):
         candidate = Candidate(name, location)
-        varied = candidate.variant(values, candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES))
+        varied = candidate.variant(
+            values, candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES)
+        )
         assert varied != values
         check_config(varied, name)
     assert repr(values) == before
 
 
-@pytest.mark.parametrize("name", [name for name in OF_THE_MODEL if EFFECTS[name].neutral() is not None])
+@pytest.mark.parametrize(
+    "name", [name for name in OF_THE_MODEL if EFFECTS[name].neutral() is not None]
+)
 def test_neutral_is_the_bare_model_bit_for_bit(study_config, name):
     effect = EFFECTS[name]
     values = study_config.model_dump(mode="json")
-    neutral = build_model(check_config(effect.apply(values, effect.neutral(), effect.locations(values)[0]), name))
+    neutral = build_model(
+        check_config(effect.apply(values, effect.neutral(), effect.locations(values)[0]), name)
+    )
     bare = build_model(study_config)
     assert np.array_equal(neutral.omega, bare.omega)
     assert np.array_equal(neutral.damping, bare.damping)
-    for column in ("contact_shapes", "contact_stiffness", "gap_factor", "centre_offset", "drive_shapes", "constant_force"):
+    for column in (
+        "contact_shapes",
+        "contact_stiffness",
+        "gap_factor",
+        "centre_offset",
+        "drive_shapes",
+        "constant_force",
+    ):
         assert np.array_equal(getattr(neutral, column), getattr(bare, column)), column
     laws = neutral.contact_laws
-    assert not laws.damping.any() and not laws.hunt_crossley.any() and not laws.hertz.any() and not laws.friction.any() and not laws.lobe_depth.any()
-    assert not any(np.any(getattr(neutral.local_laws, column)) for column in ("stiffness", "quadratic", "cubic", "damping", "drag", "slip_limit", "saturation_limit"))
+    assert (
+        not laws.damping.any()
+        and not laws.hunt_crossley.any()
+        and not laws.hertz.any()
+        and not laws.friction.any()
+        and not laws.lobe_depth.any()
+    )
+    assert not any(
+        np.any(getattr(neutral.local_laws, column))
+        for column in (
+            "stiffness",
+            "quadratic",
+            "cubic",
+            "damping",
+            "drag",
+            "slip_limit",
+            "saturation_limit",
+        )
+    )
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
 def test_normalised_parameters_come_back(name):
     candidate = Candidate(name, "all")
     unit = np.linspace(0.2, 0.7, len(EFFECTS[name].parameters))
-    np.testing.assert_allclose(candidate.normalised(candidate.physical(unit, SCALES), SCALES), unit, atol=1e-12)
+    np.testing.assert_allclose(
+        candidate.normalised(candidate.physical(unit, SCALES), SCALES), unit, atol=1e-12
+    )
 
 
 @pytest.mark.parametrize("name", [name for name in OF_THE_MODEL if EFFECTS[name].other_laws])
@@ -82,17 +151,33 @@ def test_other_laws_are_valid_configurations_and_the_original_stays(study_config
     assert repr(values) == before
 
 
-@pytest.mark.parametrize(("name", "stiffness", "limit", "parameters"), [
-    ("coulomb_friction", "stick_stiffness_N_per_m", "slip_limit_N", {"force": 4.0}),
-    ("saturation_stiffness", "saturation_stiffness_N_per_m", "saturation_limit_N", {"stiffness": 6.0e4, "limit": 20.0}),
-])  # fmt: skip
-def test_a_law_that_bends_little_by_little_is_as_stiff_and_as_strong_in_all(study_config, name, stiffness, limit, parameters):
-    """And it gives way earlier: a quarter of it at a quarter of the displacement at which the other does as a whole."""
+@pytest.mark.parametrize(
+    ("name", "stiffness", "limit", "parameters"),
+    [
+        ("coulomb_friction", "stick_stiffness_N_per_m", "slip_limit_N", {"force": 4.0}),
+        (
+            "saturation_stiffness",
+            "saturation_stiffness_N_per_m",
+            "saturation_limit_N",
+            {"stiffness": 6.0e4, "limit": 20.0},
+        ),
+    ],
+)
+def test_a_law_that_bends_little_by_little_is_as_stiff_and_as_strong_in_all(
+    study_config, name, stiffness, limit, parameters
+):
+    """And it gives way earlier: a quarter of it at a quarter of the displacement at which the other
+    does as a whole.
+    """
     values, effect = study_config.model_dump(mode="json"), EFFECTS[name]
     place = effect.locations(values)[0]
-    whole, parts = (law(values, parameters, place)["elements"] for law in (effect.apply, effect.other_laws[-1]))
+    whole, parts = (
+        law(values, parameters, place)["elements"] for law in (effect.apply, effect.other_laws[-1])
+    )
     assert len(parts) == 4 and len({part["name"] for part in parts}) == 4
     for key in (stiffness, limit):
         assert sum(part[key] for part in parts) == pytest.approx(whole[0][key])
-    yields = np.array([part[limit] / part[stiffness] for part in parts]) / (whole[0][limit] / whole[0][stiffness])
+    yields = np.array([part[limit] / part[stiffness] for part in parts]) / (
+        whole[0][limit] / whole[0][stiffness]
+    )
     np.testing.assert_allclose(yields, [0.25, 0.75, 1.25, 1.75])

@@ -3,11 +3,16 @@
 import numpy as np
 import pytest
 
-from vibroimpact.structure import build_structure
-from vibroimpact.validation.judges_calculix import karman_factor, straight_tube_frequencies
-from vibroimpact.validation.judges_modes import beam_frequencies, calculix_checks, opensees_checks, oval_bend_rows
-from vibroimpact.validation.judges_opensees import tube_nodes
-from vibroimpact.validation.judges_presence import JudgeAbsent
+from vibroimpact.structure.tube import build_structure
+from vibroimpact.validation.judges.calculix import karman_factor, straight_tube_frequencies
+from vibroimpact.validation.judges.modes import (
+    beam_frequencies,
+    calculix_checks,
+    opensees_checks,
+    oval_bend_rows,
+)
+from vibroimpact.validation.judges.opensees import tube_nodes
+from vibroimpact.validation.judges.presence import JudgeAbsent
 
 
 def failed(checks):
@@ -27,7 +32,9 @@ def test_the_judge_s_own_nodes_are_those_of_the_mesh(study_config):
     nodes, tube = tube_nodes(study_config), build_structure(study_config)
     np.testing.assert_allclose(nodes.position, tube.nodes, atol=1.0e-12)
     np.testing.assert_allclose(nodes.position[nodes.contact], tube.contact.position, atol=1.0e-12)
-    np.testing.assert_allclose(nodes.position[nodes.drive], study_config.points["shaker"], atol=1.0e-4)
+    np.testing.assert_allclose(
+        nodes.position[nodes.drive], study_config.points["shaker"], atol=1.0e-4
+    )
     finer = tube_nodes(study_config, 3)
     np.testing.assert_allclose(finer.position[::3], nodes.position, atol=1.0e-12)
     np.testing.assert_array_equal(finer.contact, 3 * nodes.contact)
@@ -43,14 +50,21 @@ def test_calculix_solid_pipe_has_the_beam_s_frequencies(study_config):
 
 def test_the_solid_pipe_is_converged(study_config):
     try:
-        coarse, fine = (straight_tube_frequencies(study_config, 1.0, 6, *bricks) for bricks in ((40, 12), (60, 16)))
+        coarse, fine = (
+            straight_tube_frequencies(study_config, 1.0, 6, *bricks)
+            for bricks in ((40, 12), (60, 16))
+        )
     except JudgeAbsent as absent:
         pytest.skip(str(absent))
     assert np.abs(coarse / fine - 1.0).max() < 1.5e-4
 
 
 def test_a_bend_as_soft_as_its_beam_changes_nothing(study_config):
-    np.testing.assert_allclose(beam_frequencies(study_config, 1.0, 1.0 + 1.0e-12), beam_frequencies(study_config, 1.0), rtol=1.0e-9)
+    np.testing.assert_allclose(
+        beam_frequencies(study_config, 1.0, 1.0 + 1.0e-12),
+        beam_frequencies(study_config, 1.0),
+        rtol=1.0e-9,
+    )
 
 
 def test_karman_s_factor_by_hand(study_config):
@@ -60,4 +74,6 @@ def test_karman_s_factor_by_hand(study_config):
 
 def test_an_oval_bend_lowers_every_frequency_and_none_by_more_than_its_stiffness(study_config):
     changes = np.array([row["relative_change"] for row in oval_bend_rows(study_config)])
-    assert np.all(changes < 0.0) and changes.min() > -0.5 * (karman_factor(study_config.structure) - 1.0)
+    assert np.all(changes < 0.0) and changes.min() > -0.5 * (
+        karman_factor(study_config.structure) - 1.0
+    )

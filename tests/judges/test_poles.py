@@ -2,11 +2,16 @@
 
 import pytest
 
-from vibroimpact.validation.judges_poles import pyoma_checks, sdypy_checks, spectrum_checks
-from vibroimpact.validation.judges_presence import JudgeAbsent
+from vibroimpact.validation.judges.poles import pyoma_checks, sdypy_checks, spectrum_checks
+from vibroimpact.validation.judges.presence import JudgeAbsent
 
 # What these packages and theirs warn of at import or at poles they throw away themselves.
-pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::SyntaxWarning", "ignore::FutureWarning", "ignore::RuntimeWarning")
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::DeprecationWarning",
+    "ignore::SyntaxWarning",
+    "ignore::FutureWarning",
+    "ignore::RuntimeWarning",
+)
 
 
 @pytest.mark.parametrize("judge", [sdypy_checks, pyoma_checks, spectrum_checks])

@@ -4,9 +4,10 @@ import sys
 
 import pytest
 
-from vibroimpact.figures.validation_judges import judged_impacts
-from vibroimpact.validation import judges, judges_presence
-from vibroimpact.validation.judges_presence import JudgeAbsent
+from vibroimpact.figures.validation.judges import judged_impacts
+from vibroimpact.validation.judges import presence as judges_presence
+from vibroimpact.validation.judges import table as judges
+from vibroimpact.validation.judges.presence import JudgeAbsent
 
 
 @pytest.fixture
@@ -17,8 +18,15 @@ def nothing_installed(monkeypatch):
     monkeypatch.setattr(judges_presence.shutil, "which", lambda _: None)
 
 
-@pytest.mark.parametrize("judge, remedy", [(judges_presence.opensees, "make judges"), (judges_presence.sdypy_ema, "make judges"),
-                                           (judges_presence.pyoma2, "make judges"), (lambda: judges_presence.calculix(""), "apt-get")])  # fmt: skip
+@pytest.mark.parametrize(
+    "judge, remedy",
+    [
+        (judges_presence.opensees, "make judges"),
+        (judges_presence.sdypy_ema, "make judges"),
+        (judges_presence.pyoma2, "make judges"),
+        (lambda: judges_presence.calculix(""), "apt-get"),
+    ],
+)
 def test_the_sentence_names_the_remedy(nothing_installed, judge, remedy):
     with pytest.raises(JudgeAbsent, match=remedy):
         judge()
@@ -26,7 +34,9 @@ def test_the_sentence_names_the_remedy(nothing_installed, judge, remedy):
 
 def test_the_study_goes_on_without_them(nothing_installed, study_config, tmp_path):
     verdicts = judges.all_verdicts(study_config)
-    assert {check.case for check in verdicts.checks} == {"judge scipy"} and all(check.passed for check in verdicts.checks)
+    assert {check.case for check in verdicts.checks} == {"judge scipy"} and all(
+        check.passed for check in verdicts.checks
+    )
     assert len(verdicts.absent) == 4 and verdicts.presence().count("Absent: ") == 4
     judged_impacts(verdicts, 1.0e-4).save(tmp_path)
     assert "OpenSees" in (tmp_path / "validation_judges.txt").read_text()

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from vibroimpact.structure import build_structure
-from vibroimpact.validation import convergence_contact_points as contact_points
-from vibroimpact.validation import convergence_mesh
-from vibroimpact.validation.convergence_rate import extrapolated, fitted_order, successive_changes
+from vibroimpact.structure.tube import build_structure
+from vibroimpact.validation.convergence import contact_points
+from vibroimpact.validation.convergence import mesh as convergence_mesh
+from vibroimpact.validation.convergence.rate import extrapolated, fitted_order, successive_changes
 from vibroimpact.validation.variant import changed
 
 
@@ -37,8 +37,11 @@ def test_frequencies_converge_with_the_mesh_at_the_orders_of_theory(mesh_rows):
 
 def test_the_bend_error_is_that_of_chords_in_place_of_arcs(mesh_rows):
     # theta²/24 is the share by which a chord is shorter than its arc; a shorter bend is stiffer.
-    own = {row["elements_per_bend"]: row["frequency_Hz"] for row in mesh_rows
-           if (row["refined"], row["theory"], row["mode"]) == ("bend", "timoshenko", 1)}
+    own = {
+        row["elements_per_bend"]: row["frequency_Hz"]
+        for row in mesh_rows
+        if (row["refined"], row["theory"], row["mode"]) == ("bend", "timoshenko", 1)
+    }
     limit = extrapolated([own[80], own[160]], 2.0)
     assert 0.5 < (own[20] / limit - 1.0) / ((np.pi / 20) ** 2 / 24) < 2.5
 
@@ -56,16 +59,28 @@ def test_published_first_frequencies_by_number_of_points(study_config):
     assert failed(contact_points.published_checks(study_config)) == []
 
 
-def test_the_first_frequency_converges_with_the_points_at_order_1_and_trapezoidal_at_order_2(study_config):
-    checks = contact_points.order_checks(contact_points.refinement_rows(study_config, stiffness=(4.0e6,)))
+def test_the_first_frequency_converges_with_the_points_at_order_1_and_trapezoidal_at_order_2(
+    study_config,
+):
+    checks = contact_points.order_checks(
+        contact_points.refinement_rows(study_config, stiffness=(4.0e6,))
+    )
     assert len(checks) == 2 and failed(checks) == []
 
 
 def test_five_points_follow_the_layer_where_the_contact_is_and_one_never_clamps(study_config):
-    rows = contact_points.contact_point_rows(study_config, sharing=(("equal", 1), ("equal", 5)), stiffness=np.array([1.0, 1e5, 4e6, 1e8, 1e9]))
-    to_contact, = contact_points.five_points_checks(study_config, rows)
+    rows = contact_points.contact_point_rows(
+        study_config,
+        sharing=(("equal", 1), ("equal", 5)),
+        stiffness=np.array([1.0, 1e5, 4e6, 1e8, 1e9]),
+    )
+    (to_contact,) = contact_points.five_points_checks(study_config, rows)
     assert to_contact.passed, to_contact.row()
     farthest = max((row["from_layer"] for row in rows if row["points"] == 5), key=abs)
-    assert 0.015 < farthest < 0.025  # the layer is left by 2 % at 1e8 N/m: the equal points turn 1.5 times too stiff
-    one = next(row["from_layer"] for row in rows if (row["points"], row["stiffness_N_per_m"]) == (1, 1e9))
+    assert (
+        0.015 < farthest < 0.025
+    )  # the layer is left by 2 % at 1e8 N/m: the equal points turn 1.5 times too stiff
+    one = next(
+        row["from_layer"] for row in rows if (row["points"], row["stiffness_N_per_m"]) == (1, 1e9)
+    )
     assert one < -0.14

@@ -1,11 +1,12 @@
-"""Effective averages and leakage of averaged spectra: formula against records, flat and resonant, Gaussian and wandering."""
+"""Effective averages and leakage of averaged spectra: formula against records, flat and resonant,
+Gaussian and wandering.
+"""
 
 import numpy as np
 import pytest
 
-from vibroimpact.spectral_kernel import spectral_kernel
-from vibroimpact.validation import convergence_impacts as impacts
-from vibroimpact.validation import convergence_spectra as spectra
+from vibroimpact.spectra.window_leakage import spectral_kernel
+from vibroimpact.validation.convergence import impacts, spectra
 
 
 def test_published_degrees_of_freedom():
@@ -20,10 +21,16 @@ def test_white_noise_has_the_degrees_of_freedom_of_the_formula(study_config):
 
 def test_ringing_between_buffers_takes_degrees_of_freedom_from_a_peak(study_config, study_model):
     records = spectra.linear_records(study_model, study_config.seed, count=256)
-    rows = spectra.linear_rows(study_model, records, ((10.0, 0.65, 49.0, "hann"), (1.0, 0.5, 49.0, "hann"), (2.0, 0.5, 49.0, "boxcar")))
+    rows = spectra.linear_rows(
+        study_model,
+        records,
+        ((10.0, 0.65, 49.0, "hann"), (1.0, 0.5, 49.0, "hann"), (2.0, 0.5, 49.0, "boxcar")),
+    )
     assert [check.row() for check in spectra.measured_checks(rows) if not check.passed] == []
     short = [row for row in rows if row["segment_s"] == 1.0]
-    assert all(row["nu_measured"] + 4.0 * row["standard_error"] < row["nu_flat"] for row in short)  # the flat formula is refuted
+    assert all(
+        row["nu_measured"] + 4.0 * row["standard_error"] < row["nu_flat"] for row in short
+    )  # the flat formula is refuted
 
 
 def test_a_buffer_without_ringing_has_the_flat_formula(study_model):
@@ -42,23 +49,37 @@ def test_the_power_kernel_is_that_of_the_window(window):
     assert expected.sum() / 8.0 == pytest.approx(1.0)
 
 
-def test_the_expected_spectrum_has_the_value_of_its_bins_and_the_level_of_a_long_buffer(study_model):
+def test_the_expected_spectrum_has_the_value_of_its_bins_and_the_level_of_a_long_buffer(
+    study_model,
+):
     spectrum = spectra.averaging(5.0, 0.5, "hann")
     frequency, psd = spectra.expected_psd(study_model, spectrum)
-    assert psd[np.argmin(np.abs(frequency - 45.0))] == pytest.approx(spectra.at_bin(study_model, 45.0, 49.0, spectrum)[0], rel=1e-3)
+    assert psd[np.argmin(np.abs(frequency - 45.0))] == pytest.approx(
+        spectra.at_bin(study_model, 45.0, 49.0, spectrum)[0], rel=1e-3
+    )
     rows = spectra.leakage_rows(study_model, segments_s=(10.0, 40.0))
     third = {(row["window"], row["segment_s"]): row for row in rows if row["peak_Hz"] > 100.0}
     assert abs(third["hann", 40.0]["level_dB"]) < 0.05 < abs(third["hann", 10.0]["level_dB"])
-    assert third["hann", 40.0]["apparent_damping_ratio"] == pytest.approx(third["hann", 40.0]["damping_ratio"], rel=0.02)
+    assert third["hann", 40.0]["apparent_damping_ratio"] == pytest.approx(
+        third["hann", 40.0]["damping_ratio"], rel=0.02
+    )
 
 
 def gaussian_estimates(seeds, wander):
-    """Return (PSD (seed, frequency), nu, correlation of bins) of white noise whose level scatters by `wander` over the seeds."""
+    """Return (PSD (seed, frequency), nu, correlation of bins) of white noise whose level scatters
+    by `wander` over the seeds.
+    """
     generator = np.random.default_rng(5)
     averaging = spectra.averaging(10.0, 0.65, "hann")
     levels = 1.0 + wander * generator.standard_normal((seeds, 1))
-    _, psd = spectra.estimates_of(np.sqrt(levels) * generator.standard_normal((seeds, 49 * 64)), 64.0, averaging)
-    return psd[:, 2:-2], spectra.effective_averages(49.0, 64.0, averaging), spectral_kernel("hann", 10.0).bin_correlation
+    _, psd = spectra.estimates_of(
+        np.sqrt(levels) * generator.standard_normal((seeds, 49 * 64)), 64.0, averaging
+    )
+    return (
+        psd[:, 2:-2],
+        spectra.effective_averages(49.0, 64.0, averaging),
+        spectral_kernel("hann", 10.0).bin_correlation,
+    )
 
 
 @pytest.mark.parametrize("bins", [1, 10, 100])

@@ -7,10 +7,10 @@ import pytest
 from scipy.special import ellipk
 
 from tests.oscillator import oscillator
-from vibroimpact.excitation import band_limited_noise
-from vibroimpact.integrate import Schedule, march_lanes
-from vibroimpact.laws import ContactLaws, LocalLaws
-from vibroimpact.trace import trace_lanes
+from vibroimpact.contact.laws import ContactLaws, LocalLaws
+from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.integration.batch import Schedule, march_lanes
+from vibroimpact.integration.every_step import trace_lanes
 
 RATE = 100_000
 RUN = {}  # the scheme of the test
@@ -25,13 +25,27 @@ def scheme(request, monkeypatch):
 def trace(model, seconds, rate=RATE, gap=1.0):
     """The step-by-step run of one case without a force."""
     points = model.support_of_point.size
-    return trace_lanes(model, rate, round(seconds * rate), np.array([gap]), np.zeros((points, 2, 1)), lambda first, count: np.zeros((count, 1, 1)),
-                       RUN["scheme"])  # fmt: skip
+    return trace_lanes(
+        model,
+        rate,
+        round(seconds * rate),
+        np.array([gap]),
+        np.zeros((points, 2, 1)),
+        lambda first, count: np.zeros((count, 1, 1)),
+        RUN["scheme"],
+    )
 
 
 def launched(mass=1.0, contact_stiffness=1e6, speed=1.0, **laws):
     """A free mass that leaves the origin towards a flat stop 1 mm away."""
-    return oscillator(mass, 0.0, contact_stiffness=contact_stiffness, lands=[(1.0, 0.0)], velocity=(speed, 0.0), contact={"gap": 1e-3, **laws})
+    return oscillator(
+        mass,
+        0.0,
+        contact_stiffness=contact_stiffness,
+        lands=[(1.0, 0.0)],
+        velocity=(speed, 0.0),
+        contact={"gap": 1e-3, **laws},
+    )
 
 
 def rebound(run):
@@ -46,7 +60,9 @@ def test_elastic_stop_returns_the_launch_speed():
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
 def test_kelvin_voigt_restitution_and_no_pull(ratio):
-    """Speed at which k p + c dp/dt comes back to 0 on the exact motion p'' + 2 zeta w p' + w² p = 0 from p = 0, p' = 1."""
+    """Speed at which k p + c dp/dt comes back to 0 on the exact motion p'' + 2 zeta w p' + w² p = 0
+    from p = 0, p' = 1.
+    """
     mass, stiffness = 1.0, 1e6
     omega = np.sqrt(stiffness / mass)
     damped = omega * np.sqrt(1.0 - ratio**2)
@@ -62,7 +78,8 @@ def test_kelvin_voigt_restitution_and_no_pull(ratio):
 
 @pytest.mark.parametrize("alpha", [0.05, 0.2, 0.8])
 def test_hunt_crossley_restitution(alpha):
-    """The exact phase-plane relation: p'' = -w² p (1 + alpha p') integrates to alpha²w²p²/2 = G(v0) - G(v), G(v) = alpha v - ln(1 + alpha v).
+    """The exact phase-plane relation: p'' = -w² p (1 + alpha p') integrates to alpha²w²p²/2 = G(v0)
+    - G(v), G(v) = alpha v - ln(1 + alpha v).
 
     So G(-e v0) = G(v0). Source: Hunt and Crossley 1975, linear spring.
     """
@@ -86,15 +103,33 @@ def test_hertz_peak_force_and_depth():
 
 def test_stops_on_one_side_and_on_both():
     one = trace(launched(), 0.03)
-    both = trace(replace(launched(), contact_laws=launched().contact_laws.with_columns(land_point=np.array([0, 0]), land_normal=np.array([(1.0, 0.0), (-1.0, 0.0)]))), 0.03)
+    both = trace(
+        replace(
+            launched(),
+            contact_laws=launched().contact_laws.with_columns(
+                land_point=np.array([0, 0]), land_normal=np.array([(1.0, 0.0), (-1.0, 0.0)])
+            ),
+        ),
+        0.03,
+    )
     assert one.contact_displacement.min() < -5e-3 and both.contact_displacement.min() > -3e-3
-    assert both.contact_force.max() == pytest.approx(-both.contact_force.min(), rel=1e-4)  # met at the same speed
+    assert both.contact_force.max() == pytest.approx(
+        -both.contact_force.min(), rel=1e-4
+    )  # met at the same speed
 
 
 def sliding(friction, normal=10.0, speed=(0.0, 0.02)):
     """A mass pressed on a flat stop by a dead load, sliding along it."""
-    return oscillator(1.0, 0.0, contact_stiffness=1e6, lands=[(1.0, 0.0)], displacement=(normal / 1e6, 0.0), velocity=speed,
-                      dead_load=(normal, 0.0), contact={"gap": 0.0, "friction": friction, "stick_stiffness": 1e6})
+    return oscillator(
+        1.0,
+        0.0,
+        contact_stiffness=1e6,
+        lands=[(1.0, 0.0)],
+        displacement=(normal / 1e6, 0.0),
+        velocity=speed,
+        dead_load=(normal, 0.0),
+        contact={"gap": 0.0, "friction": friction, "stick_stiffness": 1e6},
+    )
 
 
 def test_friction_stops_a_sliding_mass_after_the_coulomb_distance():
@@ -102,7 +137,9 @@ def test_friction_stops_a_sliding_mass_after_the_coulomb_distance():
     run = trace(sliding(0.2), 0.02)
     rest = run.contact_displacement[0, 0, 1, -200:].mean()
     assert rest == pytest.approx(0.02**2 / (2 * 0.2 * 10.0), abs=2 * 0.2 * 10.0 / 1e6)
-    assert run.sliding_work[0, 0] == pytest.approx(0.5 * 0.02**2 / 0.2, rel=0.02)  # wear work: N times the slip
+    assert run.sliding_work[0, 0] == pytest.approx(
+        0.5 * 0.02**2 / 0.2, rel=0.02
+    )  # wear work: N times the slip
     assert run.energy["mechanical"][0] + run.energy["stored"][0] < 0.0
 
 
@@ -111,42 +148,95 @@ def test_friction_slows_a_mass_that_circles_in_its_obstacle(friction):
     """The normal force is m v²/R, so v = v0 / (1 + mu v0 t / R), whatever the mass."""
     radius, speed, stiffness = 1e-3, 0.1, 1e7
     start = radius + speed**2 / radius / stiffness
-    run = trace(oscillator(1.0, 0.0, contact_stiffness=stiffness, displacement=(start, 0.0), velocity=(0.0, speed),
-                           contact={"gap": radius, "friction": friction, "stick_stiffness": stiffness}), 0.1)  # fmt: skip
+    run = trace(
+        oscillator(
+            1.0,
+            0.0,
+            contact_stiffness=stiffness,
+            displacement=(start, 0.0),
+            velocity=(0.0, speed),
+            contact={"gap": radius, "friction": friction, "stick_stiffness": stiffness},
+        ),
+        0.1,
+    )
     travelled = np.hypot(*np.diff(run.contact_displacement[0, 0], axis=-1)).sum()
-    assert travelled == pytest.approx(radius / friction * np.log1p(friction * speed / radius * run.time[-1]), rel=2e-3)
+    assert travelled == pytest.approx(
+        radius / friction * np.log1p(friction * speed / radius * run.time[-1]), rel=2e-3
+    )
 
 
 def test_friction_takes_energy_and_gives_none(study_model):
-    """In the impacting tube: what the supports took beyond what their springs hold is mu times the normal force times the slip."""
-    laws = study_model.contact_laws.with_columns(friction=0.3, stick_stiffness=study_model.contact_stiffness)
+    """In the impacting tube: what the supports took beyond what their springs hold is mu times the
+    normal force times the slip.
+    """
+    laws = study_model.contact_laws.with_columns(
+        friction=0.3, stick_stiffness=study_model.contact_stiffness
+    )
     rate = 102_400
     steps = round(0.3 * rate)
-    force = np.stack([100.0 * band_limited_noise(np.random.default_rng(lane), steps + 10, rate, (5.0, 200.0)) for lane in range(2)], -1)[:, None]
-    offset = np.random.default_rng(9).uniform(-1e-5, 1e-5, (study_model.support_of_point.size, 2, 2)) + np.array([7e-5, 0.0])[:, None]
-    run = trace_lanes(replace(study_model, contact_laws=laws), rate, steps, np.full(2, 1e-4), offset, lambda first, count: force[first : first + count], RUN["scheme"])
-    taken, slid = -run.energy["contact_work"] - run.energy["stored"], 0.3 * run.sliding_work.sum(axis=1)
+    force = np.stack(
+        [
+            100.0 * band_limited_noise(np.random.default_rng(lane), steps + 10, rate, (5.0, 200.0))
+            for lane in range(2)
+        ],
+        -1,
+    )[:, None]
+    offset = (
+        np.random.default_rng(9).uniform(-1e-5, 1e-5, (study_model.support_of_point.size, 2, 2))
+        + np.array([7e-5, 0.0])[:, None]
+    )
+    run = trace_lanes(
+        replace(study_model, contact_laws=laws),
+        rate,
+        steps,
+        np.full(2, 1e-4),
+        offset,
+        lambda first, count: force[first : first + count],
+        RUN["scheme"],
+    )
+    taken = -run.energy["contact_work"] - run.energy["stored"]
+    slid = 0.3 * run.sliding_work.sum(axis=1)
     assert np.all(slid > 0.0) and np.all(np.abs(taken - slid) < 1e-3 * run.energy["input_work"])
-    identity = run.energy["mechanical"] - run.energy["input_work"] + run.energy["dissipated"] - run.energy["contact_work"]
-    closed = {"newmark": 1e-9, "exact": 1e-5}[RUN["scheme"]]  # with the trapezoidal sums of work and damping the exact step is not an identity
+    identity = (
+        run.energy["mechanical"]
+        - run.energy["input_work"]
+        + run.energy["dissipated"]
+        - run.energy["contact_work"]
+    )
+    closed = {"newmark": 1e-9, "exact": 1e-5}[
+        RUN["scheme"]
+    ]  # with the trapezoidal sums of work and damping the exact step is not an identity
     assert np.max(np.abs(identity)) < closed * run.energy["input_work"].max()
 
 
 def impacting(model):
     """Half a second of the tube under 100 N."""
     schedule = Schedule(51200, 2048, 0.0, 0.5, RUN["scheme"])
-    force = np.stack([100.0 * band_limited_noise(np.random.default_rng(lane), 51200, 51200, (5.0, 200.0)) for lane in range(4)], -1)[:, None]
+    force = np.stack(
+        [
+            100.0 * band_limited_noise(np.random.default_rng(lane), 51200, 51200, (5.0, 200.0))
+            for lane in range(4)
+        ],
+        -1,
+    )[:, None]
     offset = np.random.default_rng(9).uniform(-1e-5, 1e-5, (model.support_of_point.size, 2, 4))
-    return march_lanes(model, schedule, np.full(4, 1e-4), offset, lambda first, count: force[first : first + count])
+    return march_lanes(
+        model, schedule, np.full(4, 1e-4), offset, lambda first, count: force[first : first + count]
+    )
 
 
 def test_lobes_of_no_depth_are_the_circle(study_model):
-    """The general path of the kernel against its fast path, to round-off until impacts amplify it."""
+    """The general path of the kernel against its fast path, to round-off until impacts amplify
+    it.
+    """
     lobed = replace(study_model, contact_laws=study_model.contact_laws.with_columns(lobes=4.0))
     plain, special = impacting(study_model), impacting(lobed)
     early = slice(0, 40)  # before impacts amplify the last bits
     scale = np.abs(plain.displacement[..., early]).max()
-    assert np.max(np.abs(plain.displacement[..., early] - special.displacement[..., early])) < 1e-6 * scale
+    assert (
+        np.max(np.abs(plain.displacement[..., early] - special.displacement[..., early]))
+        < 1e-6 * scale
+    )
     assert np.all(special.tally["impacts"] > 0)
 
 
@@ -154,18 +244,30 @@ def test_lobes_of_no_depth_are_the_circle(study_model):
 def test_lobed_obstacle_is_conservative_and_has_its_profile(lobes, angle):
     """Energy is kept in a lobed cup, and a slow push in a direction meets the wall at r(theta)."""
     laws = {"gap": 1e-3, "lobes": lobes, "lobe_depth": 5e-4, "lobe_angle": angle}
-    bouncing = trace(oscillator(1.0, 0.0, contact_stiffness=1e6, velocity=(0.31, 0.17), contact=laws), 0.1, rate=400_000)
+    bouncing = trace(
+        oscillator(1.0, 0.0, contact_stiffness=1e6, velocity=(0.31, 0.17), contact=laws),
+        0.1,
+        rate=400_000,
+    )
     assert bouncing.contact_force.any()
-    assert abs(bouncing.energy["mechanical"][0] + bouncing.energy["stored"][0]) < 2e-5 * 0.5 * (0.31**2 + 0.17**2)
+    assert abs(bouncing.energy["mechanical"][0] + bouncing.energy["stored"][0]) < 2e-5 * 0.5 * (
+        0.31**2 + 0.17**2
+    )
     u = bouncing.contact_displacement[0, 0]
     wall = 1e-3 + 0.5 * 5e-4 * (1.0 - np.cos(lobes * (np.arctan2(u[1], u[0]) - angle)))
     touching = np.hypot(*bouncing.contact_force[0, 0]) > 0.0
     assert np.array_equal(touching[1:-1], (np.hypot(*u) > wall)[1:-1]) and touching.any()
     # the force is the gradient of k phi²/2, by differences
     step = np.flatnonzero(touching)[touching.sum() // 2]
-    potential = lambda x, y: 0.5e6 * (np.hypot(x, y) - 1e-3 - 2.5e-4 * (1.0 - np.cos(lobes * (np.arctan2(y, x) - angle)))) ** 2  # noqa: E731
+
+    def potential(x, y):
+        lobe = 2.5e-4 * (1.0 - np.cos(lobes * (np.arctan2(y, x) - angle)))
+        return 0.5e6 * (np.hypot(x, y) - 1e-3 - lobe) ** 2
+
     x, y, h = *u[:, step], 1e-9
-    slope = np.array([potential(x + h, y) - potential(x - h, y), potential(x, y + h) - potential(x, y - h)]) / (2 * h)
+    slope = np.array(
+        [potential(x + h, y) - potential(x - h, y), potential(x, y + h) - potential(x, y - h)]
+    ) / (2 * h)
     assert bouncing.contact_force[0, 0, :, step] == pytest.approx(-slope, rel=1e-4)
 
 
@@ -184,12 +286,21 @@ def test_damper_element_decays_as_modal_damping_does():
     by_element = ring_down(damping=2 * 0.02 * 20 * np.pi).element_displacement[0, 0]
     t = np.arange(by_element.size) / RATE
     omega = 20 * np.pi
-    exact = 1e-3 * np.exp(-0.02 * omega * t) * (np.cos(omega * np.sqrt(1 - 4e-4) * t) + 0.02 / np.sqrt(1 - 4e-4) * np.sin(omega * np.sqrt(1 - 4e-4) * t))
+    exact = (
+        1e-3
+        * np.exp(-0.02 * omega * t)
+        * (
+            np.cos(omega * np.sqrt(1 - 4e-4) * t)
+            + 0.02 / np.sqrt(1 - 4e-4) * np.sin(omega * np.sqrt(1 - 4e-4) * t)
+        )
+    )
     assert np.max(np.abs(by_element - exact)) < 1e-6 * 1e-3 * 10
 
 
 def test_cubic_element_follows_the_duffing_period():
-    """Exact period of u'' + w² u + b u³ = 0 at amplitude a: 4 K(m)/sqrt(w² + b a²), m = b a² / (2 (w² + b a²))."""
+    """Exact period of u'' + w² u + b u³ = 0 at amplitude a: 4 K(m)/sqrt(w² + b a²), m = b a² / (2
+    (w² + b a²)).
+    """
     w2, b, a = (20 * np.pi) ** 2, 4e9, 1e-3
     u = ring_down(cubic=b).element_displacement[0, 0]
     crossings = np.flatnonzero(np.diff(np.sign(u))) / RATE
@@ -208,24 +319,43 @@ def test_drag_takes_the_energy_of_its_closed_form():
     """Per cycle 8/3 d w² a³ for |v| v drag, small drag."""
     w, d, a = 20 * np.pi, 0.5, 1e-3
     run = ring_down(drag=d)
-    assert -run.energy["contact_work"][0] == pytest.approx(5 * 8.0 / 3.0 * d * w**2 * a**3, rel=0.01)
+    assert -run.energy["contact_work"][0] == pytest.approx(
+        5 * 8.0 / 3.0 * d * w**2 * a**3, rel=0.01
+    )
 
 
 def test_drag_of_a_circling_motion_is_that_of_its_speed():
-    """With its partner: d |v|³ all the way, 2 pi d w² a³ a turn; the axes by themselves would take 2 x 8/3 d w² a³."""
+    """With its partner: d |v|³ all the way, 2 pi d w² a³ a turn; the axes by themselves would take
+    2 x 8/3 d w² a³.
+    """
     w, d, a = 20 * np.pi, 0.5, 1e-3
     model = oscillator(1.0, w**2, displacement=(a, 0.0), velocity=(0.0, a * w), element={})
     lost = []
     for partner in ([1, 0], [-1, -1]):
         laws = replace(LocalLaws.neutral(2), drag=np.full(2, d), drag_partner=np.array(partner))
-        run = trace(replace(model, element_shapes=model.sensor_shapes, element_names=("x", "y"), local_laws=laws), 0.1)
+        run = trace(
+            replace(
+                model, element_shapes=model.sensor_shapes, element_names=("x", "y"), local_laws=laws
+            ),
+            0.1,
+        )
         lost.append(-run.energy["contact_work"][0])
-    assert lost == pytest.approx([2.0 * np.pi * d * w**2 * a**3, 16.0 / 3.0 * d * w**2 * a**3], rel=0.01)
+    assert lost == pytest.approx(
+        [2.0 * np.pi * d * w**2 * a**3, 16.0 / 3.0 * d * w**2 * a**3], rel=0.01
+    )
 
 
 def test_slider_slide_loses_four_mu_n_per_cycle():
     """Successive extremes fall by 2 f/k (the friction slide of code_aster's SDND100)."""
-    run = trace(oscillator(1.0, 1e4, displacement=(0.85e-3, 0.0), element={"stick_stiffness": 4e7, "slip_limit": 1.0}), 0.2)
+    run = trace(
+        oscillator(
+            1.0,
+            1e4,
+            displacement=(0.85e-3, 0.0),
+            element={"stick_stiffness": 4e7, "slip_limit": 1.0},
+        ),
+        0.2,
+    )
     at = [run.element_displacement[0, 0, round(n * np.pi / 100 * RATE)] for n in range(1, 6)]
     assert at == pytest.approx([-6.5e-4, 4.5e-4, -2.5e-4, 0.5e-4, 0.5e-4], abs=0.85e-6)
     assert run.slip_work[0, 0] == pytest.approx(0.5e4 * (0.85e-3**2 - 0.5e-4**2), rel=1e-3)
@@ -235,15 +365,22 @@ def test_saturating_spring_is_linear_then_constant():
     run = ring_down(saturation_stiffness=1e4, saturation_limit=3.0)
     u, f = run.element_displacement[0, 0], run.element_force[0, 0]
     assert np.max(np.abs(f + np.clip(1e4 * u, -3.0, 3.0))) < 2e-3
-    assert abs(run.energy["mechanical"][0] + run.energy["stored"][0]) < 1e-5 * 0.5 * (20 * np.pi) ** 2 * 1e-6 + 1e-9
+    assert (
+        abs(run.energy["mechanical"][0] + run.energy["stored"][0])
+        < 1e-5 * 0.5 * (20 * np.pi) ** 2 * 1e-6 + 1e-9
+    )
 
 
 def test_laws_refuse_what_no_contact_can_be():
-    with pytest.raises(ValueError, match="stick_stiffness must be positive where there is friction"):
+    with pytest.raises(
+        ValueError, match="stick_stiffness must be positive where there is friction"
+    ):
         ContactLaws.neutral(2).with_columns(friction=0.2)
     with pytest.raises(ValueError, match="damping = .* must be finite and not negative"):
         ContactLaws.neutral(2).with_columns(damping=-1.0)
     with pytest.raises(ValueError, match="names a contact point that is not among 2"):
-        ContactLaws.neutral(2).with_columns(land_point=np.array([3]), land_normal=np.array([(1.0, 0.0)]))
+        ContactLaws.neutral(2).with_columns(
+            land_point=np.array([3]), land_normal=np.array([(1.0, 0.0)])
+        )
     with pytest.raises(ValueError, match="one per element"):
         replace(LocalLaws.neutral(2), cubic=np.zeros(3))

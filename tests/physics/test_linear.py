@@ -1,4 +1,6 @@
-"""The linear tube with an equivalent support: published damping ratios, dense solutions, limits, inverses."""
+"""The linear tube with an equivalent support: published damping ratios, dense solutions, limits,
+inverses.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,14 +9,19 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from vibroimpact import linear
-from vibroimpact.config import load_config
-from vibroimpact.reduction import build_model
+from vibroimpact.config.reading import load_config
+from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.reduction.reduced_model import build_model
 
 STUDY = load_config(Path(__file__).resolve().parents[2] / "config" / "study.yaml")
 # k N/m per support: (frequency Hz, damping ratio) of the first mode at c = 0
-FIRST_BY_STIFFNESS = {1.0: (15.97, 1.50e-2), 1.0e4: (16.78, 1.43e-2), 1.0e5: (20.96, 1.14e-2), 1.0e6: (26.71, 0.895e-2),
-                      4.0e6: (27.99, 0.853e-2)}
+FIRST_BY_STIFFNESS = {
+    1.0: (15.97, 1.50e-2),
+    1.0e4: (16.78, 1.43e-2),
+    1.0e5: (20.96, 1.14e-2),
+    1.0e6: (26.71, 0.895e-2),
+    4.0e6: (27.99, 0.853e-2),
+}
 SUPPORTS = [(0.0, 0.0), (1.0e3, 1.0), (1.0e5, 62.0), (1.0e5, -5.0), (4.0e6, 9000.0), (1.0e5, 1.0e4)]
 
 
@@ -26,13 +33,17 @@ def model():
 
 @pytest.fixture(scope="module")
 def skew(model):
-    """Return the study's model driven along (1, 1, 0) and with in-plane output seen: both planes respond."""
+    """Return the study's model driven along (1, 1, 0) and with in-plane output seen: both planes
+    respond.
+    """
     drive = model.drive_shapes + model.sensor_shapes[:, [model.sensor_names.index("bend_45.x")]]
     return replace(model, drive_shapes=drive)
 
 
 def dense_matrices(model, k, c):
-    """Return (damping, stiffness), each (mode, mode), assembled point by point from the definition of the equivalent support."""
+    """Return (damping, stiffness), each (mode, mode), assembled point by point from the definition
+    of the equivalent support.
+    """
     support = np.zeros((model.modes, model.modes))
     for point, weight in enumerate(model.contact_weight):
         for direction in range(2):
@@ -42,7 +53,9 @@ def dense_matrices(model, k, c):
 
 
 def dense_response(model, k, c, frequency):
-    """Return (mode, frequency) complex modal response per N of the drive, one dense solution per frequency in Hz."""
+    """Return (mode, frequency) complex modal response per N of the drive, one dense solution per
+    frequency in Hz.
+    """
     damping, stiffness = dense_matrices(model, k, c)
     columns = []
     for omega in 2.0 * np.pi * np.asarray(frequency):
@@ -52,11 +65,15 @@ def dense_response(model, k, c, frequency):
 
 
 def dense_poles(model, k, c):
-    """Return the poles with positive imaginary part, by rising magnitude, of the modes the drive along y moves."""
+    """Return the poles with positive imaginary part, by rising magnitude, of the modes the drive
+    along y moves.
+    """
     damping, stiffness = dense_matrices(model, k, c)
     moved = np.flatnonzero(model.drive_shapes[:, 0])
     damping, stiffness = damping[np.ix_(moved, moved)], stiffness[np.ix_(moved, moved)]
-    poles = np.linalg.eigvals(np.block([[np.zeros_like(damping), np.eye(len(moved))], [-stiffness, -damping]]))
+    poles = np.linalg.eigvals(
+        np.block([[np.zeros_like(damping), np.eye(len(moved))], [-stiffness, -damping]])
+    )
     poles = poles[poles.imag > 0.0]
     return poles[np.argsort(np.abs(poles))]
 
@@ -69,13 +86,21 @@ def test_first_damping_ratio_falls_with_the_support_stiffness(model, k):
     assert -pole.real / abs(pole) == pytest.approx(ratio, rel=4e-3)  # the table has three digits
 
 
-@pytest.mark.parametrize("k, about, c", [(1.0e5, 62.0, 62.0), (1.0e6, 1000.0, 1018.0), (4.0e6, 9000.0, 10016.0)])
+@pytest.mark.parametrize(
+    "k, about, c", [(1.0e5, 62.0, 62.0), (1.0e6, 1000.0, 1018.0), (4.0e6, 9000.0, 10016.0)]
+)
 def test_support_damping_that_doubles_the_damping_ratio(model, k, about, c):
-    """The prototypes' values are "about"; the last is what a straight line from c = 0 gives, the curve bends 11 % away from it."""
+    """The prototypes' values are "about"; the last is what a straight line from c = 0 gives, the
+    curve bends 11 % away from it.
+    """
+
     def ratio(pole):
         return -pole.real / abs(pole)
+
     alone = ratio(linear.first_pole(model, k, 0.0))
-    doubling = optimize.brentq(lambda damping: ratio(linear.first_pole(model, k, damping)) - 2.0 * alone, 0.5 * c, 2.0 * c)
+    doubling = optimize.brentq(
+        lambda damping: ratio(linear.first_pole(model, k, damping)) - 2.0 * alone, 0.5 * c, 2.0 * c
+    )
     assert doubling == pytest.approx(c, rel=2e-3)
     assert ratio(dense_poles(model, k, c)[0]) == pytest.approx(2.0 * alone, rel=2e-3)
     assert about == pytest.approx(c, rel=0.12)
@@ -105,7 +130,18 @@ def test_a_very_strong_damper_clamps_the_tube_as_a_stiffness_does(model):
     assert weak == sorted(weak)
 
 
-@pytest.mark.parametrize("k, c", [(10.0, 0.01), (1.0e3, 1.0), (1.0e5, 62.0), (1.0e5, -5.0), (4.0e6, 9000.0), (1.0e5, 1.0e4), (1.0e8, 0.0)])
+@pytest.mark.parametrize(
+    "k, c",
+    [
+        (10.0, 0.01),
+        (1.0e3, 1.0),
+        (1.0e5, 62.0),
+        (1.0e5, -5.0),
+        (4.0e6, 9000.0),
+        (1.0e5, 1.0e4),
+        (1.0e8, 0.0),
+    ],
+)
 def test_support_comes_back_from_its_pole(model, k, c):
     back = linear.support_from_pole(model, linear.first_pole(model, k, c))
     assert back == pytest.approx((k, c), rel=1e-6, abs=1e-6 * k)
@@ -131,8 +167,12 @@ def test_first_mode_shape_is_the_lowest_driven_eigenvector(model):
         vector = np.linalg.eigh(stiffness[np.ix_(moved, moved)])[1][:, 0]
         expected, shape = model.line_shapes[moved].T @ vector, linear.first_mode_shape(model, k)
         assert shape.max() == np.abs(shape).max()
-        assert shape == pytest.approx(expected * np.sign(expected @ shape), rel=1e-6, abs=1e-8 * shape.max())
-    apex = linear.first_mode_shape(model, 1.0e4, model.sensor_shapes)[model.sensor_names.index("apex.y")]
+        assert shape == pytest.approx(
+            expected * np.sign(expected @ shape), rel=1e-6, abs=1e-8 * shape.max()
+        )
+    apex = linear.first_mode_shape(model, 1.0e4, model.sensor_shapes)[
+        model.sensor_names.index("apex.y")
+    ]
     assert apex == pytest.approx(linear.first_mode_shape(model, 1.0e4)[13], rel=1e-6)
 
 
@@ -145,8 +185,12 @@ def test_frf_is_the_dense_one(request, name, k, c):
     response = linear.frf(model, k, c, frequency, model.sensor_shapes)
     assert np.abs(response - expected).max() < 1e-10 * np.abs(expected).max()
     laplace = 2j * np.pi * frequency
-    assert linear.frf(model, k, c, frequency, model.sensor_shapes, "velocity") == pytest.approx(response * laplace)
-    assert linear.frf(model, k, c, frequency, model.sensor_shapes, "acceleration") == pytest.approx(response * laplace**2)
+    assert linear.frf(model, k, c, frequency, model.sensor_shapes, "velocity") == pytest.approx(
+        response * laplace
+    )
+    assert linear.frf(model, k, c, frequency, model.sensor_shapes, "acceleration") == pytest.approx(
+        response * laplace**2
+    )
 
 
 def test_frf_in_several_chunks_is_the_same(model, monkeypatch):
@@ -154,34 +198,51 @@ def test_frf_in_several_chunks_is_the_same(model, monkeypatch):
     whole = linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes)
     monkeypatch.setattr(linear, "FREQUENCY_CHUNK", 7)
     # A matrix product over another number of rows may round otherwise.
-    assert np.abs(linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes) - whole).max() < 1e-12 * np.abs(whole).max()
+    assert (
+        np.abs(linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes) - whole).max()
+        < 1e-12 * np.abs(whole).max()
+    )
 
 
 @pytest.mark.parametrize("name", ["model", "skew"])
 def test_psd_family_is_the_dense_response_for_every_support(request, name):
     model = request.getfixturevalue(name)
-    k_grid, c_grid, frequency = np.array([0.0, 1.0e3, 1.0e5, 4.0e6, 1.0e9]), np.array([0.0, 60.0, 9000.0, -5.0]), np.arange(6.0, 99.0, 7.3)
+    k_grid = np.array([0.0, 1.0e3, 1.0e5, 4.0e6, 1.0e9])
+    c_grid = np.array([0.0, 60.0, 9000.0, -5.0])
+    frequency = np.arange(6.0, 99.0, 7.3)
     sensor = model.sensor_names.index("bend_45.y")
     family = linear.psd_family(model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor])
     for row, k in enumerate(k_grid):
         for column, c in enumerate(c_grid):
-            expected = np.abs(model.sensor_shapes[:, sensor] @ dense_response(model, k, c, frequency)) ** 2
+            expected = (
+                np.abs(model.sensor_shapes[:, sensor] @ dense_response(model, k, c, frequency)) ** 2
+            )
             assert family[row, column] == pytest.approx(expected, rel=1e-7)
-    acceleration = linear.psd_family(model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor], "acceleration")
+    acceleration = linear.psd_family(
+        model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor], "acceleration"
+    )
     assert acceleration == pytest.approx(family * (2.0 * np.pi * frequency) ** 4)
 
 
 def test_reciprocity_and_limits(model):
-    """Swapping drive and sensor changes nothing; k -> 0 and k -> infinity give the free tube and the tube held at its supports."""
+    """Swapping drive and sensor changes nothing; k -> 0 and k -> infinity give the free tube and
+    the tube held at its supports.
+    """
     frequency, apex = np.linspace(5.0, 200.0, 40), model.sensor_names.index("apex.y")
     there = linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes[:, [apex]])
     swapped = replace(model, drive_shapes=model.sensor_shapes[:, [apex]])
-    assert linear.frf(swapped, 1e5, 62.0, frequency, model.drive_shapes) == pytest.approx(there, rel=1e-10)
+    assert linear.frf(swapped, 1e5, 62.0, frequency, model.drive_shapes) == pytest.approx(
+        there, rel=1e-10
+    )
     free = linear.frf(model, 0.0, 0.0, frequency, model.sensor_shapes)
-    assert linear.frf(model, 1e-6, 0.0, frequency, model.sensor_shapes) == pytest.approx(free, rel=1e-6, abs=1e-14)
+    assert linear.frf(model, 1e-6, 0.0, frequency, model.sensor_shapes) == pytest.approx(
+        free, rel=1e-6, abs=1e-14
+    )
     contacts = model.contact_shapes[:, :, 1]
     held = linear.frf(model, 1e13, 0.0, frequency, contacts)
-    assert np.abs(held).max() < 1e-5 * np.abs(linear.frf(model, 0.0, 0.0, frequency, contacts)).max()
+    assert (
+        np.abs(held).max() < 1e-5 * np.abs(linear.frf(model, 0.0, 0.0, frequency, contacts)).max()
+    )
 
 
 def test_synthesised_sine_is_the_dense_steady_state(model):
@@ -192,18 +253,29 @@ def test_synthesised_sine_is_the_dense_steady_state(model):
     force = 2.5 * np.cos(2.0 * np.pi * frequency * time + 0.3)
     expected = model.sensor_shapes.T @ dense_response(model, 1e5, 62.0, [frequency])
     steady = np.real(expected * 2.5 * np.exp(1j * (2.0 * np.pi * frequency * time + 0.3)))
-    assert linear.synthesise_records(model, 1e5, 62.0, force) == pytest.approx(steady, rel=1e-9, abs=1e-9 * np.abs(steady).max())
+    assert linear.synthesise_records(model, 1e5, 62.0, force) == pytest.approx(
+        steady, rel=1e-9, abs=1e-9 * np.abs(steady).max()
+    )
 
 
 def test_synthesised_record_obeys_the_equation_of_motion(model):
-    """Differentiated through its spectrum, the modal record of a random force satisfies M a + C v + K q = f at every instant."""
+    """Differentiated through its spectrum, the modal record of a random force satisfies M a + C v +
+    K q = f at every instant.
+    """
     rng, count, rate = np.random.default_rng(5), 8192, 2048.0
-    lines = np.where(np.fft.rfftfreq(count, 1.0 / rate) < 300.0, np.fft.rfft(rng.standard_normal(count)), 0.0)
+    lines = np.where(
+        np.fft.rfftfreq(count, 1.0 / rate) < 300.0, np.fft.rfft(rng.standard_normal(count)), 0.0
+    )
     force = np.fft.irfft(lines, n=count)
     moved = np.flatnonzero(model.drive_shapes[:, 0])
     unit = np.eye(model.modes)[:, moved]
-    motion = [linear.synthesise_records(model, 1e5, 62.0, force, rate, unit, kind) for kind in ("displacement", "velocity", "acceleration")]
-    damping, stiffness = (matrix[np.ix_(moved, moved)] for matrix in dense_matrices(model, 1e5, 62.0))
+    motion = [
+        linear.synthesise_records(model, 1e5, 62.0, force, rate, unit, kind)
+        for kind in ("displacement", "velocity", "acceleration")
+    ]
+    damping, stiffness = (
+        matrix[np.ix_(moved, moved)] for matrix in dense_matrices(model, 1e5, 62.0)
+    )
     acting = model.drive_shapes[moved] * force
     residual = motion[2] + damping @ motion[1] + stiffness @ motion[0] - acting
     assert np.abs(residual).max() < 1e-7 * np.abs(acting).max()

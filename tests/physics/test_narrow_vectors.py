@@ -11,15 +11,22 @@ import pytest
 from llvmlite import binding
 from numba.core.registry import cpu_target
 
-from vibroimpact import kernels
-from vibroimpact.config import load_config
-from vibroimpact.integrate import Schedule, march_lanes
-from vibroimpact.reduction import build_model
+from vibroimpact.config.reading import load_config
+from vibroimpact.integration import kernels
+from vibroimpact.integration.batch import Schedule, march_lanes
+from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.variant import changed
 
 CONFIG = Path(__file__).resolve().parents[2] / "config" / "study.yaml"
-SMALL = {"basis.free_modes_to_Hz": 1000.0, "basis.constrained_modes_to_Hz": 500.0, "structure.mesh.elements_per_bend": 20}
-NARROW = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": ""}  # AVX2 and fused multiply-add, vectors of 256 bits
+SMALL = {
+    "basis.free_modes_to_Hz": 1000.0,
+    "basis.constrained_modes_to_Hz": 500.0,
+    "structure.mesh.elements_per_bend": 20,
+}
+NARROW = {
+    "NUMBA_CPU_NAME": "haswell",
+    "NUMBA_CPU_FEATURES": "",
+}  # AVX2 and fused multiply-add, vectors of 256 bits
 
 
 def short_run():
@@ -27,30 +34,54 @@ def short_run():
     force = 200.0 * np.random.default_rng(0).standard_normal((2000, 1, kernels.LANES))
     gap = np.linspace(2e-5, 4e-5, kernels.LANES)
     offset = 0.05 * gap * np.random.default_rng(1).uniform(-1.0, 1.0, (10, 2, kernels.LANES))
-    lanes = march_lanes(build_model(changed(load_config(CONFIG), SMALL)), Schedule(20480, 2048, 0.0, 0.02, "exact"), gap, offset,
-                        lambda first, count: force[first : first + count])  # fmt: skip
-    return {"displacement": lanes.displacement, "acceleration": lanes.acceleration, "force": lanes.force, "energy": lanes.energy, **lanes.tally}
+    lanes = march_lanes(
+        build_model(changed(load_config(CONFIG), SMALL)),
+        Schedule(20480, 2048, 0.0, 0.02, "exact"),
+        gap,
+        offset,
+        lambda first, count: force[first : first + count],
+    )
+    return {
+        "displacement": lanes.displacement,
+        "acceleration": lanes.acceleration,
+        "force": lanes.force,
+        "energy": lanes.energy,
+        **lanes.tally,
+    }
 
 
 def main(path):
-    """Save a short run, the processor that numba compiled for, and whether what was compiled names a 512-bit register."""
+    """Save a short run, the processor that numba compiled for, and whether what was compiled names
+    a 512-bit register.
+    """
     found = short_run()
     fresh = not kernels.march.stats.cache_hits  # what comes out of the cache has no listing
     wide = fresh and "zmm" in "".join(kernels.march.inspect_asm().values())
-    np.savez(path, processor=cpu_target.target_context.codegen().magic_tuple()[1], wide=wide, **found)
+    np.savez(
+        path, processor=cpu_target.target_context.codegen().magic_tuple()[1], wide=wide, **found
+    )
 
 
 def host_can():
     """Whether this processor runs what is compiled for Haswell."""
     features = binding.get_host_cpu_features()
-    return platform.machine() in ("x86_64", "AMD64") and features.get("avx2") and features.get("fma")
+    return (
+        platform.machine() in ("x86_64", "AMD64") and features.get("avx2") and features.get("fma")
+    )
 
 
-@pytest.mark.skipif(not host_can(), reason="needs an x86 processor with AVX2 and fused multiply-add")
+@pytest.mark.skipif(
+    not host_can(), reason="needs an x86 processor with AVX2 and fused multiply-add"
+)
 def test_narrow_vectors_give_the_same_bits(tmp_path, cache):
     """Compiled for AVX2 in a process of its own, kept in pytest's cache for the next time."""
     path = os.pathsep.join(str(Path(entry).resolve()) for entry in sys.path)
-    environment = {**os.environ, **NARROW, "NUMBA_CACHE_DIR": str(cache.mkdir("narrow_vectors")), "PYTHONPATH": path}
+    environment = {
+        **os.environ,
+        **NARROW,
+        "NUMBA_CACHE_DIR": str(cache.mkdir("narrow_vectors")),
+        "PYTHONPATH": path,
+    }
     subprocess.run([sys.executable, __file__, tmp_path / "narrow.npz"], env=environment, check=True)
     narrow, here = np.load(tmp_path / "narrow.npz"), short_run()
     assert narrow["processor"] == NARROW["NUMBA_CPU_NAME"] and not narrow["wide"]

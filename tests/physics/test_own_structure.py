@@ -1,4 +1,6 @@
-"""A user's campaign of two masses, prepared and judged without being told anything: named, none, or not testable, never a wrong name."""
+"""A user's campaign of two masses, prepared and judged without being told anything: named, none, or
+not testable, never a wrong name.
+"""
 
 import functools
 
@@ -7,7 +9,7 @@ import pytest
 from scipy import linalg
 
 from tests import two_masses
-from vibroimpact.campaign import write_campaign
+from vibroimpact.campaign.file import write_campaign
 from vibroimpact.completion.candidate import run_candidate
 from vibroimpact.completion.long_records import long_record_lines
 from vibroimpact.completion.outcome import outcome
@@ -16,12 +18,26 @@ from vibroimpact.completion.prepare import prepared
 from vibroimpact.completion.store import modes_of, plain
 from vibroimpact.completion.structure_file import StructureFile
 from vibroimpact.completion.study import study_of
-from vibroimpact.config import check_config
 from vibroimpact.completion.updated_model import configuration
-from vibroimpact.reduction import build_model
+from vibroimpact.config.reading import check_config
+from vibroimpact.reduction.reduced_model import build_model
 
-KEYS = {"verdict", "effects", "ambiguity_set", "ranking", "next_measurement", "broken_invariances", "regions", "misfit", "p_global_before", "p_global_after", "checks",
-        "seconds", "simulations", "provenance"}  # fmt: skip
+KEYS = {
+    "verdict",
+    "effects",
+    "ambiguity_set",
+    "ranking",
+    "next_measurement",
+    "broken_invariances",
+    "regions",
+    "misfit",
+    "p_global_before",
+    "p_global_after",
+    "checks",
+    "seconds",
+    "simulations",
+    "provenance",
+}
 FEW = ("cubic_stiffness", "clearance", "single_friction", "saturation_stiffness", "quadratic_drag")
 
 
@@ -41,16 +57,30 @@ def _campaign(law, periodic=True):
 
 
 def judged(law, folder, periodic=True):
-    """(verdict, rows, completed, study, campaign) of a law, with the laws of FEW at the place that changes."""
+    """(verdict, rows, completed, study, campaign) of a law, with the laws of FEW at the place that
+    changes.
+    """
     values, campaign, linear, _ = prepared_of(_campaign(law, periodic), folder)
     linear, study = plain(linear), study_of("", values)
-    singles = [plain(run_candidate(campaign, study, linear, f"{name}.{study.mounting}", told=silent)) for name in FEW]
-    return *outcome(campaign, study, values, linear, singles, [], {"versions": "x"}, silent), study, campaign
+    singles = [
+        plain(run_candidate(campaign, study, linear, f"{name}.{study.mounting}", told=silent))
+        for name in FEW
+    ]
+    return (
+        *outcome(campaign, study, values, linear, singles, [], {"versions": "x"}, silent),
+        study,
+        campaign,
+    )
 
 
 def masses():
     """(frequency (mode,), shapes (mode, channel)) of the two masses by hand."""
-    stiffness = np.array([[two_masses.GROUND[0] + two_masses.JOINT[0], -two_masses.JOINT[0]], [-two_masses.JOINT[0], two_masses.JOINT[0]]])
+    stiffness = np.array(
+        [
+            [two_masses.GROUND[0] + two_masses.JOINT[0], -two_masses.JOINT[0]],
+            [-two_masses.JOINT[0], two_masses.JOINT[0]],
+        ]
+    )
     squares, shapes = linalg.eigh(stiffness, np.diag(two_masses.MASS))
     return np.sqrt(squares) / (2.0 * np.pi), shapes.T * np.sign(shapes[0])[:, None]
 
@@ -60,7 +90,11 @@ def test_the_modes_of_the_masses_come_out_of_periodic_and_of_random_records(tmp_
     values, campaign, linear, _ = prepared_of(_campaign("nothing", periodic), tmp_path)
     frequency, shapes = masses()
     base, study = modes_of(linear["base"]), study_of("", values)
-    assert values["refused"] is None and study.drive == "upper" and study.residual_modes == (False, False)
+    assert (
+        values["refused"] is None
+        and study.drive == "upper"
+        and study.residual_modes == (False, False)
+    )
     assert campaign.attrs["period_samples"] == (two_masses.PERIOD if periodic else 0)
     assert base.frequency == pytest.approx(frequency, rel=3.0e-3)
     assert base.shapes == pytest.approx(shapes, abs=0.03)
@@ -70,33 +104,57 @@ def test_the_modes_of_the_masses_come_out_of_periodic_and_of_random_records(tmp_
 def test_a_cubic_spring_between_the_masses_is_named_where_it_is(tmp_path):
     verdict, rows, completed, study, campaign = judged("cubic", tmp_path)
     assert study.mounting == "upper-lower"
-    assert set(verdict) == KEYS and verdict["verdict"] == "named" and verdict["ambiguity_set"] == [["cubic_stiffness"]]
+    assert (
+        set(verdict) == KEYS
+        and verdict["verdict"] == "named"
+        and verdict["ambiguity_set"] == [["cubic_stiffness"]]
+    )
     effect = verdict["effects"][0]
     assert effect["location"] == "upper-lower: between upper and lower"
-    assert effect["parameters"]["cubic_stiffness"]["value"] == pytest.approx(two_masses.CUBIC, rel=0.05)
-    assert all(row["error_completed"] < 0.1 < row["error_linear"] for row in rows if row["split"] == "holdout")
-    assert build_model(check_config(configuration(completed, campaign, study), "updated")).sensor_names == ("upper.x", "lower.x")
+    assert effect["parameters"]["cubic_stiffness"]["value"] == pytest.approx(
+        two_masses.CUBIC, rel=0.05
+    )
+    assert all(
+        row["error_completed"] < 0.1 < row["error_linear"]
+        for row in rows
+        if row["split"] == "holdout"
+    )
+    assert build_model(
+        check_config(configuration(completed, campaign, study), "updated")
+    ).sensor_names == ("upper.x", "lower.x")
 
 
 def test_where_nothing_is_hidden_nothing_is_named(tmp_path):
     verdict = judged("nothing", tmp_path)[0]
-    assert verdict["verdict"] == "none" and verdict["effects"] == [] and verdict["ambiguity_set"] == []
+    assert (
+        verdict["verdict"] == "none" and verdict["effects"] == [] and verdict["ambiguity_set"] == []
+    )
 
 
 def test_hysteresis_that_the_catalogue_lacks_is_friction_at_most(tmp_path):
     verdict = judged("bouc_wen", tmp_path)[0]
     assert verdict["verdict"] in ("named", "partly_explained", "ambiguous", "unknown")
-    assert {each for ids in verdict["ambiguity_set"] for each in ids} <= {"coulomb_friction", "saturation_stiffness"}
+    assert {each for ids in verdict["ambiguity_set"] for each in ids} <= {
+        "coulomb_friction",
+        "saturation_stiffness",
+    }
 
 
 def test_a_law_is_found_in_records_without_period(tmp_path):
     verdict, rows, *_ = judged("cubic", tmp_path, periodic=False)
-    assert verdict["verdict"] in ("named", "partly_explained") and verdict["effects"][0]["id"] == "cubic_stiffness"
-    assert verdict["effects"][0]["parameters"]["cubic_stiffness"]["value"] == pytest.approx(two_masses.CUBIC, rel=0.1)
+    assert (
+        verdict["verdict"] in ("named", "partly_explained")
+        and verdict["effects"][0]["id"] == "cubic_stiffness"
+    )
+    assert verdict["effects"][0]["parameters"]["cubic_stiffness"]["value"] == pytest.approx(
+        two_masses.CUBIC, rel=0.1
+    )
 
 
 def test_a_sensor_against_the_force_is_turned(tmp_path):
-    values, campaign, linear, _ = prepared_of(two_masses.campaign("nothing", periods=3, turned=True), tmp_path)
+    values, campaign, linear, _ = prepared_of(
+        two_masses.campaign("nothing", periods=3, turned=True), tmp_path
+    )
     assert modes_of(linear["base"]).frequency == pytest.approx(masses()[0], rel=3.0e-3)
     assert campaign["channel_direction"].values[0].tolist() == [0.0, 0.0, 1.0]
 
@@ -106,22 +164,36 @@ def test_two_levels_are_not_testable_and_say_what_to_measure(tmp_path):
     values, kept, linear, _ = prepared_of(campaign, tmp_path)
     verdict, rows, completed = outcome(kept, None, values, plain(linear), [], [], {}, silent)
     assert set(verdict) == KEYS and verdict["verdict"] == "not_testable" and completed is None
-    assert "record a third level" in next(row["message"] for row in verdict["checks"] if row["level"] == "refuse")
+    assert "record a third level" in next(
+        row["message"] for row in verdict["checks"] if row["level"] == "refuse"
+    )
     assert len(rows) == 4
 
 
 def test_a_response_that_does_not_follow_the_force_is_refused(tmp_path):
     campaign = two_masses.campaign("nothing", periods=3)
-    campaign["response"].values[:] = np.random.default_rng(3).standard_normal(campaign["response"].shape)
+    campaign["response"].values[:] = np.random.default_rng(3).standard_normal(
+        campaign["response"].shape
+    )
     values, kept, linear, _ = prepared_of(campaign, tmp_path)
-    assert values["refused"] and linear == {} and outcome(kept, None, values, {}, [], [], {}, silent)[0]["verdict"] == "not_testable"
+    assert (
+        values["refused"]
+        and linear == {}
+        and outcome(kept, None, values, {}, [], [], {}, silent)[0]["verdict"] == "not_testable"
+    )
 
 
 def test_periods_that_hold_the_transient_are_counted():
     steady = np.random.default_rng(1).standard_normal((2, 500))
     signal = np.tile(steady, 6) + 1.0e-3 * np.random.default_rng(2).standard_normal((2, 3000))
     signal[:, :900] += 5.0 * np.exp(-np.arange(900) / 100.0)
-    assert unsettled_periods(signal, 500) == 2 and unsettled_periods(np.tile(steady, 4) + 0.01 * np.random.default_rng(4).standard_normal((2, 2000)), 500) == 0
+    assert (
+        unsettled_periods(signal, 500) == 2
+        and unsettled_periods(
+            np.tile(steady, 4) + 0.01 * np.random.default_rng(4).standard_normal((2, 2000)), 500
+        )
+        == 0
+    )
 
 
 def test_the_transient_is_taken_from_a_record_without_period():
@@ -135,5 +207,8 @@ def test_the_transient_is_taken_from_a_record_without_period():
     laplace = 2j * np.pi * level.frequency[kept]
     wanted = level.force[kept] / (laplace**2 + 2.0 * 0.02 * 60.0 * laplace + 60.0**2)
     plain_lines = np.fft.rfft(answer[-count:])[kept] / count
-    missed, before = (np.linalg.norm(each - wanted) / np.linalg.norm(wanted) for each in (level.response[0, kept], plain_lines))
+    missed, before = (
+        np.linalg.norm(each - wanted) / np.linalg.norm(wanted)
+        for each in (level.response[0, kept], plain_lines)
+    )
     assert missed < 0.03 < 0.1 < before

@@ -5,13 +5,18 @@ import pytest
 import xarray as xr
 
 from tests.oscillator import oscillator
-from vibroimpact.integrate import Schedule, march_lanes
-from vibroimpact.kernels import LANES
-from vibroimpact.simulate import statistics
-from vibroimpact.validation.random_stops import exact_law, gaussian_linearisation, law_checks
+from vibroimpact.integration.batch import Schedule, march_lanes
+from vibroimpact.integration.kernels import LANES
+from vibroimpact.study.simulation import statistics
+from vibroimpact.validation.reference.random_stops import (
+    exact_law,
+    gaussian_linearisation,
+    law_checks,
+)
 
 OMEGA, GAP, RATE = 2.0 * np.pi * 40.0, 1e-3, 51200
-# s0, r: sigma_x, P(contact), RMS stop force, upcrossings, T / sigma_x², Gaussian linearisation: sigma_x, k
+# s0, r: sigma_x, P(contact), RMS stop force, upcrossings, T / sigma_x², Gaussian linearisation:
+# sigma_x, k
 TABLE = {
     (0.5, 10.0): (0.469956, 0.027257, 0.197489, 0.021951, 1.1319, 0.446822, 1.2522),
     (1.0, 10.0): (0.709099, 0.176209, 1.124685, 0.116484, 1.9888, 0.659870, 2.2966),
@@ -23,24 +28,41 @@ TABLE = {
 @pytest.mark.parametrize(("sigma", "ratio"), TABLE)
 def test_exact_law_is_the_published_table(sigma, ratio):
     law = exact_law(sigma, ratio)
-    found = (law.displacement_rms, law.contact_probability, law.force_rms, law.upcrossing_rate, sigma**2 / law.displacement_rms**2,
-             *gaussian_linearisation(sigma, ratio))  # fmt: skip
+    found = (
+        law.displacement_rms,
+        law.contact_probability,
+        law.force_rms,
+        law.upcrossing_rate,
+        sigma**2 / law.displacement_rms**2,
+        *gaussian_linearisation(sigma, ratio),
+    )
     assert found == pytest.approx(TABLE[sigma, ratio], abs=6e-7, rel=5e-5)
 
 
 def records(sigma, ratio, damping_ratio, batches=1):
     """Statistics of 20 s records under white noise, LANES per batch."""
     damping = 2.0 * damping_ratio * OMEGA
-    model = oscillator(1.0, OMEGA**2, damping, ratio * OMEGA**2, [(1.0, 0.0), (-1.0, 0.0)], {"gap": GAP})
+    model = oscillator(
+        1.0, OMEGA**2, damping, ratio * OMEGA**2, [(1.0, 0.0), (-1.0, 0.0)], {"gap": GAP}
+    )
     schedule = Schedule(RATE, 2048, 1.0, 20.0)
     rms = np.sqrt(2.0 * damping * (sigma * OMEGA * GAP) ** 2 * RATE)
     generator = np.random.default_rng(11)
     found = []
     for _ in range(batches):
         force = rms * generator.standard_normal((schedule.steps + 2, 1, LANES))
-        lanes = march_lanes(model, schedule, np.ones(LANES), np.zeros((1, 2, LANES)), lambda first, count, force=force: force[first : first + count])
+        lanes = march_lanes(
+            model,
+            schedule,
+            np.ones(LANES),
+            np.zeros((1, 2, LANES)),
+            lambda first, count, force=force: force[first : first + count],
+        )
         for lane in range(LANES):
-            values = {name: ([f"{name}_{axis}" for axis in range(np.ndim(value))], value) for name, value in statistics(lanes, lane, schedule).items()}
+            values = {
+                name: ([f"{name}_{axis}" for axis in range(np.ndim(value))], value)
+                for name, value in statistics(lanes, lane, schedule).items()
+            }
             found.append(xr.Dataset(values, attrs={"steps_per_second": RATE}))
     return found
 
@@ -48,7 +70,9 @@ def records(sigma, ratio, damping_ratio, batches=1):
 @pytest.mark.parametrize("damping_ratio", [0.1, 0.5])
 @pytest.mark.parametrize(("sigma", "ratio"), [(1.0, 10.0), (2.0, 100.0)])
 def test_statistics_follow_the_exact_law_whatever_the_damping(sigma, ratio, damping_ratio):
-    """Within 3 standard errors plus the step's; the full study (`snakemake validation`) brings the standard errors to 0.5 %."""
+    """Within 3 standard errors plus the step's; the full study (`snakemake validation`) brings the
+    standard errors to 0.5 %.
+    """
     checks = law_checks(records(sigma, ratio, damping_ratio), sigma, ratio, OMEGA, GAP)
     errors = [check for check in checks if not check.quantity.startswith("standard error")]
     assert len(errors) == 4

@@ -1,11 +1,13 @@
-"""R1 to R5 through the public interface, from their configurations alone, and the order of the integrator."""
+"""R1 to R5 through the public interface, from their configurations alone, and the order of the
+integrator.
+"""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from vibroimpact.validation.reference_runs import impact_checks
+from vibroimpact.validation.reference.runs import impact_checks
 
 FOLDER = Path(__file__).resolve().parents[2] / "config" / "reference"
 
@@ -25,5 +27,10 @@ def test_reference_case(impacts, case):
 
 def test_contact_times_fall_with_the_square_of_the_step(impacts):
     rows = impacts[1]
-    assert all(before["contact_time_error_s"] > 2.0 * after["contact_time_error_s"] for before, after in zip(rows[:-1], rows[1:], strict=True))
-    assert np.log2(rows[0]["contact_time_error_s"] / rows[-1]["contact_time_error_s"]) == pytest.approx(6.0, abs=1.0)  # three halvings
+    assert all(
+        before["contact_time_error_s"] > 2.0 * after["contact_time_error_s"]
+        for before, after in zip(rows[:-1], rows[1:], strict=True)
+    )
+    assert np.log2(
+        rows[0]["contact_time_error_s"] / rows[-1]["contact_time_error_s"]
+    ) == pytest.approx(6.0, abs=1.0)  # three halvings

@@ -1,20 +1,22 @@
-"""A simulated case: exact load, independence of the batch, published orders of magnitude, the stress flag."""
+"""A simulated case: exact load, independence of the batch, published orders of magnitude, the
+stress flag.
+"""
 
 import tracemalloc
 
 import numpy as np
 import pytest
 
-from vibroimpact.cases import Case
+from vibroimpact.config.stage_settings import Settings
 from vibroimpact.records import read_record
-from vibroimpact.series_files import series_files
-from vibroimpact.settings import Settings
-from vibroimpact.simulate import simulate_cases
-from vibroimpact.spectra_files import spectra_files
-from vibroimpact.spectra_of_case import case_spectra
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_spectra import case_spectra
+from vibroimpact.study.cases import Case
+from vibroimpact.study.record_variables import split_record
+from vibroimpact.study.series_files import series_files
+from vibroimpact.study.simulation import simulate_cases
+from vibroimpact.study.spectra_files import spectra_files
 from vibroimpact.validation.variant import changed
-from vibroimpact.variables import split_record
 
 GAP = 2.8886e-4
 
@@ -32,7 +34,12 @@ def short_config(study_config):
 
 @pytest.fixture(scope="module")
 def cases():
-    return [Case(load, gap, seed) for load in (0.5, 20.0) for gap in (GAP, 2 * GAP) for seed in (0, 1, 2)]
+    return [
+        Case(load, gap, seed)
+        for load in (0.5, 20.0)
+        for gap in (GAP, 2 * GAP)
+        for seed in (0, 1, 2)
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +49,8 @@ def records(short_config, study_model, cases):
 
 def test_force_record_has_the_load_of_the_case(records):
     for case, record in records.items():
-        # over the record the full-rate force has exactly this RMS; the filtered samples come close to it
+        # over the record the full-rate force has exactly this RMS; the filtered samples come close
+        # to it
         assert float(np.sqrt((record.force**2).mean())) == pytest.approx(case.load_rms_N, rel=5e-3)
 
 
@@ -60,17 +68,28 @@ def test_scaling_load_and_gap_scales_the_record_bit_for_bit(short_config, study_
     assert np.array_equal(doubled.contact_fraction, single.contact_fraction)
 
 
-def test_files_written_on_the_way_hold_what_the_whole_record_does(short_config, study_model, records, cases, tmp_path):
+def test_files_written_on_the_way_hold_what_the_whole_record_does(
+    short_config, study_model, records, cases, tmp_path
+):
     batch = cases[:2]
     paths = {case: tmp_path / f"{case.id}.nc" for case in batch}
-    for case, record in simulate_cases(short_config, study_model, batch, series_files(short_config, study_model, paths, {"mark": "x"})):
+    for case, record in simulate_cases(
+        short_config,
+        study_model,
+        batch,
+        series_files(short_config, study_model, paths, {"mark": "x"}),
+    ):
         series = read_record(paths[case])
         assert series.attrs["mark"] == "x" and series.attrs["case"] == case.id
-        assert series.equals(records[case][[*series.data_vars]].drop_vars(set(records[case].coords) - set(series.coords), errors="ignore"))
+        assert series.equals(
+            records[case][[*series.data_vars]].drop_vars(
+                set(records[case].coords) - set(series.coords), errors="ignore"
+            )
+        )
         assert record.equals(split_record(records[case])[0])
     stopwatch = Stopwatch()
     keep = spectra_files(short_config, study_model, paths, {"mark": "y"}, stopwatch)
-    for case, record in simulate_cases(short_config, study_model, batch, keep, stopwatch):
+    for case, _ in simulate_cases(short_config, study_model, batch, keep, stopwatch):
         assert read_record(paths[case]).equals(case_spectra(short_config, records[case]))
     assert set(stopwatch) == {"force", "kernel", "output filter", "spectra"}
 
@@ -79,12 +98,20 @@ def test_memory_does_not_grow_with_the_duration(short_config, study_model, tmp_p
     batch, most = [Case(0.5, GAP, seed) for seed in range(8)], []
     for duration in (2.0, 2.0, 12.0):  # the first fills what is kept for all
         run = Settings({**short_config, "record": {**short_config.record, "duration_s": duration}})
-        keep = spectra_files(run, study_model, {case: tmp_path / f"{case.seed}.nc" for case in batch}, {}, Stopwatch())
+        keep = spectra_files(
+            run,
+            study_model,
+            {case: tmp_path / f"{case.seed}.nc" for case in batch},
+            {},
+            Stopwatch(),
+        )
         tracemalloc.start()
         list(simulate_cases(run, study_model, batch, keep))
         most.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    series = 10.0 * 2048 * 4 * len(batch) * 48  # bytes that ten seconds of all channels would have added
+    series = (
+        10.0 * 2048 * 4 * len(batch) * 48
+    )  # bytes that ten seconds of all channels would have added
     assert most[2] - most[1] < 0.12 * series
 
 
@@ -97,28 +124,56 @@ def test_below_contact_nothing_moves_in_plane(records):
 
 
 def test_stress_at_20_newton_is_that_of_the_testbed(short_config, study_model):
-    """Prototypes of the stand-in tube gave about 34 MPa RMS and 144 MPa peak over 49 s at the plate; a shorter record has less of a peak.
+    """Prototypes of the stand-in tube gave about 34 MPa RMS and 144 MPa peak over 49 s at the
+    plate; a shorter record has less of a peak.
 
     Eight records of 12 s: their mean scatters by some 3 %, that of three records of 3 s by 15 %.
     """
     longer = Settings({**short_config, "record": {**short_config.record, "duration_s": 12.0}})
-    found = [record for _, record in simulate_cases(longer, study_model, [Case(20.0, GAP, seed) for seed in range(8)])]
-    plate = np.mean([[record.stress_rms.sel(section=name) for name in ("left_middle", "right_middle")] for record in found])
+    found = [
+        record
+        for _, record in simulate_cases(
+            longer, study_model, [Case(20.0, GAP, seed) for seed in range(8)]
+        )
+    ]
+    plate = np.mean(
+        [
+            [record.stress_rms.sel(section=name) for name in ("left_middle", "right_middle")]
+            for record in found
+        ]
+    )
     assert plate == pytest.approx(34e6, rel=0.15)
     assert 60e6 < max(float(record.stress_peak.max()) for record in found) < 250e6
 
 
 def test_the_stress_flag_tells_of_the_peak(records):
-    assert all(int(record.stress_flag) == int(record.stress_peak.max() > 60e6) for record in records.values())
+    assert all(
+        int(record.stress_flag) == int(record.stress_peak.max() > 60e6)
+        for record in records.values()
+    )
     assert any(int(records[Case(20.0, GAP, seed)].stress_flag) for seed in (0, 1, 2))
     assert not int(records[Case(0.5, GAP, 0)].stress_flag)
 
 
-@pytest.mark.parametrize(("scheme", "rate", "identity", "potential"), [("newmark", 51200, 1e-9, 3e-3), ("exact", 20480, 3e-4, 2e-2)])
-def test_records_balance_their_energy(study_config, study_model, cases, scheme, rate, identity, potential):
-    """Newmark to round-off; the exact step as far as trapezoidal sums of work and damping go, with the longer step's loss at the gap."""
-    config = changed(study_config, {"integration.scheme": scheme, "integration.steps_per_second": rate, "integration.start_up_s": 0.5,
-                                    "record.duration_s": 10.0})  # fmt: skip
+@pytest.mark.parametrize(
+    ("scheme", "rate", "identity", "potential"),
+    [("newmark", 51200, 1e-9, 3e-3), ("exact", 20480, 3e-4, 2e-2)],
+)
+def test_records_balance_their_energy(
+    study_config, study_model, cases, scheme, rate, identity, potential
+):
+    """Newmark to round-off; the exact step as far as trapezoidal sums of work and damping go, with
+    the longer step's loss at the gap.
+    """
+    config = changed(
+        study_config,
+        {
+            "integration.scheme": scheme,
+            "integration.steps_per_second": rate,
+            "integration.start_up_s": 0.5,
+            "record.duration_s": 10.0,
+        },
+    )
     for _, record in simulate_cases(config, study_model, cases[::3]):
         assert float(record.energy_residual) < identity
         assert float(record.potential_energy_residual) < potential

@@ -1,21 +1,26 @@
-"""Runs of a structure that may be thrown off: those that were are left out, those that were not are as they were."""
+"""Runs of a structure that may be thrown off: those that were are left out, those that were not are
+as they were.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from vibroimpact.config import check_config
-from vibroimpact.contraction import IntegrationError
+from vibroimpact.config.reading import check_config
 from vibroimpact.discrepancy.forward import Forces, simulate_records
 from vibroimpact.discrepancy.survivors import of_survivors
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.integrate import Schedule
-from vibroimpact.kernels import LANES
-from vibroimpact.reduction import build_model
+from vibroimpact.integration.batch import Schedule
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.kernels import LANES
+from vibroimpact.reduction.reduced_model import build_model
 
 RATE, FAR = 20480, 1.0
-LOADS = (1.0, 60.0)  # N rms: at rest near zero, and over the edge of a spring that pulls beyond one side
+LOADS = (
+    1.0,
+    60.0,
+)  # N rms: at rest near zero, and over the edge of a spring that pulls beyond one side
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +30,12 @@ def leaning(study_config):
     values = study_config.model_dump(mode="json")
     values = effect.apply(values, {"coefficient": -4.0e6}, effect.locations(values)[0])
     model = build_model(check_config(values, "leaning"))
-    return replace(model, line_shapes=model.line_shapes[:, :0], line_positions=np.zeros((0, 3)), line_arc_length=np.zeros(0))
+    return replace(
+        model,
+        line_shapes=model.line_shapes[:, :0],
+        line_positions=np.zeros((0, 3)),
+        line_arc_length=np.zeros(0),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -44,12 +54,16 @@ def test_the_runs_that_stay_are_untouched_by_one_that_is_thrown_off(leaning, for
     kinds = ["acceleration"] * leaning.sensor_shapes.shape[1]
     found = simulate_records(leaning, *forces, runs_of(2), kinds)
     assert np.isnan(found[-2:]).all()
-    np.testing.assert_array_equal(found[:-2], simulate_records(leaning, *forces, runs_of(0), kinds)[:-2])
+    np.testing.assert_array_equal(
+        found[:-2], simulate_records(leaning, *forces, runs_of(0), kinds)[:-2]
+    )
 
 
 def test_a_structure_that_is_mostly_thrown_off_is_none_that_was_measured(leaning, forces):
     with pytest.raises(IntegrationError, match="diverged"):
-        simulate_records(leaning, *forces, runs_of(3), ["acceleration"] * leaning.sensor_shapes.shape[1])
+        simulate_records(
+            leaning, *forces, runs_of(3), ["acceleration"] * leaning.sensor_shapes.shape[1]
+        )
 
 
 def test_as_many_runs_of_every_record_are_kept():

@@ -32,15 +32,25 @@ def test_it_imports_nothing_of_the_library_and_the_library_nothing_of_it():
     files = sorted(PACKAGE.rglob("*.py"))
     assert len(files) > 10
     assert [file.name for file in files if "vibroimpact" in imported(file)] == []
-    assert [file.name for file in (ROOT / "src" / "vibroimpact").rglob("*.py") if "vibroimpact_truth" in imported(file)] == []
+    assert [
+        file.name
+        for file in (ROOT / "src" / "vibroimpact").rglob("*.py")
+        if "vibroimpact_truth" in imported(file)
+    ] == []
 
 
 def test_compiled_code_is_in_one_file():
-    assert [file.name for file in PACKAGE.rglob("*.py") if imported(file) & {"numba", "llvmlite"}] == ["kernel.py"]
+    assert [
+        file.name for file in PACKAGE.rglob("*.py") if imported(file) & {"numba", "llvmlite"}
+    ] == ["kernel.py"]
 
 
 def test_files_hold_one_idea():
-    assert [file.name for file in PACKAGE.rglob("*.py") if len(file.read_text().splitlines()) > 300 and file.name != "kernel.py"] == []
+    assert [
+        file.name
+        for file in PACKAGE.rglob("*.py")
+        if len(file.read_text().splitlines()) > 300 and file.name != "kernel.py"
+    ] == []
 
 
 def test_every_effect_has_its_amounts():
@@ -63,7 +73,20 @@ def test_arms_keep_their_proportions():
 def sealed(tmp_path_factory):
     """A short campaign with a hidden gap, with contact forces."""
     folder = tmp_path_factory.mktemp("sealed")
-    main(["one", "--out", str(folder / "x.nc"), "--effect", "gap", "--set", "factor=1.5", "--duration", "1", "--contact-force"])
+    main(
+        [
+            "one",
+            "--out",
+            str(folder / "x.nc"),
+            "--effect",
+            "gap",
+            "--set",
+            "factor=1.5",
+            "--duration",
+            "1",
+            "--contact-force",
+        ]
+    )
     return folder
 
 
@@ -71,7 +94,10 @@ def test_the_file_keeps_the_contract(sealed):
     with netCDF4.Dataset(sealed / "x.nc") as file:
         sizes = {name: len(dim) for name, dim in file.dimensions.items()}
         assert sizes == {"record": 4, "force_channel": 1, "channel": 11, "time": 2048, "xyz": 3}
-        assert file["force"].dimensions == ("record", "force_channel", "time") and file["force"].units == "N"
+        assert (
+            file["force"].dimensions == ("record", "force_channel", "time")
+            and file["force"].units == "N"
+        )
         assert file["response"].dimensions == ("record", "channel", "time")
         assert list(file["split"][:]) == ["fit", "fit", "fit", "holdout"]
         assert set(file["channel_kind"][:]) == {"acceleration", "contact_force"}
@@ -84,13 +110,25 @@ def test_the_file_keeps_the_contract(sealed):
 
 def test_the_file_does_not_tell(sealed):
     with netCDF4.Dataset(sealed / "x.nc") as file:
-        told = " ".join(str(file.getncattr(name)) for name in file.ncattrs()) + " ".join(file.variables)
+        told = " ".join(str(file.getncattr(name)) for name in file.ncattrs()) + " ".join(
+            file.variables
+        )
     assert "1.5" not in told and "factor" not in told
     assert '"gap"' in (sealed / "x.truth.json").read_text()
 
 
 def test_a_finished_campaign_is_kept(tmp_path, capsys):
-    arguments = ["--out", str(tmp_path), "--seed", "2", "--count", "1", "--duration", "0.5", "--no-twin"]
+    arguments = [
+        "--out",
+        str(tmp_path),
+        "--seed",
+        "2",
+        "--count",
+        "1",
+        "--duration",
+        "0.5",
+        "--no-twin",
+    ]
     main(arguments)
     stamp = (tmp_path / "campaign_s2_0000.nc").stat().st_mtime_ns
     main(arguments)

@@ -1,4 +1,6 @@
-"""Properties of the truth generator's rig: homogeneity, linearity, neutral effects, and the development campaign in which nothing is hidden."""
+"""Properties of the truth generator's rig: homogeneity, linearity, neutral effects, and the
+development campaign in which nothing is hidden.
+"""
 
 from pathlib import Path
 
@@ -9,7 +11,13 @@ import pytest
 from vibroimpact_truth.campaign import Plan, forces, records_of
 from vibroimpact_truth.strength import ABOVE_NOISE, BANDS, HIGHEST_HZ, LOWEST_HZ, band_powers
 
-DEV_NULL = next((folder / "data" / "campaigns" / "dev_null.nc" for folder in Path(__file__).resolve().parents[2].glob("../shared")), Path("absent"))
+DEV_NULL = next(
+    (
+        folder / "data" / "campaigns" / "dev_null.nc"
+        for folder in Path(__file__).resolve().parents[2].glob("../shared")
+    ),
+    Path("absent"),
+)
 SHORT = {"seed": (3,), "duration": 1.0, "levels": ((10.0, 1.3, "fit"),)}
 
 
@@ -30,34 +38,72 @@ def test_below_contact_the_response_is_linear():
     small = run(levels=((0.1, 1.3, "fit"),))
     large = run(levels=((0.3, 1.3, "fit"),))
     in_y = [0, 2, 3, 5, 6]
-    np.testing.assert_allclose(large[in_y], 3.0 * small[in_y], rtol=0.0, atol=1e-9 * np.abs(large).max())
+    np.testing.assert_allclose(
+        large[in_y], 3.0 * small[in_y], rtol=0.0, atol=1e-9 * np.abs(large).max()
+    )
 
 
-@pytest.mark.parametrize(("effect", "neutral"), [
-    ("gap", {"factor": 1.0}), ("contact_damping", {"damping": 0.0}), ("hunt_crossley", {"alpha": 0.0}), ("dry_friction", {"mu": 0.0}),
-    ("support_offset", {"offset_y": 0.0}), ("foliate_obstacle", {"depth": 0.0}), ("preload", {"force_y": 0.0}), ("modal_damping", {"factor": 1.0}),
-    ("added_mass", {"mass": 0.0}), ("fluid_added_mass_damping", {"mass": 0.0, "damping": 0.0}), ("cubic_stiffness", {"stiffness": 0.0}),
-    ("quadratic_drag", {"drag": 0.0}), ("force_misalignment", {"angle": 0.0}), ("tilted_plate", {"slope": 0.0}), ("drifting_gap", {"rate": 0.0})])  # fmt: skip
+@pytest.mark.parametrize(
+    ("effect", "neutral"),
+    [
+        ("gap", {"factor": 1.0}),
+        ("contact_damping", {"damping": 0.0}),
+        ("hunt_crossley", {"alpha": 0.0}),
+        ("dry_friction", {"mu": 0.0}),
+        ("support_offset", {"offset_y": 0.0}),
+        ("foliate_obstacle", {"depth": 0.0}),
+        ("preload", {"force_y": 0.0}),
+        ("modal_damping", {"factor": 1.0}),
+        ("added_mass", {"mass": 0.0}),
+        ("fluid_added_mass_damping", {"mass": 0.0, "damping": 0.0}),
+        ("cubic_stiffness", {"stiffness": 0.0}),
+        ("quadratic_drag", {"drag": 0.0}),
+        ("force_misalignment", {"angle": 0.0}),
+        ("tilted_plate", {"slope": 0.0}),
+        ("drifting_gap", {"rate": 0.0}),
+    ],
+)
 def test_an_effect_of_nothing_changes_nothing(effect, neutral):
     # Before round-off is amplified by the impacts: the first 0.15 s.
-    bare, same = (run(effects=effects, duration=0.25)[:, :300] for effects in ((), ((effect, neutral),)))
+    bare, same = (
+        run(effects=effects, duration=0.25)[:, :300] for effects in ((), ((effect, neutral),))
+    )
     np.testing.assert_allclose(same, bare, rtol=0.0, atol=1e-6 * np.abs(bare).max())
 
 
-@pytest.mark.parametrize(("effect", "parameters"), [
-    ("plate_flexibility", {"mass": 0.01, "stiffness": 4.0e8}), ("root_stiffness", {"translation": 1.0e13, "rotation": 1.0e9})])
+@pytest.mark.parametrize(
+    ("effect", "parameters"),
+    [
+        ("plate_flexibility", {"mass": 0.01, "stiffness": 4.0e8}),
+        ("root_stiffness", {"translation": 1.0e13, "rotation": 1.0e9}),
+    ],
+)
 def test_a_rigid_limit_is_the_bare_rig(effect, parameters):
-    bare, same = (run(effects=effects, duration=0.25)[:, :300] for effects in ((), ((effect, parameters),)))
+    bare, same = (
+        run(effects=effects, duration=0.25)[:, :300] for effects in ((), ((effect, parameters),))
+    )
     np.testing.assert_allclose(same, bare, rtol=0.0, atol=4e-2 * np.abs(bare).max())
 
 
-@pytest.mark.skipif(not DEV_NULL.exists(), reason="the development campaigns (shared data/campaigns) are not beside this checkout")
+@pytest.mark.skipif(
+    not DEV_NULL.exists(),
+    reason="the development campaigns (shared data/campaigns) are not beside this checkout",
+)
 def test_nothing_hidden_agrees_with_the_development_campaign():
-    # Another code, gains of 1 % and modes of 0.05 % apart; whole bands, so that the narrow resonance at low level averages.
+    # Another code, gains of 1 % and modes of 0.05 % apart; whole bands, so that the narrow
+    # resonance at low level averages.
     with netCDF4.Dataset(DEV_NULL) as file:
         theirs, there = file["response"][:].astype(float), (0, 3)
     levels = ((0.5, 1.3, "fit"), (10.0, 0.9, "holdout"))
-    plan = Plan((5,), tube="dev", drive_force=str(DEV_NULL), levels=levels, gain_scatter=0.0, frequency_scatter=0.0, damping_scatter=0.0)
+    plan = Plan(
+        (5,),
+        tube="dev",
+        drive_force=str(DEV_NULL),
+        levels=levels,
+        gain_scatter=0.0,
+        frequency_scatter=0.0,
+        damping_scatter=0.0,
+    )
     ours = records_of(plan, forces(plan)[list(there)])[0]
     noise = 0.01 * theirs[0].std(axis=-1).max()
     edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)

@@ -1,4 +1,6 @@
-"""The testbed's tables of frequencies, on the truth generator's own elements. Source: reference/testbed.md, two independent codes agreeing."""
+"""The testbed's tables of frequencies, on the truth generator's own elements. Source:
+reference/testbed.md, two independent codes agreeing.
+"""
 
 import numpy as np
 import pytest
@@ -16,15 +18,24 @@ TIMOSHENKO = {
     4.0e6: ((27.99, 72.83, 179.92, 316.52), (53.94, 175.26, 320.16)),
     1.0e9: ((33.33, 85.21, 206.12, 368.72), (64.58, 198.91, 372.01)),
 }
-FIRST_BY_POINTS = {4.0e6: {1: 27.751, 2: 28.215, 3: 28.069, 5: 27.993, 9: 27.954}, 1.0e9: {1: 28.186, 2: 33.621, 3: 33.516, 5: 33.331, 9: 33.173}}
+FIRST_BY_POINTS = {
+    4.0e6: {1: 27.751, 2: 28.215, 3: 28.069, 5: 27.993, 9: 27.954},
+    1.0e9: {1: 28.186, 2: 33.621, 3: 33.516, 5: 33.331, 9: 33.173},
+}
 
 
 def bilateral(tube, stiffness, points, plane, element_length=0.036):
-    """Frequencies in Hz of the tube with each plate a bilateral layer of `stiffness` N/m on `points` points."""
+    """Frequencies in Hz of the tube with each plate a bilateral layer of `stiffness` N/m on
+    `points` points.
+    """
     planes = Planes(Rig.bare(tube), element_length)
     direction = (0.0, 1.0, 0.0) if plane == "y" else (1.0, 0.0, 0.0)
     tube = tube.with_changes(contact_nodes=points)
-    rows = [planes.rows(s, direction)[plane] for side in ("left", "right") for s in tube.plate_nodes(side)]
+    rows = [
+        planes.rows(s, direction)[plane]
+        for side in ("left", "right")
+        for s in tube.plate_nodes(side)
+    ]
     return planes.modes(plane, 500.0, [(row, stiffness / points) for row in rows])[0]
 
 
@@ -35,7 +46,9 @@ def test_stand_in_with_bilateral_plates(stiffness):
         np.testing.assert_allclose(found, expected, rtol=1.0e-3)
 
 
-@pytest.mark.parametrize(("stiffness", "points"), [(k, n) for k, row in FIRST_BY_POINTS.items() for n in row])
+@pytest.mark.parametrize(
+    ("stiffness", "points"), [(k, n) for k, row in FIRST_BY_POINTS.items() for n in row]
+)
 def test_first_frequency_by_number_of_contact_points(stiffness, points):
     found = bilateral(TUBES["stand_in"], stiffness, points, "y", 0.012)[0]
     assert found == pytest.approx(FIRST_BY_POINTS[stiffness][points], rel=1.0e-3)
@@ -43,14 +56,17 @@ def test_first_frequency_by_number_of_contact_points(stiffness, points):
 
 def test_with_stiff_shear_the_euler_bernoulli_line_comes_back():
     # The rotary inertia stays, which is what is left of the difference.
-    stiff = Planes(Rig.bare(TUBES["stand_in"].with_changes(shear_coefficient=50.0))).modes("y", 200.0)[0]
+    stiff = Planes(Rig.bare(TUBES["stand_in"].with_changes(shear_coefficient=50.0))).modes(
+        "y", 200.0
+    )[0]
     soft = Planes(Rig.bare(TUBES["stand_in"])).modes("y", 200.0)[0]
     assert np.all(stiff > soft)
     np.testing.assert_allclose(stiff[:4], [15.98, 45.10, 105.12, 172.23], rtol=1.0e-3)
 
 
 def test_contact_compliance_is_that_of_the_finite_elements():
-    # Modes to 15 kHz plus the residual give the static compliance of the plate's nodes; the residual alone is below 1 % of 1 / k.
+    # Modes to 15 kHz plus the residual give the static compliance of the plate's nodes; the
+    # residual alone is below 1 % of 1 / k.
     tube = TUBES["stand_in"]
     reduced = reduce_rig(Rig.bare(tube), [("apex", (0.0, 1.0, 0.0))])
     contacts = reduced.contacts

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vibroimpact.antialias import output_filter
+from vibroimpact.integration.output_filter import output_filter
 
 RATE, SAMPLING = 51200.0, 2048.0
 
@@ -22,7 +22,10 @@ def test_first_stage_stops_the_images_of_the_record_s_band():
     half = (design.first.size - 1) // 2
     for centre in (10240.0, 20480.0):
         frequency = np.linspace(centre - 1024.0, centre + 1024.0, 501)
-        response = np.cos(2 * np.pi * np.outer(frequency / RATE, np.arange(-half, half + 1))) @ design.first
+        response = (
+            np.cos(2 * np.pi * np.outer(frequency / RATE, np.arange(-half, half + 1)))
+            @ design.first
+        )
         assert 20 * np.log10(np.max(np.abs(response))) < -80.0
 
 
@@ -30,7 +33,9 @@ def test_phase_weights_spread_every_tap_once():
     """The weights of one output over the six ticks that feed it are the taps in order."""
     design = output_filter(RATE, SAMPLING)
     weights = design.phase_weights()
-    taps = np.concatenate([weights[:, slot] for slot in range(5, -1, -1)])  # an output is in the last slot at first, in slot 0 at last
+    taps = np.concatenate(
+        [weights[:, slot] for slot in range(5, -1, -1)]
+    )  # an output is in the last slot at first, in slot 0 at last
     assert np.array_equal(taps[1:], design.first)
     assert taps[0] == 0.0
 
@@ -42,7 +47,9 @@ def test_second_derivative_of_a_sine():
     for frequency in (16.0, 200.0, 790.0):
         wave = np.cos(2 * np.pi * frequency * n / middle)
         displacement, acceleration = design.second @ wave, design.second_derivative @ wave
-        assert acceleration / displacement == pytest.approx(-((2 * np.pi * frequency) ** 2), rel=1e-5)
+        assert acceleration / displacement == pytest.approx(
+            -((2 * np.pi * frequency) ** 2), rel=1e-5
+        )
 
 
 def test_rates_that_do_not_fit_are_refused():

@@ -6,9 +6,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.beam import bending_mass, bending_shapes, bending_stiffness, element_matrices, interpolation, tube_beam
+from vibroimpact.structure.beam_elements import (
+    bending_mass,
+    bending_shapes,
+    bending_stiffness,
+    element_matrices,
+    interpolation,
+    tube_beam,
+)
 
-SECTION = SimpleNamespace(outer_diameter_m=0.02222, wall_thickness_m=0.00127, shear_coefficient=0.53)
+SECTION = SimpleNamespace(
+    outer_diameter_m=0.02222, wall_thickness_m=0.00127, shear_coefficient=0.53
+)
 MATERIAL = SimpleNamespace(young_modulus_Pa=2.02e11, poisson_ratio=0.3, density_kg_per_m3=8330.0)
 LENGTH = 0.031  # short: shear parameter of order one
 
@@ -28,8 +37,12 @@ def tilted_axes():
 
 def test_tube_constants_are_those_of_the_annulus():
     beam = tube_beam(SECTION, MATERIAL, "timoshenko")
-    assert beam.mass_per_length == pytest.approx(8330.0 * 8.358682e-5, rel=1e-6)  # pi (0.02222 - 0.00127) 0.00127 m²
-    assert beam.bending_stiffness == pytest.approx(2.02e11 * np.pi / 64.0 * (0.02222**4 - 0.01968**4), rel=1e-12)
+    assert beam.mass_per_length == pytest.approx(
+        8330.0 * 8.358682e-5, rel=1e-6
+    )  # pi (0.02222 - 0.00127) 0.00127 m²
+    assert beam.bending_stiffness == pytest.approx(
+        2.02e11 * np.pi / 64.0 * (0.02222**4 - 0.01968**4), rel=1e-12
+    )
     assert beam.shear_stiffness == pytest.approx(0.53 * 2.02e11 / 2.6 * 8.358682e-5, rel=1e-6)
     assert beam.fibre_stiffness == pytest.approx(2.02e11 * 0.01111, rel=1e-12)
 
@@ -44,16 +57,30 @@ def test_bending_mass_is_friedman_and_kosmatka_closed_form():
     g, h = 36.0, -(15 * phi - 3) * length
     i, j = (10 * phi**2 + 5 * phi + 4) * length**2, (5 * phi**2 - 5 * phi - 1) * length**2
     rotation = np.array([[g, h, -g, h], [h, i, -h, j], [-g, -h, g, -h], [h, j, -h, i]])
-    expected = (beam.mass_per_length * length / 210.0 * translation + beam.rotary_inertia / (30.0 * length) * rotation) / (1 + phi) ** 2
+    expected = (
+        beam.mass_per_length * length / 210.0 * translation
+        + beam.rotary_inertia / (30.0 * length) * rotation
+    ) / (1 + phi) ** 2
     assert np.allclose(bending_mass(beam, length), expected, rtol=1e-12, atol=1e-18)
 
 
 def test_euler_bernoulli_mass_is_the_textbook_one():
     beam = tube_beam(SECTION, MATERIAL, "euler_bernoulli")
     length = LENGTH
-    textbook = np.array([[156, 22 * length, 54, -13 * length], [22 * length, 4 * length**2, 13 * length, -3 * length**2],
-                         [54, 13 * length, 156, -22 * length], [-13 * length, -3 * length**2, -22 * length, 4 * length**2]])
-    assert np.allclose(bending_mass(beam, length), beam.mass_per_length * length / 420.0 * textbook, rtol=1e-12, atol=1e-18)
+    textbook = np.array(
+        [
+            [156, 22 * length, 54, -13 * length],
+            [22 * length, 4 * length**2, 13 * length, -3 * length**2],
+            [54, 13 * length, 156, -22 * length],
+            [-13 * length, -3 * length**2, -22 * length, 4 * length**2],
+        ]
+    )
+    assert np.allclose(
+        bending_mass(beam, length),
+        beam.mass_per_length * length / 420.0 * textbook,
+        rtol=1e-12,
+        atol=1e-18,
+    )
 
 
 def test_stiffness_is_the_energy_of_the_shape_functions(beam):
@@ -61,7 +88,9 @@ def test_stiffness_is_the_energy_of_the_shape_functions(beam):
     xi, weights = 0.5 * (points + 1.0), 0.5 * weights * LENGTH
     phi, step = beam.shear_parameter(LENGTH), 1.0e-6
     _, rotation, curvature = bending_shapes(xi, LENGTH, phi)
-    slope = (bending_shapes(xi + step, LENGTH, phi)[0] - bending_shapes(xi - step, LENGTH, phi)[0]) / (2.0 * step * LENGTH)
+    slope = (
+        bending_shapes(xi + step, LENGTH, phi)[0] - bending_shapes(xi - step, LENGTH, phi)[0]
+    ) / (2.0 * step * LENGTH)
     energy = beam.bending_stiffness * (curvature * weights) @ curvature.T
     if np.isfinite(beam.shear_stiffness):
         energy += beam.shear_stiffness * ((slope - rotation) * weights) @ (slope - rotation).T
@@ -73,7 +102,9 @@ def test_stiffness_is_the_energy_of_the_shape_functions(beam):
 
 def test_curvature_is_the_derivative_of_rotation(beam):
     xi, step, phi = np.linspace(0.1, 0.9, 5), 1.0e-6, beam.shear_parameter(LENGTH)
-    difference = (bending_shapes(xi + step, LENGTH, phi)[1] - bending_shapes(xi - step, LENGTH, phi)[1]) / (2.0 * step * LENGTH)
+    difference = (
+        bending_shapes(xi + step, LENGTH, phi)[1] - bending_shapes(xi - step, LENGTH, phi)[1]
+    ) / (2.0 * step * LENGTH)
     assert np.allclose(bending_shapes(xi, LENGTH, phi)[2], difference, rtol=1e-7, atol=1e-6)
 
 
@@ -88,11 +119,19 @@ def test_rigid_motion_costs_no_energy_and_has_the_element_mass(beam):
         motions[:, 3 + axis] = np.concatenate([np.zeros(3), unit, np.cross(unit, end), unit])
     assert np.abs(stiffness @ motions).max() < 1e-12 * np.abs(stiffness).max()
     inertia = motions.T @ mass @ motions
-    assert np.allclose(inertia[:3, :3], beam.mass_per_length * LENGTH * np.eye(3), rtol=0, atol=1e-14)
-    # about the first node, across the tangent: m L³/3 of the line and rho I L of the section; along it the polar inertia
+    assert np.allclose(
+        inertia[:3, :3], beam.mass_per_length * LENGTH * np.eye(3), rtol=0, atol=1e-14
+    )
+    # about the first node, across the tangent: m L³/3 of the line and rho I L of the section; along
+    # it the polar inertia
     across = beam.mass_per_length * LENGTH**3 / 3.0 + beam.rotary_inertia * LENGTH
     turning = axes @ inertia[3:, 3:] @ axes.T
-    assert np.allclose(turning, np.diag([beam.torsion_inertia * LENGTH, across, across]), rtol=0, atol=1e-12 * across)
+    assert np.allclose(
+        turning,
+        np.diag([beam.torsion_inertia * LENGTH, across, across]),
+        rtol=0,
+        atol=1e-12 * across,
+    )
 
 
 @pytest.mark.parametrize("across", [1, 2])
@@ -106,11 +145,18 @@ def test_one_element_gives_the_exact_cantilever_everywhere(beam, across):
     for xi in (0.0, 0.37, 1.0):
         displacement, gradient = (rows @ dofs for rows in interpolation(beam, LENGTH, axes, xi))
         x = xi * LENGTH
-        exact = load * (x**2 * (3.0 * LENGTH - x) / (6.0 * beam.bending_stiffness) + x / beam.shear_stiffness)
+        exact = load * (
+            x**2 * (3.0 * LENGTH - x) / (6.0 * beam.bending_stiffness) + x / beam.shear_stiffness
+        )
         tip = load * LENGTH**3 / beam.bending_stiffness
         assert np.allclose(displacement, exact * axes[across], rtol=0, atol=1e-10 * tip)
         curvature = load * (LENGTH - x) / beam.bending_stiffness  # turns about tangent x transverse
-        assert np.allclose(gradient, curvature * np.cross(axes[0], axes[across]), rtol=0, atol=1e-10 * tip / LENGTH**2)
+        assert np.allclose(
+            gradient,
+            curvature * np.cross(axes[0], axes[across]),
+            rtol=0,
+            atol=1e-10 * tip / LENGTH**2,
+        )
 
 
 def test_axial_force_and_torque_give_bar_and_rod_flexibility(beam):
@@ -125,18 +171,30 @@ def test_axial_and_torsion_mass_are_consistent():
     _, mass = element_matrices(beam, LENGTH, np.eye(3))
     for dof, inertia in ((0, beam.mass_per_length), (3, beam.torsion_inertia)):
         expected = inertia * LENGTH * np.array([[1.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 3.0]])
-        assert np.allclose(mass[np.ix_([dof, dof + 6], [dof, dof + 6])], expected, rtol=1e-12, atol=0)
+        assert np.allclose(
+            mass[np.ix_([dof, dof + 6], [dof, dof + 6])], expected, rtol=1e-12, atol=0
+        )
 
 
 def test_very_stiff_shear_is_euler_bernoulli():
-    slender = replace(tube_beam(SECTION, MATERIAL, "timoshenko"), shear_stiffness=1.0e30, rotary_inertia=0.0)
+    slender = replace(
+        tube_beam(SECTION, MATERIAL, "timoshenko"), shear_stiffness=1.0e30, rotary_inertia=0.0
+    )
     thin = tube_beam(SECTION, MATERIAL, "euler_bernoulli")
-    for one, other in zip(element_matrices(slender, LENGTH, tilted_axes()), element_matrices(thin, LENGTH, tilted_axes()), strict=True):
+    for one, other in zip(
+        element_matrices(slender, LENGTH, tilted_axes()),
+        element_matrices(thin, LENGTH, tilted_axes()),
+        strict=True,
+    ):
         assert np.allclose(one, other, rtol=1e-10, atol=0)
 
 
 def test_impossible_tubes_are_named():
     with pytest.raises(ValueError, match="0.02 m must lie between 0 and the outer radius"):
-        tube_beam(SimpleNamespace(outer_diameter_m=0.02222, wall_thickness_m=0.02, shear_coefficient=0.5), MATERIAL, "timoshenko")
+        tube_beam(
+            SimpleNamespace(outer_diameter_m=0.02222, wall_thickness_m=0.02, shear_coefficient=0.5),
+            MATERIAL,
+            "timoshenko",
+        )
     with pytest.raises(ValueError, match="theory 'rayleigh' is unknown"):
         tube_beam(SECTION, MATERIAL, "rayleigh")

@@ -1,4 +1,6 @@
-"""The benchmark: its table, and that the peers which are always there solve our problem. No times are asserted."""
+"""The benchmark: its table, and that the peers which are always there solve our problem. No times
+are asserted.
+"""
 
 import csv
 from dataclasses import replace
@@ -16,7 +18,7 @@ from benchmarks.peers import plain, scipy_ivp
 from benchmarks.problem import FREE_MODES, RATE, tube_problem
 from benchmarks.table import COLUMNS, benchmark_rows, read_csv, write_csv
 from benchmarks.work_precision_page import section
-from vibroimpact import layout
+from vibroimpact.integration import kernel_layout as layout
 
 STEPS_S, LONGER_S = 0.01, 0.012  # recorded; the output filter asks for 800 steps more
 HARD_N = 400.0  # contact within a few milliseconds
@@ -31,8 +33,13 @@ def problem():
 
 
 def pairs():
-    """Two pairs with round numbers: ours 2 and 4, theirs 20 and 20; and the arithmetic at the peak."""
-    return [Pair("a tube", ONE_RUN, "slow", True, False, [2.0, 4.0], [20.0, 20.0]), Pair("a tube", ONE_RUN, PEAK, True, True, [2.0, 2.0], [1.0, 1.0])]
+    """Two pairs with round numbers: ours 2 and 4, theirs 20 and 20; and the arithmetic at the
+    peak.
+    """
+    return [
+        Pair("a tube", ONE_RUN, "slow", True, False, [2.0, 4.0], [20.0, 20.0]),
+        Pair("a tube", ONE_RUN, PEAK, True, True, [2.0, 2.0], [1.0, 1.0]),
+    ]
 
 
 def test_the_table_has_its_columns_and_ratios_of_neighbours(tmp_path):
@@ -40,9 +47,23 @@ def test_the_table_has_its_columns_and_ratios_of_neighbours(tmp_path):
     write_csv(tmp_path / "benchmark.csv", COLUMNS, rows)
     with open(tmp_path / "benchmark.csv", encoding="utf-8") as file:
         found = list(csv.DictReader(file))
-    assert tuple(found[0]) == ("case", "quantity", "unit", "ours_median", "peer", "peer_median", "ratio_median", "ratio_min", "ratio_max")
+    assert tuple(found[0]) == (
+        "case",
+        "quantity",
+        "unit",
+        "ours_median",
+        "peer",
+        "peer_median",
+        "ratio_median",
+        "ratio_min",
+        "ratio_max",
+    )
     assert [row["unit"] for row in found] == ["CPU s per simulated s", "ns per step", "ns per step"]
-    assert [float(found[0][f"ratio_{name}"]) for name in ("min", "median", "max")] == [5.0, 7.5, 10.0]  # the ratio of the medians would be 6.7
+    assert [float(found[0][f"ratio_{name}"]) for name in ("min", "median", "max")] == [
+        5.0,
+        7.5,
+        10.0,
+    ]  # the ratio of the medians would be 6.7
     assert float(found[1]["peer_median"]) == pytest.approx(20.0e9 / RATE, rel=1e-5)
     assert float(found[2]["ratio_median"]) == 0.5  # the fraction of the peak that is used
 
@@ -54,7 +75,15 @@ def test_rows_with_other_columns_are_refused(tmp_path):
 
 def test_the_page_holds_every_peer_and_says_who_is_absent(tmp_path):
     absent = ["JAX cannot be imported: install it"]
-    write_page(tmp_path / "performance.md", benchmark_rows(pairs()), [], [], absent, {"processor": "one"}, "figure.png")
+    write_page(
+        tmp_path / "performance.md",
+        benchmark_rows(pairs()),
+        [],
+        [],
+        absent,
+        {"processor": "one"},
+        "figure.png",
+    )
     text = (tmp_path / "performance.md").read_text(encoding="utf-8")
     assert "| slow | 20 | 16.3 min | 7.5 (5 to 10) |" in text
     assert "uses 50 %" in text
@@ -66,21 +95,36 @@ def test_the_page_from_files_is_the_page_of_the_run(tmp_path):
     write_csv(tmp_path / "benchmark.csv", COLUMNS, rows)
     for name, found in (("run", rows), ("files", read_csv(tmp_path / "benchmark.csv"))):
         write_page(tmp_path / f"{name}.md", found, [], [], [], {"processor": "one"}, "figure.png")
-    assert (tmp_path / "run.md").read_text(encoding="utf-8") == (tmp_path / "files.md").read_text(encoding="utf-8")
+    assert (tmp_path / "run.md").read_text(encoding="utf-8") == (tmp_path / "files.md").read_text(
+        encoding="utf-8"
+    )
     assert read_csv(tmp_path / "not_there.csv") == []
 
 
 def test_work_and_precision_stand_side_by_side():
-    rows = [{"case": "R3", "scheme": scheme, "steps_per_second": "200000", "error": error, "standard_error": "0", "cpu_s_per_simulated_s": "0.17"}
-            for scheme, error in (("exact", "0.0021"), ("newmark", "0.0015"))]  # fmt: skip
+    rows = [
+        {
+            "case": "R3",
+            "scheme": scheme,
+            "steps_per_second": "200000",
+            "error": error,
+            "standard_error": "0",
+            "cpu_s_per_simulated_s": "0.17",
+        }
+        for scheme, error in (("exact", "0.0021"), ("newmark", "0.0015"))
+    ]
     assert "| R3 | 200000 | 0.0015 | 170 | 0.0021 | 170 |  |" in section(rows, "figure.png")
 
 
 def test_the_plain_loop_ends_where_ours_ends(problem, monkeypatch):
-    """Over 1000 steps and more, hit hard: 1e-12 where both follow the contact iteration to round-off, 1e-4 where ours stops as usual."""
+    """Over 1000 steps and more, hit hard: 1e-12 where both follow the contact iteration to
+    round-off, 1e-4 where ours stops as usual.
+    """
     schedule = schedule_of(LONGER_S)
     assert schedule.steps >= 1000
-    force = problem.force(0.1)[:schedule.steps]  # one step more in ours, the first, from zero force to zero force
+    force = problem.force(0.1)[
+        : schedule.steps
+    ]  # one step more in ours, the first, from zero force to zero force
     q, v = plain.march_to_end(problem, force, passes=60)
     expected = 0.5 * np.sum(v**2), 0.5 * np.sum((problem.model.omega * q) ** 2)
     for tolerance, error in ((1e-4, layout.FIXED_POINT_TOLERANCE), (1e-12, 1e-15)):
@@ -88,7 +132,9 @@ def test_the_plain_loop_ends_where_ours_ends(problem, monkeypatch):
         lanes = march_ours(problem, force, schedule)[0]
         assert lanes.tally["contact_steps"].min() > 0.5 * lanes.steps
         energies = last_energies(lanes)
-        assert (energies["kinetic"][0], energies["elastic"][0]) == pytest.approx(expected, rel=tolerance)
+        assert (energies["kinetic"][0], energies["elastic"][0]) == pytest.approx(
+            expected, rel=tolerance
+        )
 
 
 @pytest.mark.parametrize("peer", [*plain.peers(), *scipy_ivp.peers()], ids=lambda peer: peer.name)
@@ -99,7 +145,12 @@ def test_peers_of_the_ordinary_environment_agree_with_ours(problem, peer):
 
 def test_a_peer_with_another_gap_is_found_out(problem):
     peer = plain.peers()[0]
-    other = replace(peer, start=lambda given, touching: peer.start(replace(given, gap_m=1.05 * given.gap_m), touching))
+    other = replace(
+        peer,
+        start=lambda given, touching: peer.start(
+            replace(given, gap_m=1.05 * given.gap_m), touching
+        ),
+    )
     assert "does NOT agree" in agreement(other, problem, STEPS_S).sentence()
 
 
@@ -107,7 +158,9 @@ def test_a_case_does_not_see_how_many_others_run(problem):
     forces = np.stack([problem.force(STEPS_S, seed) for seed in range(16)], axis=1)
     parts = march_ours(problem, forces, schedule_of(STEPS_S))
     assert sum(part.displacement.shape[0] for part in parts) == 16
-    np.testing.assert_array_equal(displacement(problem, forces, STEPS_S), displacement(problem, forces[:, 0], STEPS_S))
+    np.testing.assert_array_equal(
+        displacement(problem, forces, STEPS_S), displacement(problem, forces[:, 0], STEPS_S)
+    )
 
 
 def test_the_textbook_step_solves_newmark_s_equations():

@@ -1,31 +1,51 @@
-"""What parts two ways that a record may go: told from pairs of runs, along the jump and as long as it, and from no scatter."""
+"""What parts two ways that a record may go: told from pairs of runs, along the jump and as long as
+it, and from no scatter.
+"""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.branches import branch_direction, deviations, pair_deviations, searched_by, with_branch
+from vibroimpact.discrepancy.branches import (
+    branch_direction,
+    deviations,
+    pair_deviations,
+    searched_by,
+    with_branch,
+)
 from vibroimpact.discrepancy.likelihood import log_likelihood
 from vibroimpact.discrepancy.null import Null
 from vibroimpact.discrepancy.screening import Path
 
 SIZE, POINTS, UNIT = 120, 10, np.array([0.5])
-JUMP = np.where(np.arange(SIZE) < 20, -5.0, 0.0)  # of every seed's scatter, in a sixth of the features
+JUMP = np.where(
+    np.arange(SIZE) < 20, -5.0, 0.0
+)  # of every seed's scatter, in a sixth of the features
 MEASURED, NOTHING = np.tile(JUMP, (2, 1)), np.zeros((0, 2, SIZE))
 
 
 @pytest.fixture
 def runs():
-    """Return the function (share of runs that jump, seed) -> (Null, Path): two records, only the second of which has two ways."""
+    """Return the function (share of runs that jump, seed) -> (Null, Path): two records, only the
+    second of which has two ways.
+    """
 
     def draw(share, seed=5, at=0.5, jump=JUMP):
         rng = np.random.default_rng(seed)
         both = rng.standard_normal((2, POINTS, 2, SIZE))
         both[:, :, 1] += (rng.random((2, POINTS)) < share)[..., None] * jump
-        null = SimpleNamespace(covariance=np.tile(np.eye(SIZE), (2, 1, 1)), blend=np.full(SIZE, 1.0e6))
+        null = SimpleNamespace(
+            covariance=np.tile(np.eye(SIZE), (2, 1, 1)), blend=np.full(SIZE, 1.0e6)
+        )
         null.freed = lambda free: null
-        path = Path(np.full((POINTS, 1), at), both.mean(axis=0), np.full(POINTS, 2), [None] * POINTS, both[0] - both[1])
+        path = Path(
+            np.full((POINTS, 1), at),
+            both.mean(axis=0),
+            np.full(POINTS, 2),
+            [None] * POINTS,
+            both[0] - both[1],
+        )
         return null, path
 
     return draw
@@ -58,7 +78,10 @@ def test_a_run_that_went_the_other_way_is_no_evidence_against_it(runs):
 def test_a_jump_that_scatter_would_hide_is_found_towards_the_measurement(runs):
     null, path = runs(0.3, jump=0.4 * JUMP)
     assert np.sum(path.differences[:, 1] ** 2 / 2.0, axis=1).max() < SIZE + 90.0
-    assert abs(branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0, 1] @ JUMP) > 0.5 * 0.4 * JUMP @ JUMP
+    assert (
+        abs(branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0, 1] @ JUMP)
+        > 0.5 * 0.4 * JUMP @ JUMP
+    )
     elsewhere = np.roll(MEASURED, 60, axis=1)
     assert not branch_direction(NOTHING, null, elsewhere, path, UNIT, ()).any()
 
@@ -93,7 +116,15 @@ def test_a_search_compares_points_by_how_far_its_runs_lie_apart(runs):
     _, path = runs(0.3)
     features = np.random.default_rng(4).standard_normal((2, 16, SIZE))
     covariance = np.tile(2.0 * np.eye(SIZE), (2, 1, 1))
-    null = Null(np.arange(2), features, features.mean(axis=1), covariance, covariance, np.zeros(SIZE, int), np.full(SIZE, 1.0e6))
+    null = Null(
+        np.arange(2),
+        features,
+        features.mean(axis=1),
+        covariance,
+        covariance,
+        np.zeros(SIZE, int),
+        np.full(SIZE, 1.0e6),
+    )
     assert searched_by(null, MEASURED, path, UNIT, (), NOTHING) is null
     own = searched_by(null, MEASURED, path, UNIT, (), np.zeros((1, 2, SIZE)))
     along = JUMP / np.linalg.norm(JUMP)

@@ -1,13 +1,22 @@
-"""The validator: nothing is said of sound campaigns, and each fault put into one is told at its record and channel."""
+"""The validator: nothing is said of sound campaigns, and each fault put into one is told at its
+record and channel.
+"""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from vibroimpact.campaign import Channel, Level, campaign_dataset, read_campaign
-from vibroimpact.campaign_checks import CHECKS, COLUMNS, check_campaign, check_file, refused, usable_signals
-from vibroimpact.campaign_faults import clipped
+from vibroimpact.campaign.checks.file_checks import (
+    CHECKS,
+    COLUMNS,
+    check_campaign,
+    check_file,
+    refused,
+    usable_signals,
+)
+from vibroimpact.campaign.checks.signal_faults import clipped
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset, read_campaign
 from vibroimpact.completion.benchmark_records import silverbox_campaign
 from vibroimpact.records import write_record
 
@@ -15,11 +24,15 @@ DEVELOPMENT = Path(__file__).parents[2].parent / "shared" / "data" / "campaigns"
 NAMES = ("dev_null", "dev_gap", "dev_friction", "dev_offset", "dev_foliate")
 RATE, SECONDS = 1024.0, 25.0
 FREQUENCIES, DAMPING = np.array([8.0, 21.0, 47.0, 90.0]), np.array([0.02, 0.015, 0.004, 0.004])
-PLACES = np.array([0.13, 0.3, 0.42, 0.61, 0.8])  # of the span of a beam whose shapes are sines; the force acts at 0.35
+PLACES = np.array(
+    [0.13, 0.3, 0.42, 0.61, 0.8]
+)  # of the span of a beam whose shapes are sines; the force acts at 0.35
 
 
 def made_up():
-    """A beam of four modes with a force in y: five accelerometers along it and one across, at rest but for noise; three levels."""
+    """A beam of four modes with a force in y: five accelerometers along it and one across, at rest
+    but for noise; three levels.
+    """
     draw, samples = np.random.default_rng(7), int(RATE * SECONDS)
     lines = np.fft.rfftfreq(samples, 1.0 / RATE)
     omega, poles = 2.0 * np.pi * lines[:, None], 2.0 * np.pi * FREQUENCIES
@@ -34,8 +47,13 @@ def made_up():
         scale = load / np.sqrt(np.mean(values**2))
         force.append(scale * values[None])
         moving = np.fft.irfft((scale * spectrum[:, None] * transfer).T, samples, axis=-1)
-        response.append(np.vstack([moving, np.zeros((1, samples))]) + 0.003 * draw.standard_normal((6, samples)))
-    channels = [Channel(f"y{index}", (place, 0.0, 0.0), (0.0, 1.0, 0.0), "m s-2", "acceleration") for index, place in enumerate(PLACES)]
+        response.append(
+            np.vstack([moving, np.zeros((1, samples))]) + 0.003 * draw.standard_normal((6, samples))
+        )
+    channels = [
+        Channel(f"y{index}", (place, 0.0, 0.0), (0.0, 1.0, 0.0), "m s-2", "acceleration")
+        for index, place in enumerate(PLACES)
+    ]
     channels.append(Channel("x2", (PLACES[2], 0.0, 0.0), (1.0, 0.0, 0.0), "m s-2", "acceleration"))
     drive = Channel("shaker", (0.35, 0.0, 0.0), (0.0, 1.0, 0.0), "N", "generic")
     levels = [Level("low", 2e-4), Level("middle", 2e-4), Level("high", 2e-4, split="holdout")]
@@ -49,7 +67,10 @@ def campaign(request):
         return made_up()
     file = DEVELOPMENT / f"{request.param}.nc"
     if not file.is_file():
-        pytest.skip(f"the development campaigns are not in {DEVELOPMENT}: put dev_*.nc of shared/data/campaigns there")
+        pytest.skip(
+            f"the development campaigns are not in {DEVELOPMENT}: put dev_*.nc of"
+            " shared/data/campaigns there"
+        )
     return read_campaign(file).copy(deep=True)
 
 
@@ -60,14 +81,22 @@ def sound(request):
         return made_up()
     file = DEVELOPMENT / "dev_gap.nc"
     if not file.is_file():
-        pytest.skip(f"the development campaigns are not in {DEVELOPMENT}: put dev_gap.nc of shared/data/campaigns there")
+        pytest.skip(
+            f"the development campaigns are not in {DEVELOPMENT}: put dev_gap.nc of"
+            " shared/data/campaigns there"
+        )
     return read_campaign(file).copy(deep=True)
 
 
 def complaints(campaign):
     """The rows of a campaign that do not pass."""
     rows = check_campaign(campaign)
-    assert all(tuple(row) == COLUMNS and row["level"] in ("pass", "warn", "refuse") and row["message"].endswith(".") for row in rows)
+    assert all(
+        tuple(row) == COLUMNS
+        and row["level"] in ("pass", "warn", "refuse")
+        and row["message"].endswith(".")
+        for row in rows
+    )
     assert {row["check"] for row in rows} == set(CHECKS) or refused(rows)
     return [row for row in rows if row["level"] != "pass"]
 
@@ -81,27 +110,41 @@ def test_clipping_is_told(sound, record, channel):
     values = sound["response"].values[record, channel]
     limit = 0.6 * np.abs(values).max()
     sound["response"].values[record, channel] = np.clip(values, -limit, limit)
-    assert [(row["check"], row["record"], row["channel"]) for row in complaints(sound)] == [("clipping", *names(sound, record, channel))]
+    assert [(row["check"], row["record"], row["channel"]) for row in complaints(sound)] == [
+        ("clipping", *names(sound, record, channel))
+    ]
 
 
 def test_clipping_with_noise_behind_it_is_told(sound):
     values = sound["response"].values[2, 1]
     limit = 0.6 * np.abs(values).max()
-    sound["response"].values[2, 1] = np.clip(values, -limit, limit) + 1e-3 * limit * np.random.default_rng(3).standard_normal(values.size)
-    assert [(row["check"], row["record"], row["channel"]) for row in complaints(sound)] == [("clipping", *names(sound, 2, 1))]
+    sound["response"].values[2, 1] = np.clip(
+        values, -limit, limit
+    ) + 1e-3 * limit * np.random.default_rng(3).standard_normal(values.size)
+    assert [(row["check"], row["record"], row["channel"]) for row in complaints(sound)] == [
+        ("clipping", *names(sound, 2, 1))
+    ]
 
 
 def test_round_tops_are_not_clipping():
     draw, count = np.random.default_rng(1), np.arange(200_000)
-    for signal in (np.sin(0.0123 * count), np.sin(0.0123 * count).astype(np.float32), np.round(100.0 * np.sin(0.0123 * count)), draw.standard_normal(count.size),
-                   np.round(20.0 * draw.standard_normal(count.size)), draw.standard_normal(count.size) ** 3):
+    for signal in (
+        np.sin(0.0123 * count),
+        np.sin(0.0123 * count).astype(np.float32),
+        np.round(100.0 * np.sin(0.0123 * count)),
+        draw.standard_normal(count.size),
+        np.round(20.0 * draw.standard_normal(count.size)),
+        draw.standard_normal(count.size) ** 3,
+    ):
         assert clipped(signal) is None
         limit = 0.7 * np.abs(signal).max()
         assert clipped(np.clip(signal, -limit, limit)) is not None
 
 
 def periodic(stated, clip=None):
-    """made_up's beam under a multisine of 3000 samples, eight periods and a part, waves in place of its motion; stated: whether the file says so."""
+    """made_up's beam under a multisine of 3000 samples, eight periods and a part, waves in place of
+    its motion; stated: whether the file says so.
+    """
     campaign = made_up()
     count, period = campaign.sizes["time"], 3000
     lines = np.zeros(period // 2 + 1, complex)
@@ -114,7 +157,9 @@ def periodic(stated, clip=None):
     if clip is not None:
         values = campaign["response"].values[clip]
         campaign["response"].values[clip] = np.clip(values, -0.7 * values.max(), 0.7 * values.max())
-    campaign["load_rms"].values[:] = np.sqrt(np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1))
+    campaign["load_rms"].values[:] = np.sqrt(
+        np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1)
+    )
     return campaign.assign_attrs(period_samples=period if stated else 0)
 
 
@@ -126,19 +171,29 @@ def test_the_peak_of_a_periodic_record_is_not_clipping(stated):
 @pytest.mark.parametrize("stated", [True, False])
 def test_a_clipped_periodic_record_is_told(stated):
     campaign = periodic(stated, clip=(1, 2))
-    assert [(row["record"], row["channel"]) for row in complaints(campaign) if row["check"] == "clipping"] == [names(campaign, 1, 2)]
+    assert [
+        (row["record"], row["channel"])
+        for row in complaints(campaign)
+        if row["check"] == "clipping"
+    ] == [names(campaign, 1, 2)]
 
 
 SILVERBOX = DEVELOPMENT.parent / "silverbox"
 
 
-@pytest.mark.skipif(not SILVERBOX.is_dir(), reason="the Silverbox records are not beside the project")
+@pytest.mark.skipif(
+    not SILVERBOX.is_dir(), reason="the Silverbox records are not beside the project"
+)
 def test_the_silverbox_is_sound_until_it_is_clipped():
     campaign = silverbox_campaign(SILVERBOX.glob("*um_full*.mat")).assign_attrs(period_samples=0)
-    assert [row["level"] for row in check_campaign(campaign) if row["check"] == "clipping"] == ["pass"]
+    assert [row["level"] for row in check_campaign(campaign) if row["check"] == "clipping"] == [
+        "pass"
+    ]
     values = campaign["response"].values[2, 0]
     campaign["response"].values[2, 0] = np.clip(values, -0.6 * np.nanmax(values), None)
-    assert [row["channel"] for row in check_campaign(campaign) if row["check"] == "clipping"] == ["output"]
+    assert [row["channel"] for row in check_campaign(campaign) if row["check"] == "clipping"] == [
+        "output"
+    ]
 
 
 @pytest.mark.parametrize("fill", ["zero", "held", "noise"])
@@ -146,9 +201,17 @@ def test_the_silverbox_is_sound_until_it_is_clipped():
 def test_a_drop_out_is_told(sound, fill, start):
     values, rate = sound["response"].values[1, 2], sound.attrs["sampling_frequency"]
     part = slice(int(start * rate), int((start + 0.5) * rate))
-    values[part] = {"zero": 0.0, "held": values[part.start], "noise": 1e-4 * values.std() * np.random.default_rng(2).standard_normal(part.stop - part.start)}[fill]
+    values[part] = {
+        "zero": 0.0,
+        "held": values[part.start],
+        "noise": (
+            1e-4 * values.std() * np.random.default_rng(2).standard_normal(part.stop - part.start)
+        ),
+    }[fill]
     found = complaints(sound)
-    assert [(row["check"], row["record"], row["channel"]) for row in found] == [("drop-outs", *names(sound, 1, 2))]
+    assert [(row["check"], row["record"], row["channel"]) for row in found] == [
+        ("drop-outs", *names(sound, 1, 2))
+    ]
     assert f"at {int(start)}." in found[0]["message"]
 
 
@@ -156,9 +219,19 @@ def test_rest_before_the_first_motion_is_no_drop_out():
     campaign = made_up()
     campaign["response"].values[:, :, :1500] = 0.0
     campaign["force"].values[:, :, :1500] = 0.0
-    campaign["load_rms"].values[:] = np.sqrt(np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1))
-    assert [row for row in complaints(campaign.assign_attrs(start_up="rest")) if row["check"] == "drop-outs"] == []
-    assert {row["record"] for row in complaints(campaign) if row["check"] == "drop-outs"} == {"low", "middle", "high"}
+    campaign["load_rms"].values[:] = np.sqrt(
+        np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1)
+    )
+    assert [
+        row
+        for row in complaints(campaign.assign_attrs(start_up="rest"))
+        if row["check"] == "drop-outs"
+    ] == []
+    assert {row["record"] for row in complaints(campaign) if row["check"] == "drop-outs"} == {
+        "low",
+        "middle",
+        "high",
+    }
 
 
 def test_motion_that_sets_in_late_is_no_drop_out():
@@ -166,22 +239,35 @@ def test_motion_that_sets_in_late_is_no_drop_out():
     campaign = made_up()
     grown = 1e-4 + 1.0 / (1.0 + np.exp(-3.0 * (campaign["time"].values - 8.0)))
     campaign["response"].values[1, 5] = grown * np.random.default_rng(9).standard_normal(grown.size)
-    assert [row for row in complaints(campaign.assign_attrs(start_up="rest")) if row["check"] == "drop-outs"] == []
+    assert [
+        row
+        for row in complaints(campaign.assign_attrs(start_up="rest"))
+        if row["check"] == "drop-outs"
+    ] == []
 
 
 @pytest.mark.parametrize("samples", [2, 3, 5, -4])
 @pytest.mark.parametrize("channel", [0, 3])
 def test_a_delay_of_a_channel_is_told(sound, samples, channel):
-    sound["response"].values[:, channel] = np.roll(sound["response"].values[:, channel], samples, axis=-1)
+    sound["response"].values[:, channel] = np.roll(
+        sound["response"].values[:, channel], samples, axis=-1
+    )
     found = complaints(sound)
-    assert [(row["check"], row["channel"]) for row in found] == [("delay", names(sound, 0, channel)[1])]
-    assert f"{'lags' if samples > 0 else 'leads'} the other channels by {abs(samples):.1f} samples" in found[0]["message"]
+    assert [(row["check"], row["channel"]) for row in found] == [
+        ("delay", names(sound, 0, channel)[1])
+    ]
+    assert (
+        f"{'lags' if samples > 0 else 'leads'} the other channels by {abs(samples):.1f} samples"
+        in found[0]["message"]
+    )
 
 
 def test_a_delayed_force_is_told(sound):
     sound["force"].values[:] = np.roll(sound["force"].values, 3, axis=-1)
     found = complaints(sound)
-    assert [(row["check"], row["channel"]) for row in found] == [("delay", str(sound["force_channel_name"].values[0]))]
+    assert [(row["check"], row["channel"]) for row in found] == [
+        ("delay", str(sound["force_channel_name"].values[0]))
+    ]
     assert "All responses lead" in found[0]["message"] and "3.0 samples" in found[0]["message"]
 
 
@@ -190,7 +276,13 @@ def test_a_gap_leaves_its_signal_out(sound):
     sound["force"].values[1, 0, 7000] = np.inf
     rows = complaints(sound)
     assert [(row["check"], row["record"], row["channel"]) for row in rows] == [
-        ("gaps in time", str(sound["record_name"].values[1]), str(sound["force_channel_name"].values[0])), ("gaps in time", *names(sound, 2, 1))]
+        (
+            "gaps in time",
+            str(sound["record_name"].values[1]),
+            str(sound["force_channel_name"].values[0]),
+        ),
+        ("gaps in time", *names(sound, 2, 1)),
+    ]
     force, response = usable_signals(sound, rows)
     assert force.tolist() == [index != 1 for index in range(force.size)]
     assert np.argwhere(~response).tolist() == [[2, 1]]
@@ -198,25 +290,34 @@ def test_a_gap_leaves_its_signal_out(sound):
 
 def test_channels_across_and_along_swapped_are_told(sound):
     directions = sound["channel_direction"].values
-    across, along = int(np.argmax(np.abs(directions[:, 0]))), int(np.argmax(np.abs(directions[:, 1])))
+    across = int(np.argmax(np.abs(directions[:, 0])))
+    along = int(np.argmax(np.abs(directions[:, 1])))
     sound["response"].values[:, [across, along]] = sound["response"].values[:, [along, across]]
     found = complaints(sound)
-    assert [(row["check"], row["channel"]) for row in found] == [("swapped channels", names(sound, 0, along)[1])]
+    assert [(row["check"], row["channel"]) for row in found] == [
+        ("swapped channels", names(sound, 0, along)[1])
+    ]
     assert f"{names(sound, 0, across)[1]}, which lies across the force, does" in found[0]["message"]
 
 
 @pytest.mark.parametrize("channel", [0, 3])
 def test_a_reversed_channel_is_told(sound, channel):
     sound["response"].values[:, channel] *= -1.0
-    assert [(row["check"], row["channel"]) for row in complaints(sound)] == [("swapped channels", names(sound, 0, channel)[1])]
+    assert [(row["check"], row["channel"]) for row in complaints(sound)] == [
+        ("swapped channels", names(sound, 0, channel)[1])
+    ]
 
 
 @pytest.mark.parametrize("units", ["m s-1", "mm", "bananas", ""])
 def test_a_wrong_unit_leaves_its_channel_out(sound, units):
     sound["channel_units"].values[2] = units
     rows = complaints(sound)
-    assert [(row["check"], row["record"], row["channel"]) for row in rows] == [("units", None, names(sound, 0, 2)[1])]
-    assert np.argwhere(~usable_signals(sound, rows)[1])[:, 1].tolist() == [2] * sound.sizes["record"]
+    assert [(row["check"], row["record"], row["channel"]) for row in rows] == [
+        ("units", None, names(sound, 0, 2)[1])
+    ]
+    assert (
+        np.argwhere(~usable_signals(sound, rows)[1])[:, 1].tolist() == [2] * sound.sizes["record"]
+    )
 
 
 def test_a_drifting_level_is_told(sound):
@@ -228,7 +329,9 @@ def test_a_drifting_level_is_told(sound):
 
 def test_a_wrong_load_is_told(sound):
     sound["load_rms"].values[1] *= 1.05
-    assert [(row["check"], row["record"]) for row in complaints(sound)] == [("load_rms", str(sound["record_name"].values[1]))]
+    assert [(row["check"], row["record"]) for row in complaints(sound)] == [
+        ("load_rms", str(sound["record_name"].values[1]))
+    ]
 
 
 def test_a_force_of_another_clock_refuses(sound):
@@ -237,22 +340,36 @@ def test_a_force_of_another_clock_refuses(sound):
 
 
 def test_uneven_time_and_a_wrong_rate_refuse(sound):
-    uneven = sound.assign_coords(time=np.where(np.arange(sound.sizes["time"]) > 900, sound["time"].values + 0.2, sound["time"].values))
+    uneven = sound.assign_coords(
+        time=np.where(
+            np.arange(sound.sizes["time"]) > 900, sound["time"].values + 0.2, sound["time"].values
+        )
+    )
     assert [(row["check"], row["level"]) for row in complaints(uneven)] == [("time", "refuse")]
-    assert ("time", "refuse") in [(row["check"], row["level"]) for row in complaints(sound.assign_attrs(sampling_frequency=500.0))]
+    assert ("time", "refuse") in [
+        (row["check"], row["level"])
+        for row in complaints(sound.assign_attrs(sampling_frequency=500.0))
+    ]
 
 
 def test_one_level_refuses_and_no_holdout_warns(sound):
     one = sound.isel(record=[1])
-    assert {row["level"] for row in complaints(one) if row["check"] == "content"} == {"refuse", "warn"}
+    assert {row["level"] for row in complaints(one) if row["check"] == "content"} == {
+        "refuse",
+        "warn",
+    }
     assert refused(check_campaign(one)) and not refused(check_campaign(sound))
 
 
 def test_short_records_are_told():
     short = made_up().isel(time=slice(0, 5000))
-    short["load_rms"].values[:] = np.sqrt(np.mean(short["force"].values[:, 0].astype(float) ** 2, axis=-1))
+    short["load_rms"].values[:] = np.sqrt(
+        np.mean(short["force"].values[:, 0].astype(float) ** 2, axis=-1)
+    )
     found = [row for row in complaints(short) if row["check"] == "record length"]
-    assert {row["record"] for row in found} == {"low", "middle", "high"} and {row["level"] for row in found} == {"warn"}
+    assert {row["record"] for row in found} == {"low", "middle", "high"} and {
+        row["level"] for row in found
+    } == {"warn"}
 
 
 def test_what_the_file_leaves_open_is_filled_and_told(tmp_path):
@@ -260,16 +377,24 @@ def test_what_the_file_leaves_open_is_filled_and_told(tmp_path):
     bare["response"].values[1, :, -700:], bare["force"].values[1, :, -700:] = np.nan, np.nan
     write_record(bare, tmp_path / "bare.nc")
     campaign, rows = check_file(tmp_path / "bare.nc")
-    assert campaign["valid_samples"].values.tolist() == [int(RATE * SECONDS), int(RATE * SECONDS) - 700, int(RATE * SECONDS)]
+    assert campaign["valid_samples"].values.tolist() == [
+        int(RATE * SECONDS),
+        int(RATE * SECONDS) - 700,
+        int(RATE * SECONDS),
+    ]
     np.testing.assert_allclose(campaign["load_rms"].values, [0.5, 2.0, 8.0], rtol=0.02)
-    assert [row["check"] for row in rows if row["level"] == "warn"] == ["contract"] * 5 + ["content"]
+    assert [row["check"] for row in rows if row["level"] == "warn"] == ["contract"] * 5 + [
+        "content"
+    ]
     assert not refused(rows)
 
 
 def test_a_file_that_is_no_campaign_is_one_refusal(tmp_path):
     (tmp_path / "text.nc").write_text("nothing")
     campaign, rows = check_file(tmp_path / "text.nc")
-    assert campaign is None and [(row["check"], row["level"]) for row in rows] == [("contract", "refuse")]
+    assert campaign is None and [(row["check"], row["level"]) for row in rows] == [
+        ("contract", "refuse")
+    ]
     write_record(made_up().drop_vars("gap"), tmp_path / "incomplete.nc")
     campaign, rows = check_file(tmp_path / "incomplete.nc")
     assert campaign is None and "no variable 'gap'" in rows[0]["message"]
@@ -277,4 +402,6 @@ def test_a_file_that_is_no_campaign_is_one_refusal(tmp_path):
 
 def names(campaign, record, channel):
     """The names of a record and a channel."""
-    return str(campaign["record_name"].values[record]), str(campaign["channel_name"].values[channel])
+    return str(campaign["record_name"].values[record]), str(
+        campaign["channel_name"].values[channel]
+    )

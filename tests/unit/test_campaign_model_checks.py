@@ -1,12 +1,14 @@
-"""Channels against a linear model: one beam plays the measurement, another, 0.5 % stiffer and damped otherwise, the model."""
+"""Channels against a linear model: one beam plays the measurement, another, 0.5 % stiffer and
+damped otherwise, the model.
+"""
 
 from itertools import combinations
 
 import numpy as np
 import pytest
 
-from vibroimpact.campaign_model_checks import compare_with_model
-from vibroimpact.campaign_signals import Transfer
+from vibroimpact.campaign.checks.against_model import compare_with_model
+from vibroimpact.campaign.signals import Transfer
 
 PLACES = np.array([0.13, 0.3, 0.42, 0.61, 0.8])
 NAMES, KINDS = [f"y{index}" for index in range(5)], ["acceleration"] * 5
@@ -14,11 +16,16 @@ LINES = np.arange(5.0, 200.0, 0.125)
 
 
 def beam(stretch=1.0, damping=0.01):
-    """(place, line) response per force of six modes whose shapes are sines, force at 0.35 of the span."""
+    """(place, line) response per force of six modes whose shapes are sines, force at 0.35 of the
+    span.
+    """
     orders, omega = np.arange(1, 7), 2.0 * np.pi * LINES[:, None]
     poles = 2.0 * np.pi * stretch * np.array([8.0, 21.0, 47.0, 90.0, 130.0, 181.0])
     modal = 1.0 / (poles**2 - omega**2 + 2j * damping * poles * omega)
-    return (-(omega**2) * (modal @ (np.sin(np.pi * np.outer(PLACES, orders)) * np.sin(0.35 * np.pi * orders)).T)).T
+    return (
+        -(omega**2)
+        * (modal @ (np.sin(np.pi * np.outer(PLACES, orders)) * np.sin(0.35 * np.pi * orders)).T)
+    ).T
 
 
 def spectra(h1):
@@ -27,7 +34,15 @@ def spectra(h1):
 
 
 def test_a_model_that_is_nearly_right_contradicts_no_channel():
-    assert compare_with_model(spectra(beam(1.005, 0.02) * np.array([1.02, 0.98, 1.0, 1.01, 0.99])[:, None]), beam(), NAMES, KINDS) == []
+    assert (
+        compare_with_model(
+            spectra(beam(1.005, 0.02) * np.array([1.02, 0.98, 1.0, 1.01, 0.99])[:, None]),
+            beam(),
+            NAMES,
+            KINDS,
+        )
+        == []
+    )
 
 
 @pytest.mark.parametrize("first, second", [*combinations(range(5), 2)])
@@ -35,7 +50,9 @@ def test_every_pair_of_exchanged_channels_is_told(first, second):
     measured = beam(1.005, 0.02)
     measured[[first, second]] = measured[[second, first]]
     rows = compare_with_model(spectra(measured), beam(), NAMES, KINDS, "low")
-    assert [(row["check"], row["channel"], row["record"]) for row in rows] == [("swapped channels", NAMES[place], "low") for place in (first, second)]
+    assert [(row["check"], row["channel"], row["record"]) for row in rows] == [
+        ("swapped channels", NAMES[place], "low") for place in (first, second)
+    ]
     assert f"at {NAMES[second]}" in rows[0]["message"]
 
 
@@ -49,7 +66,10 @@ def test_a_reversed_channel_and_a_wrong_unit_are_told():
     measured[2] *= -1.0
     measured[4] /= 9.80665
     rows = compare_with_model(spectra(measured), beam(), NAMES, KINDS)
-    assert [(row["check"], row["channel"]) for row in rows] == [("swapped channels", "y2"), ("units", "y4")]
+    assert [(row["check"], row["channel"]) for row in rows] == [
+        ("swapped channels", "y2"),
+        ("units", "y4"),
+    ]
     assert "polarity" in rows[0]["message"] and "between g and m s-2" in rows[1]["message"]
 
 
@@ -62,7 +82,22 @@ def test_a_channel_that_hears_nothing_is_not_judged():
 
 
 def test_several_channels_off_are_the_structure_and_no_units():
-    """Friction that holds the tube at the lowest level quietens many channels: none is left out for it."""
-    rows = compare_with_model(spectra(beam(1.003) * np.array([0.2, 0.3, 1.0, 0.4, 1.0])[:, None]), beam(), NAMES, KINDS, "low")
-    assert [(row["check"], row["channel"]) for row in rows] == [("gains", "y0"), ("gains", "y1"), ("gains", "y3")]
-    assert "Several channels are off" in rows[0]["message"] and "check its unit" not in rows[0]["message"]
+    """Friction that holds the tube at the lowest level quietens many channels: none is left out for
+    it.
+    """
+    rows = compare_with_model(
+        spectra(beam(1.003) * np.array([0.2, 0.3, 1.0, 0.4, 1.0])[:, None]),
+        beam(),
+        NAMES,
+        KINDS,
+        "low",
+    )
+    assert [(row["check"], row["channel"]) for row in rows] == [
+        ("gains", "y0"),
+        ("gains", "y1"),
+        ("gains", "y3"),
+    ]
+    assert (
+        "Several channels are off" in rows[0]["message"]
+        and "check its unit" not in rows[0]["message"]
+    )

@@ -1,4 +1,6 @@
-"""Cases: ids that survive a changed grid, loads that say what was simulated, random streams that depend on the seed only."""
+"""Cases: ids that survive a changed grid, loads that say what was simulated, random streams that
+depend on the seed only.
+"""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -6,8 +8,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.cases import Case, all_cases, case_from_id, cases_of_load, ids_of_load, load_values, loads_by_half_decade, random_stream, value_text
-from vibroimpact.config import load_config
+from vibroimpact.config.reading import load_config
+from vibroimpact.study.cases import (
+    Case,
+    all_cases,
+    case_from_id,
+    cases_of_load,
+    ids_of_load,
+    load_values,
+    loads_by_half_decade,
+    random_stream,
+    value_text,
+)
 
 STUDY = Path(__file__).parents[2] / "config" / "study.yaml"
 
@@ -35,12 +47,30 @@ def test_loads_are_log_spaced_to_the_digits_of_their_ids():
 
 def test_loads_fall_into_half_decades_whatever_the_other_loads_are():
     batches = loads_by_half_decade(grid((20.0, 0.05, 1.0, 3.1, 3.17, 10.0, 0.999)))
-    assert batches == {"from_0.0316": ["0.05"], "from_0.316": ["0.999"], "from_1": ["1", "3.1"], "from_3.16": ["3.17"], "from_10": ["10", "20"]}
-    assert [len(loads) for loads in loads_by_half_decade(load_config(STUDY).grid).values()] == [3, 5, 4, 4, 5, 3]
+    assert batches == {
+        "from_0.0316": ["0.05"],
+        "from_0.316": ["0.999"],
+        "from_1": ["1", "3.1"],
+        "from_3.16": ["3.17"],
+        "from_10": ["10", "20"],
+    }
+    assert [len(loads) for loads in loads_by_half_decade(load_config(STUDY).grid).values()] == [
+        3,
+        5,
+        4,
+        4,
+        5,
+        3,
+    ]
 
 
 def test_an_id_reads_back_as_exactly_its_case():
-    for case in [Case(0.1 + 0.2, 5.1106e-05, 0), Case(20.0, 2.0**-13, 17), Case(1e-7, 1e-22, 3), Case(123456789.125, 0.01, 1)]:
+    for case in [
+        Case(0.1 + 0.2, 5.1106e-05, 0),
+        Case(20.0, 2.0**-13, 17),
+        Case(1e-7, 1e-22, 3),
+        Case(123456789.125, 0.01, 1),
+    ]:
         assert case_from_id(case.id) == case
 
 
@@ -51,7 +81,11 @@ def test_ids_are_made_of_values():
 
 def test_an_added_load_gap_or_seed_changes_no_other_id():
     before = {case.id for case in all_cases(grid((0.5, 4.0)))}
-    for grown in (grid((0.1, 0.5, 4.0)), grid((0.5, 4.0), gaps=(1e-4, 2.8886e-4, 5.1106e-5)), grid((0.5, 4.0), seeds=3)):
+    for grown in (
+        grid((0.1, 0.5, 4.0)),
+        grid((0.5, 4.0), gaps=(1e-4, 2.8886e-4, 5.1106e-5)),
+        grid((0.5, 4.0), seeds=3),
+    ):
         after = {case.id for case in all_cases(grown)}
         assert before < after
 
@@ -65,18 +99,28 @@ def test_a_text_that_is_no_id_is_refused_with_the_form_of_one():
 def test_the_cases_of_a_load_are_those_of_the_grid():
     whole = grid((0.5, 4.0))
     assert [case for load in (0.5, 4.0) for case in cases_of_load(whole, load)] == all_cases(whole)
-    assert [name for load in ("0.5", "4") for name in ids_of_load(whole, load)] == [case.id for case in all_cases(whole)]
+    assert [name for load in ("0.5", "4") for name in ids_of_load(whole, load)] == [
+        case.id for case in all_cases(whole)
+    ]
 
 
 def test_a_stream_is_the_same_wherever_it_is_made():
-    # The words of the spawn key come from SHA-256 of the name. They must never change: old results would lose their seed.
-    sequence = np.random.SeedSequence(2012, spawn_key=(0, 1963806770, 1426574848, 1861853377, 3272633336))
+    # The words of the spawn key come from SHA-256 of the name. They must never change: old results
+    # would lose their seed.
+    sequence = np.random.SeedSequence(
+        2012, spawn_key=(0, 1963806770, 1426574848, 1861853377, 3272633336)
+    )
     words = np.random.Generator(np.random.PCG64(sequence)).integers(0, 2**32, 3)
     assert random_stream(2012, 0, "force").integers(0, 2**32, 3).tolist() == words.tolist()
 
 
 def test_streams_of_other_names_and_seeds_are_independent():
-    keys = [(seed, index, name) for seed in (1, 2) for index in (0, 1) for name in ("force", "imperfection")]
+    keys = [
+        (seed, index, name)
+        for seed in (1, 2)
+        for index in (0, 1)
+        for name in ("force", "imperfection")
+    ]
     draws = np.array([random_stream(*key).standard_normal(20000) for key in keys])
     correlation = np.corrcoef(draws)
     assert np.abs(correlation - np.eye(len(keys))).max() < 5 / np.sqrt(20000)

@@ -1,16 +1,15 @@
-"""Each claim's verdict follows the data: a made-up study in which all hold, and one change at a time that makes each fail."""
+"""Each claim's verdict follows the data: a made-up study in which all hold, and one change at a
+time that makes each fail.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from vibroimpact.linear import first_pole, frf, psd_family
-from vibroimpact.validation import claims_equivalence as equivalence
-from vibroimpact.validation import claims_poles as poles
-from vibroimpact.validation import claims_response as response
-from vibroimpact.validation import claims_shapes as shapes
-from vibroimpact.validation.claim import CONDITIONS, FAILS, HOLDS
+from vibroimpact.linear.equivalent_linear import first_pole, frf, psd_family
+from vibroimpact.validation.claims import equivalence, poles, response, shapes
+from vibroimpact.validation.claims.claim import CONDITIONS, FAILS, HOLDS
 from vibroimpact.validation.study_curves import POLES, STIFFNESS, StudyCurves
 
 LOAD = np.geomspace(0.1, 20.0, 20)
@@ -26,12 +25,15 @@ def model(study_model):
 
 @pytest.fixture(scope="module")
 def curves(model):
-    """A study that follows the paper to the letter: the linear tube with a k that rises and a c that rises and falls, valleys filled."""
+    """A study that follows the paper to the letter: the linear tube with a k that rises and a c
+    that rises and falls, valleys filled.
+    """
     k = np.geomspace(1e2, HELD, LOAD.size)
     c = 60.0 * np.exp(-(np.linspace(-2.0, 2.0, LOAD.size) ** 2)) + 1.0
     frequency = np.arange(0.0, 400.0, 0.1)
     found = [first_pole(model, *support) for support in zip(k, c, strict=True)]
-    hertz, ratio = np.array([abs(pole) for pole in found]) / (2.0 * np.pi), np.array([-pole.real / abs(pole) for pole in found])
+    hertz = np.array([abs(pole) for pole in found]) / (2.0 * np.pi)
+    ratio = np.array([-pole.real / abs(pole) for pole in found])
     ratio = 0.015 + 0.05 * np.exp(-(np.linspace(-2.5, 1.8, LOAD.size) ** 2))
     sensors = [name for name in model.sensor_names if name.endswith(".y")]
     columns = [model.sensor_names.index(name) for name in sensors]
@@ -39,22 +41,62 @@ def curves(model):
     for i in range(LOAD.size):
         spread = np.hanning(3 + 2 * int(12 * np.exp(-(np.linspace(-2.0, 2.0, LOAD.size)[i] ** 2))))
         for name, column in zip(sensors, columns, strict=True):
-            linear = np.abs(frf(model, k[i], c[i], np.maximum(frequency, 1e-3), model.sensor_shapes[:, [column]])[0]) ** 2
+            linear = (
+                np.abs(
+                    frf(
+                        model,
+                        k[i],
+                        c[i],
+                        np.maximum(frequency, 1e-3),
+                        model.sensor_shapes[:, [column]],
+                    )[0]
+                )
+                ** 2
+            )
             smooth = np.convolve(linear, spread / spread.sum(), "same") * LOAD[i] ** 2 / 195.0
             valley = 0.2 * psd_floor(smooth, frequency)
             psd[name][i] = np.maximum(smooth, valley)
     line = model.line_shapes
-    shape = np.array([np.stack([frf(model, k[i], 0.0, np.array([hertz[i]]), line)[:, 0]] * SEEDS) for i in range(LOAD.size)])
-    phase = 1.0 + 0.06j * np.exp(-(np.linspace(-2.0, 2.0, LOAD.size) ** 2))[:, None, None] * np.linspace(-1.0, 1.0, line.shape[1])
+    shape = np.array(
+        [
+            np.stack([frf(model, k[i], 0.0, np.array([hertz[i]]), line)[:, 0]] * SEEDS)
+            for i in range(LOAD.size)
+        ]
+    )
+    phase = 1.0 + 0.06j * np.exp(-(np.linspace(-2.0, 2.0, LOAD.size) ** 2))[
+        :, None, None
+    ] * np.linspace(-1.0, 1.0, line.shape[1])
     second = 0.005 + 0.02 * np.exp(-(np.linspace(-2.0, 2.0, LOAD.size) ** 2))
-    singular = np.stack([np.ones(LOAD.size), second, 0.3 * second, 0.1 * second], axis=-1)[:, None].repeat(SEEDS, axis=1)
+    singular = np.stack([np.ones(LOAD.size), second, 0.3 * second, 0.1 * second], axis=-1)[
+        :, None
+    ].repeat(SEEDS, axis=1)
     wiggle = 1.0 + 0.01 * np.arange(-1, 2)
     tables = lambda values, methods: {method: np.outer(values, wiggle) for method in methods}  # noqa: E731
-    summary = [{"gap_m": 3e-4, "load_rms_N": load, "method": method, "k_median": value} for load, value in zip(LOAD, k, strict=True) for method in STIFFNESS]
+    summary = [
+        {"gap_m": 3e-4, "load_rms_N": load, "method": method, "k_median": value}
+        for load, value in zip(LOAD, k, strict=True)
+        for method in STIFFNESS
+    ]
     collapse = [{"method": method, "k_ratio": 1.05} for method in STIFFNESS]
     damping = {**tables(c, STIFFNESS), "ods": np.full((LOAD.size, SEEDS), np.nan)}
-    return StudyCurves(3e-4, LOAD, tables(hertz, POLES), tables(ratio, POLES), tables(k, STIFFNESS), damping, frequency, psd, shape * phase,
-                       model.line_arc_length, singular, np.linspace(0.0, 0.8, LOAD.size), 195.0, {3e-4: hertz[-1], 5e-5: hertz[-1]}, collapse, summary)  # fmt: skip
+    return StudyCurves(
+        3e-4,
+        LOAD,
+        tables(hertz, POLES),
+        tables(ratio, POLES),
+        tables(k, STIFFNESS),
+        damping,
+        frequency,
+        psd,
+        shape * phase,
+        model.line_arc_length,
+        singular,
+        np.linspace(0.0, 0.8, LOAD.size),
+        195.0,
+        {3e-4: hertz[-1], 5e-5: hertz[-1]},
+        collapse,
+        summary,
+    )
 
 
 def psd_floor(psd, frequency):
@@ -68,8 +110,19 @@ def scaled(table, method, factor):
 
 
 def test_the_papers_own_study_holds(curves, model):
-    for claim in (poles.smooth_transition, poles.pole_methods, poles.limits, poles.widths, poles.apparent_damping, response.response_point,
-                  shapes.rank, shapes.no_damping, equivalence.three_stiffnesses, equivalence.gap_reduction, response.spread_peaks):  # fmt: skip
+    for claim in (
+        poles.smooth_transition,
+        poles.pole_methods,
+        poles.limits,
+        poles.widths,
+        poles.apparent_damping,
+        response.response_point,
+        shapes.rank,
+        shapes.no_damping,
+        equivalence.three_stiffnesses,
+        equivalence.gap_reduction,
+        response.spread_peaks,
+    ):
         assert claim(curves, model).verdict == HOLDS, claim(curves, model)
 
 
@@ -91,17 +144,50 @@ FALSIFIED = [
     (poles.limits, lambda s: {"pole_frequency": scaled(s.pole_frequency, "lscf", 1.2)}, {FAILS}),
     (poles.limits, lambda s: {"top_frequency": {**s.top_frequency, 3e-4: 20.0}}, {CONDITIONS}),
     (poles.widths, lambda s: {"pole_damping": scaled(s.pole_damping, "peak_25th", 0.5)}, {FAILS}),
-    (poles.apparent_damping, lambda s: {"pole_damping": {**s.pole_damping, "lscf": flat(s.pole_damping["lscf"])}}, {FAILS}),
+    (
+        poles.apparent_damping,
+        lambda s: {"pole_damping": {**s.pole_damping, "lscf": flat(s.pole_damping["lscf"])}},
+        {FAILS},
+    ),
     (shapes.rank, lambda s: {"singular": flat(s.singular)}, {FAILS}),
-    (shapes.no_damping, lambda s: {"support_damping": scaled(s.support_damping, "broadband", 1e3)}, {FAILS}),
-    (equivalence.three_stiffnesses, lambda s: {"summary": [{**row, "k_median": row["k_median"] * (2.0 if row["method"] == "ods" else 1.0)} for row in s.summary]}, {FAILS}),
-    (equivalence.gap_reduction, lambda s: {"collapse": [{**row, "k_ratio": 1.6} for row in s.collapse]}, {FAILS}),
-    (response.response_point, lambda s: {"psd": {**s.psd, "apex.y": np.roll(s.psd["apex.y"], 12, axis=-1)}}, {FAILS}),
-    (response.spread_peaks, lambda s: {"psd": {name: flat(psd) for name, psd in s.psd.items()}}, {FAILS}),
-]  # fmt: skip
+    (
+        shapes.no_damping,
+        lambda s: {"support_damping": scaled(s.support_damping, "broadband", 1e3)},
+        {FAILS},
+    ),
+    (
+        equivalence.three_stiffnesses,
+        lambda s: {
+            "summary": [
+                {**row, "k_median": row["k_median"] * (2.0 if row["method"] == "ods" else 1.0)}
+                for row in s.summary
+            ]
+        },
+        {FAILS},
+    ),
+    (
+        equivalence.gap_reduction,
+        lambda s: {"collapse": [{**row, "k_ratio": 1.6} for row in s.collapse]},
+        {FAILS},
+    ),
+    (
+        response.response_point,
+        lambda s: {"psd": {**s.psd, "apex.y": np.roll(s.psd["apex.y"], 12, axis=-1)}},
+        {FAILS},
+    ),
+    (
+        response.spread_peaks,
+        lambda s: {"psd": {name: flat(psd) for name, psd in s.psd.items()}},
+        {FAILS},
+    ),
+]
 
 
-@pytest.mark.parametrize(("claim", "change", "verdicts"), FALSIFIED, ids=[f"{claim.__name__}-{i}" for i, (claim, _, _) in enumerate(FALSIFIED)])
+@pytest.mark.parametrize(
+    ("claim", "change", "verdicts"),
+    FALSIFIED,
+    ids=[f"{claim.__name__}-{i}" for i, (claim, _, _) in enumerate(FALSIFIED)],
+)
 def test_a_claim_that_is_false_is_said_to_be(curves, model, claim, change, verdicts):
     assert claim(replace(curves, **change(curves)), model).verdict in verdicts
 
@@ -125,7 +211,16 @@ def test_quadrature_is_the_part_that_no_turn_makes_real():
 def test_valleys_of_the_linear_tube_are_not_raised_and_filled_ones_are(curves, model):
     k, c = curves.stiffness["broadband"][:, 1], curves.support_damping["broadband"][:, 1]
     column = model.sensor_shapes[:, [model.sensor_names.index(response.VALLEY_SENSOR)]]
-    exact = {i: psd_family(model, [k[i]], [c[i]], np.maximum(curves.frequency, 1e-3), column[:, 0])[0, 0] * LOAD[i] ** 2 / 195.0 for i in range(LOAD.size)}
+    exact = {
+        i: (
+            psd_family(model, [k[i]], [c[i]], np.maximum(curves.frequency, 1e-3), column[:, 0])[
+                0, 0
+            ]
+            * LOAD[i] ** 2
+            / 195.0
+        )
+        for i in range(LOAD.size)
+    }
     psd = np.stack([np.stack([exact[i]] * SEEDS) for i in range(LOAD.size)])
     linear = replace(curves, psd={**curves.psd, response.VALLEY_SENSOR: psd})
     raised = np.concatenate([values[:, 2] for values in response.valleys(linear, model).values()])
@@ -140,8 +235,20 @@ def test_valleys_of_the_linear_tube_are_not_raised_and_filled_ones_are(curves, m
 def test_a_step_that_changes_the_response_is_seen():
     generator = np.random.default_rng(5)
     names = equivalence.STATISTICS
-    rows = [{"value": value, "load_rms_N": load, "potential_energy_residual": 1e-3, **{name: 10.0 + generator.standard_normal() for name in names}}
-            for value in (51200, 204800) for load in (5.0, 20.0) for _ in range(16)]  # fmt: skip
+    rows = [
+        {
+            "value": value,
+            "load_rms_N": load,
+            "potential_energy_residual": 1e-3,
+            **{name: 10.0 + generator.standard_normal() for name in names},
+        }
+        for value in (51200, 204800)
+        for load in (5.0, 20.0)
+        for _ in range(16)
+    ]
     assert equivalence.step(rows).verdict == HOLDS
-    shifted = [{**row, **{name: row[name] + 3.0 for name in names}} if row["value"] == 51200 else row for row in rows]
+    shifted = [
+        {**row, **{name: row[name] + 3.0 for name in names}} if row["value"] == 51200 else row
+        for row in rows
+    ]
     assert equivalence.step(shifted).verdict == FAILS

@@ -1,4 +1,6 @@
-"""The configuration: what is accepted, every refusal with place, value and remedy, and that every key is used."""
+"""The configuration: what is accepted, every refusal with place, value and remedy, and that every
+key is used.
+"""
 
 import ast
 import copy
@@ -7,31 +9,56 @@ from pathlib import Path
 import pytest
 import yaml
 
-from vibroimpact.config import Config, ConfigError, check_config, load_config
-from vibroimpact.settings import Settings
-from vibroimpact.stages import STAGE_KEYS, select, stage_params
+from vibroimpact.config.reading import Config, ConfigError, check_config, load_config
+from vibroimpact.config.stage_keys import STAGE_KEYS, select, stage_params
+from vibroimpact.config.stage_settings import Settings
 
 ROOT = Path(__file__).parents[2]
 STUDY = ROOT / "config" / "study.yaml"
 OTHER_KINDS = {
     "structure": {
-        "kind": "path", "theory": "euler_bernoulli",
+        "kind": "path",
+        "theory": "euler_bernoulli",
         "section": {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001, "shear_coefficient": 0.5},
         "material": {"young_modulus_Pa": 2.1e11, "poisson_ratio": 0.3, "density_kg_per_m3": 7800.0},
-        "start_m": [0.0, 0.0, 0.0], "start_direction": [1.0, 0.0, 0.0],
-        "segments": [{"kind": "straight", "length_m": 1.0}, {"kind": "bend", "radius_m": 0.2, "angle_deg": 90.0, "toward": [0.0, 0.0, 1.0]},
-                     {"kind": "straight", "length_m": 0.5}],
+        "start_m": [0.0, 0.0, 0.0],
+        "start_direction": [1.0, 0.0, 0.0],
+        "segments": [
+            {"kind": "straight", "length_m": 1.0},
+            {"kind": "bend", "radius_m": 0.2, "angle_deg": 90.0, "toward": [0.0, 0.0, 1.0]},
+            {"kind": "straight", "length_m": 0.5},
+        ],
         "mesh": {"elements_per_span": 5, "elements_per_bend": 6},
-        "start": {"kind": "springs", "translation_N_per_m": 1e8, "rotation_N_m_per_rad": 1e5}, "end": {"kind": "free"},
+        "start": {"kind": "springs", "translation_N_per_m": 1e8, "rotation_N_m_per_rad": 1e5},
+        "end": {"kind": "free"},
     },
     "damping": {"kind": "rayleigh", "mass_coefficient_per_s": 0.5, "stiffness_coefficient_s": 1e-5},
-    "supports": [{"name": "middle", "at_m": [0.5, 0.0, 0.0], "height_m": 0.02, "points": 3, "stiffness_N_per_m": [1e5, 2e5, 1e5],
-                  "gap_factor": [1.0, 1.1, 1.0], "centre_offset_m": [[0.0, 1e-5], [0.0, 2e-5], [0.0, 0.0]]}],
+    "supports": [
+        {
+            "name": "middle",
+            "at_m": [0.5, 0.0, 0.0],
+            "height_m": 0.02,
+            "points": 3,
+            "stiffness_N_per_m": [1e5, 2e5, 1e5],
+            "gap_factor": [1.0, 1.1, 1.0],
+            "centre_offset_m": [[0.0, 1e-5], [0.0, 2e-5], [0.0, 0.0]],
+        }
+    ],
     "points": {"drive": [0.3, 0.0, 0.0], "tip": [1.2, 0.0, 0.7]},
-    "excitation": {"kind": "measured", "point": "drive", "direction": [0.0, 1.0, 0.0], "file": str(STUDY), "variable": "force",
-                   "sampling_frequency_Hz": 2048.0},
+    "excitation": {
+        "kind": "measured",
+        "point": "drive",
+        "direction": [0.0, 1.0, 0.0],
+        "file": str(STUDY),
+        "variable": "force",
+        "sampling_frequency_Hz": 2048.0,
+    },
     "record": {"sensors": {"points": ["tip"], "directions": ["y"]}},
-    "identification": {"response_point": "tip", "lscf": {"references": ["tip"]}, "broadband": {"point": "tip"}},
+    "identification": {
+        "response_point": "tip",
+        "lscf": {"references": ["tip"]},
+        "broadband": {"point": "tip"},
+    },
 }
 
 
@@ -71,7 +98,9 @@ def leaves(value, place=""):
         yield place, value
 
 
-@pytest.mark.parametrize("file", sorted((ROOT / "config").glob("*.yaml")), ids=lambda file: file.name)
+@pytest.mark.parametrize(
+    "file", sorted((ROOT / "config").glob("*.yaml")), ids=lambda file: file.name
+)
 def test_the_configurations_that_are_shipped_are_valid(file):
     load_config(file)
 
@@ -81,7 +110,11 @@ def test_the_default_study_is_the_papers():
     diameter = config.structure.section.outer_diameter_m
     assert diameter == 0.02222
     assert [round(gap / diameter * 100, 3) for gap in config.grid.gap_m] == [1.3, 0.9, 0.23]
-    assert (config.grid.load_rms_N.first, config.grid.load_rms_N.last, config.grid.load_rms_N.count) == (0.05, 20.0, 24)
+    assert (
+        config.grid.load_rms_N.first,
+        config.grid.load_rms_N.last,
+        config.grid.load_rms_N.count,
+    ) == (0.05, 20.0, 24)
     assert (config.grid.seeds, config.record.duration_s, config.spectra.overlap) == (4, 49.0, 0.65)
     assert sum(support.stiffness_N_per_m for support in config.supports) == 8e6
 
@@ -100,7 +133,11 @@ def test_other_kinds_of_section_are_accepted(other_kinds):
 
 def test_a_number_without_a_point_is_a_number(study):
     # YAML reads 1e8 as a text: it must not be refused, and must not stay a text.
-    put(study, "structure.root", {"kind": "springs", "translation_N_per_m": "1e8", "rotation_N_m_per_rad": 1e5})
+    put(
+        study,
+        "structure.root",
+        {"kind": "springs", "translation_N_per_m": "1e8", "rotation_N_m_per_rad": 1e5},
+    )
     assert check_config(study, "mine").structure.root.translation_N_per_m == 1e8
 
 
@@ -112,62 +149,160 @@ REFUSALS = [
     # place, value, what the sentence must hold: place, value, rule, remedy
     ("spectra.overlp", 0.5, ["unknown key 'overlp' in spectra", "did you mean 'overlap'?"]),
     ("sead", 3, ["unknown key 'sead'", "did you mean 'seed'?"]),
-    ("supports.1.gapfactor", 2.0, ["unknown key 'gapfactor' in supports[1]", "did you mean 'gap_factor'?"]),
-    ("structure.leg_lenght_m", 0.7, ["unknown key 'leg_lenght_m' in structure", "did you mean 'leg_length_m'?"]),
+    (
+        "supports.1.gapfactor",
+        2.0,
+        ["unknown key 'gapfactor' in supports[1]", "did you mean 'gap_factor'?"],
+    ),
+    (
+        "structure.leg_lenght_m",
+        0.7,
+        ["unknown key 'leg_lenght_m' in structure", "did you mean 'leg_length_m'?"],
+    ),
     ("grid.load_rms_N.cont", 3, ["unknown key 'cont' in grid.load_rms_N", "did you mean 'count'?"]),
-    ("grid.gap_m.2", -1.3e-4, ["grid.gap_m[2] = -0.00013 must be > 0", "radial clearance in metres"]),
+    (
+        "grid.gap_m.2",
+        -1.3e-4,
+        ["grid.gap_m[2] = -0.00013 must be > 0", "radial clearance in metres"],
+    ),
     ("grid.gap_m.0", 0.28, ["grid.gap_m[0] = 0.28", "half the diameter", "in metres"]),
     ("structure.section.outer_diameter_m", 22.22, ["outer_diameter_m = 22.22", "in metres?"]),
-    ("structure.section.wall_thickness_m", 0.0127, ["wall_thickness_m = 0.0127", "half the outer diameter"]),
+    (
+        "structure.section.wall_thickness_m",
+        0.0127,
+        ["wall_thickness_m = 0.0127", "half the outer diameter"],
+    ),
     ("structure.material.young_modulus_Pa", 202, ["young_modulus_Pa = 202", "in Pa?"]),
     ("structure.material.density_kg_per_m3", 8.33, ["density_kg_per_m3 = 8.33", "in kg/m3?"]),
     ("structure.kind", "utube", ["structure.kind = 'utube' must be one of", "u_tube"]),
     ("structure.root.kind", "held", ["structure.root.kind = 'held' must be one of", "clamped"]),
     ("damping.other_ratio", 1.5, ["damping.other_ratio = 1.5", "not per cent"]),
-    ("supports.0.stiffness_N_per_m", [1e6, 1e6], ["supports[0].stiffness_N_per_m", "2 values for 5 contact points"]),
-    ("supports.0.at_m", [-0.36, 0.0, 0.35], ["supports[0].at_m", "0.0600 m off the tube", "[-0.3, 0.0, 0.35]"]),
-    ("supports.0.height_m", 0.8, ["supports[0].height_m = 0.8", "beyond the segment", "at most 0.7 m"]),
+    (
+        "supports.0.stiffness_N_per_m",
+        [1e6, 1e6],
+        ["supports[0].stiffness_N_per_m", "2 values for 5 contact points"],
+    ),
+    (
+        "supports.0.at_m",
+        [-0.36, 0.0, 0.35],
+        ["supports[0].at_m", "0.0600 m off the tube", "[-0.3, 0.0, 0.35]"],
+    ),
+    (
+        "supports.0.height_m",
+        0.8,
+        ["supports[0].height_m = 0.8", "beyond the segment", "at most 0.7 m"],
+    ),
     ("supports.1.at_m", [-0.30, 0.0, 0.36], ["supports[1].at_m", "'right' overlaps 'left'"]),
     ("supports.1.name", "left", ["supports = 'left' names 2 supports"]),
-    ("supports.1.centre_offset_m", [0.0, 0.3, 0.0], ["supports[1].centre_offset_m", "3 values", "transverse"]),
-    ("supports.1.centre_offset_m", [0.0, 0.3], ["supports[1].centre_offset_m = 0.3", "half the diameter", "in metres?"]),
+    (
+        "supports.1.centre_offset_m",
+        [0.0, 0.3, 0.0],
+        ["supports[1].centre_offset_m", "3 values", "transverse"],
+    ),
+    (
+        "supports.1.centre_offset_m",
+        [0.0, 0.3],
+        ["supports[1].centre_offset_m = 0.3", "half the diameter", "in metres?"],
+    ),
     ("points.apex", [0.0, 0.02, 1.0], ["points.apex", "0.0200 m off the tube"]),
     ("points.apex", [0.0, 1.0], ["points.apex = [0.0, 1.0] has 2 values", "x, y and z"]),
     ("excitation.point", "shakr", ["excitation.point = 'shakr'", "did you mean 'shaker'?"]),
     ("excitation.direction", [0, 0, 0], ["excitation.direction", "not a direction"]),
     ("excitation.band_Hz", [200.0, 5.0], ["excitation.band_Hz = [200.0, 5.0]", "ascending"]),
-    ("excitation.band_Hz", [5.0, 3000.0], ["steps_per_second = 20480", "20 steps per period", "3000 Hz", "at least 60000"]),
-    ("basis.free_modes_to_Hz", 9500.0, ["steps_per_second = 20480", "omega x step = 2.91", "at least 21318", "fewer free modes"]),
-    ("integration.scheme", "newmark", ["steps_per_second = 20480", "omega x step = 2.3", "at most 1", "at least 47124"]),
-    ("integration.scheme", "euler", ["integration.scheme = 'euler'", "must be 'exact' or 'newmark'"]),
-    ("integration.steps_per_second", 50000, ["steps_per_second = 50000", "5 times a whole multiple", "51200 is near"]),
-    ("integration.steps_per_second", 49152, ["steps_per_second = 49152", "5 times a whole multiple", "51200 is near"]),
+    (
+        "excitation.band_Hz",
+        [5.0, 3000.0],
+        ["steps_per_second = 20480", "20 steps per period", "3000 Hz", "at least 60000"],
+    ),
+    (
+        "basis.free_modes_to_Hz",
+        9500.0,
+        ["steps_per_second = 20480", "omega x step = 2.91", "at least 21318", "fewer free modes"],
+    ),
+    (
+        "integration.scheme",
+        "newmark",
+        ["steps_per_second = 20480", "omega x step = 2.3", "at most 1", "at least 47124"],
+    ),
+    (
+        "integration.scheme",
+        "euler",
+        ["integration.scheme = 'euler'", "must be 'exact' or 'newmark'"],
+    ),
+    (
+        "integration.steps_per_second",
+        50000,
+        ["steps_per_second = 50000", "5 times a whole multiple", "51200 is near"],
+    ),
+    (
+        "integration.steps_per_second",
+        49152,
+        ["steps_per_second = 49152", "5 times a whole multiple", "51200 is near"],
+    ),
     ("integration.steps_per_second", True, ["steps_per_second = True must be a number"]),
     ("integration.start_up_s", 0.0001, ["integration.start_up_s", "whole number of samples"]),
-    ("record.sensors.points", ["apex", "bend_45", "apex"], ["record.sensors.points = 'apex'", "2 times"]),
+    (
+        "record.sensors.points",
+        ["apex", "bend_45", "apex"],
+        ["record.sensors.points = 'apex'", "2 times"],
+    ),
     ("record.sensors.directions", ["x"], ["record.sensors.directions", "lacks 'y'"]),
-    ("record.shape_line.direction", "z", ["record.shape_line.direction = 'z'", "not a direction of the sensors"]),
+    (
+        "record.shape_line.direction",
+        "z",
+        ["record.shape_line.direction = 'z'", "not a direction of the sensors"],
+    ),
     ("record.duration_s", 5.0, ["spectra.segment_s = 10.0", "longer than the record, 5 s"]),
     ("spectra.overlap", 65, ["spectra.overlap = 65", "not per cent"]),
     ("spectra.window", "hamming", ["spectra.window = 'hamming' must be 'hann'"]),
     ("spectra.segment_s", 0.001, ["spectra.segment_s", "2.048 samples"]),
-    ("identification.response_point", "shaker", ["identification.response_point = 'shaker'", "not recorded"]),
+    (
+        "identification.response_point",
+        "shaker",
+        ["identification.response_point = 'shaker'", "not recorded"],
+    ),
     ("identification.peak_search_Hz", [45.0, 8.0], ["identification.peak_search_Hz", "ascending"]),
-    ("identification.peak_search_Hz", [300.0, 400.0], ["identification.peak_search_Hz", "outside the excited band"]),
-    ("identification.lscf.band_Hz", [8.0, 2000.0], ["identification.lscf.band_Hz", "half the sampling frequency, 1024 Hz"]),
-    ("identification.lscf.band_Hz", [8.0, 8.3], ["identification.lscf.band_Hz", "holds 3 lines of 0.1 Hz"]),
-    ("identification.broadband.band_Hz", [2.0, 99.0], ["identification.broadband.band_Hz", "beyond the excited band"]),
-    ("identification.stiffness_range_N_per_m", [1e8, 1e3], ["stiffness_range_N_per_m", "ascending"]),
+    (
+        "identification.peak_search_Hz",
+        [300.0, 400.0],
+        ["identification.peak_search_Hz", "outside the excited band"],
+    ),
+    (
+        "identification.lscf.band_Hz",
+        [8.0, 2000.0],
+        ["identification.lscf.band_Hz", "half the sampling frequency, 1024 Hz"],
+    ),
+    (
+        "identification.lscf.band_Hz",
+        [8.0, 8.3],
+        ["identification.lscf.band_Hz", "holds 3 lines of 0.1 Hz"],
+    ),
+    (
+        "identification.broadband.band_Hz",
+        [2.0, 99.0],
+        ["identification.broadband.band_Hz", "beyond the excited band"],
+    ),
+    (
+        "identification.stiffness_range_N_per_m",
+        [1e8, 1e3],
+        ["stiffness_range_N_per_m", "ascending"],
+    ),
     ("grid.load_rms_N", [1.0, 2.0, 1.0], ["grid.load_rms_N = 1.0", "2 times"]),
     ("grid.load_rms_N.last", 0.01, ["grid.load_rms_N.last = 0.01", "above first"]),
     ("grid.seeds", 2.5, ["grid.seeds = 2.5 must be a whole number"]),
-    ("overlay.campaign", "no/such.nc", ["overlay.campaign = 'no/such.nc' is not a file", "or null"]),
+    (
+        "overlay.campaign",
+        "no/such.nc",
+        ["overlay.campaign = 'no/such.nc' is not a file", "or null"],
+    ),
     ("overlay.seed", 3, ["overlay.seed = 3 is a seed of the study", "larger"]),
     ("study", "a/b", ["study = 'a/b'", "folder name"]),
 ]
 
 
-@pytest.mark.parametrize(("place", "value", "parts"), REFUSALS, ids=[f"{place}={value}" for place, value, _ in REFUSALS])
+@pytest.mark.parametrize(
+    ("place", "value", "parts"), REFUSALS, ids=[f"{place}={value}" for place, value, _ in REFUSALS]
+)
 def test_a_mistake_is_named_with_its_place_and_remedy(study, place, value, parts):
     put(study, place, value)
     found = problems(study)
@@ -185,14 +320,23 @@ def test_a_missing_key_and_a_missing_kind_are_named(study):
 
 def test_a_path_that_bends_along_itself_is_refused(other_kinds):
     put(other_kinds, "structure.segments.1.toward", [2.0, 0.0, 0.0])
-    assert any("structure.segments[1].toward" in line and "parallel to the tube" in line for line in problems(other_kinds))
+    assert any(
+        "structure.segments[1].toward" in line and "parallel to the tube" in line
+        for line in problems(other_kinds)
+    )
     put(other_kinds, "structure.start_direction", [0, 0, 0])
-    assert any("structure.start_direction = [0.0, 0.0, 0.0] is not a direction" in line for line in problems(other_kinds))
+    assert any(
+        "structure.start_direction = [0.0, 0.0, 0.0] is not a direction" in line
+        for line in problems(other_kinds)
+    )
 
 
 def test_a_force_file_that_is_not_there_is_named(other_kinds):
     put(other_kinds, "excitation.file", "no/such/force.csv")
-    assert any("excitation.file = 'no/such/force.csv' is not a file" in line for line in problems(other_kinds))
+    assert any(
+        "excitation.file = 'no/such/force.csv' is not a file" in line
+        for line in problems(other_kinds)
+    )
 
 
 def test_all_problems_are_told_at_once(study):
@@ -211,7 +355,9 @@ def test_all_problems_are_told_at_once(study):
 def test_a_file_that_can_not_be_read_is_a_sentence(tmp_path):
     with pytest.raises(ConfigError, match="nowhere.yaml: cannot be read .*give the path"):
         load_config(tmp_path / "nowhere.yaml")
-    broken, empty, twice = tmp_path / "broken.yaml", tmp_path / "empty.yaml", tmp_path / "twice.yaml"
+    broken = tmp_path / "broken.yaml"
+    empty = tmp_path / "empty.yaml"
+    twice = tmp_path / "twice.yaml"
     broken.write_text("a: [1\nb: 2")
     empty.write_text("")
     twice.write_text(STUDY.read_text() + "\nseed: 3\n")
@@ -245,10 +391,18 @@ def test_every_key_changes_the_parameters_of_some_stage(kinds, request):
 @pytest.mark.parametrize("kinds", ["study", "other_kinds"])
 def test_every_key_is_read_somewhere(kinds, request):
     """A key that a stage declares and no code reads would be a promise without effect."""
-    library = [file for file in (ROOT / "src").rglob("*.py") if not file.name.startswith(("config", "stages"))]
+    library = [
+        file
+        for file in (ROOT / "src").rglob("*.py")
+        if not file.name.startswith(("config", "stages"))
+    ]
     nodes = [node for file in library for node in ast.walk(ast.parse(file.read_text()))]
     read = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
-    read |= {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    read |= {
+        node.value
+        for node in nodes
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    }
     rules = "".join(file.read_text() for file in (ROOT / "workflow" / "rules").glob("*.smk"))
     values = check_config(request.getfixturevalue(kinds), "mine").model_dump(mode="json")
     values["points"] = {}
@@ -263,11 +417,16 @@ def test_a_stage_sees_its_keys_and_no_others():
     assert settings.supports[1].centre_offset_m == config.supports[1].centre_offset_m
     assert dict(settings.points.items())["apex"] == config.points["apex"]
     assert settings.record.sensors.points == config.record.sensors.points
-    with pytest.raises(AttributeError, match="'record.duration_s' was not given to this stage: declare it in STAGE_KEYS"):
+    with pytest.raises(
+        AttributeError,
+        match="'record.duration_s' was not given to this stage: declare it in STAGE_KEYS",
+    ):
         _ = settings.record.duration_s
     with pytest.raises(AttributeError, match="can not be changed"):
         settings.study = "other"
 
 
 def test_every_declared_key_exists():
-    assert {key.split(".")[0] for keys in STAGE_KEYS.values() for key in keys} <= set(Config.model_fields)
+    assert {key.split(".")[0] for keys in STAGE_KEYS.values() for key in keys} <= set(
+        Config.model_fields
+    )

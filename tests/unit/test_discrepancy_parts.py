@@ -6,7 +6,13 @@ import pytest
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.emulator import Emulator
-from vibroimpact.discrepancy.features import COARSE, FeatureLayout, compressed, record_features, uncompressed
+from vibroimpact.discrepancy.features import (
+    COARSE,
+    FeatureLayout,
+    compressed,
+    record_features,
+    uncompressed,
+)
 from vibroimpact.discrepancy.likelihood import LawLikelihood, log_likelihood, scatter_of
 from vibroimpact.discrepancy.mapping import clusters
 from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
@@ -20,11 +26,21 @@ RATE = 2048.0
 
 def layout(channels=1, pairs=()):
     """A FeatureLayout of 24 bands from 5 to 200 Hz."""
-    rows = [("power", c, b) for c in range(channels) for b in range(24)] + [("coherence", c, b) for c in range(channels) for b in range(COARSE)]
+    rows = [("power", c, b) for c in range(channels) for b in range(24)] + [
+        ("coherence", c, b) for c in range(channels) for b in range(COARSE)
+    ]
     rows += [(kind, a, b) for kind in ("co", "quad") for a, _ in pairs for b in range(COARSE)]
     rows += [(kind, c, -1) for kind in ("skewness", "kurtosis") for c in range(channels)]
     kind, channel, band = map(np.array, zip(*rows, strict=True))
-    return FeatureLayout(RATE, np.geomspace(5.0, 200.0, 25), np.geomspace(5.0, 200.0, COARSE + 1), list(pairs), kind, channel, band)
+    return FeatureLayout(
+        RATE,
+        np.geomspace(5.0, 200.0, 25),
+        np.geomspace(5.0, 200.0, COARSE + 1),
+        list(pairs),
+        kind,
+        channel,
+        band,
+    )
 
 
 def test_band_powers_of_white_noise_are_its_density_times_their_width():
@@ -45,30 +61,44 @@ def test_a_response_that_is_the_force_is_coherent_and_noise_is_not():
 def test_the_sense_of_two_directions_is_seen():
     x = np.random.default_rng(3).standard_normal(40 * 2048)
     chosen = layout(2, [(0, 1)])
-    same, against = (record_features(chosen, x, np.stack([x, sign * x]))[chosen.kind == "co"] for sign in (1.0, -1.0))
+    same, against = (
+        record_features(chosen, x, np.stack([x, sign * x]))[chosen.kind == "co"]
+        for sign in (1.0, -1.0)
+    )
     np.testing.assert_allclose(same, -against)
     assert same.min() > 3.0
 
 
 def test_compression_has_an_inverse_and_leaves_small_differences():
     values = np.linspace(-60.0, 60.0, layout().kind.size)
-    np.testing.assert_allclose(uncompressed(compressed(values, layout()), layout()), values, atol=1e-9)
+    np.testing.assert_allclose(
+        uncompressed(compressed(values, layout()), layout()), values, atol=1e-9
+    )
     assert np.abs(compressed(0.01 * np.ones(layout().kind.size), layout()) - 0.01).max() < 1e-6
 
 
 def test_shrunk_covariance_keeps_variances_and_can_be_inverted():
     chosen = layout()
-    draws = np.random.default_rng(4).standard_normal((12, chosen.kind.size)) * np.linspace(0.1, 1.0, chosen.kind.size)
+    draws = np.random.default_rng(4).standard_normal((12, chosen.kind.size)) * np.linspace(
+        0.1, 1.0, chosen.kind.size
+    )
     scatter = scatter_of(draws, chosen)
     assert np.linalg.eigvalsh(scatter.covariance).min() > 0.0
-    np.testing.assert_allclose(np.diag(scatter.covariance), np.sum(compressed(draws - draws.mean(axis=0), chosen) ** 2, axis=0) / 11.0)
+    np.testing.assert_allclose(
+        np.diag(scatter.covariance),
+        np.sum(compressed(draws - draws.mean(axis=0), chosen) ** 2, axis=0) / 11.0,
+    )
 
 
 def test_likelihood_falls_with_distance_but_not_without_end():
-    scores = [log_likelihood(np.full(40, distance), np.eye(40))[0] for distance in (0.0, 1.0, 10.0, 100.0)]
+    scores = [
+        log_likelihood(np.full(40, distance), np.eye(40))[0] for distance in (0.0, 1.0, 10.0, 100.0)
+    ]
     assert scores[0] > scores[1] > scores[2] > scores[3]
     gaussian = -0.5 * 40 * 100.0**2
-    assert scores[3] - scores[0] > 0.01 * gaussian  # a t law: a hundred sigma are not a hundred times ten
+    assert (
+        scores[3] - scores[0] > 0.01 * gaussian
+    )  # a t law: a hundred sigma are not a hundred times ten
 
 
 def test_what_a_law_may_differ_by_is_forgiven_in_proportion():
@@ -94,10 +124,16 @@ def test_emulated_angles_wrap_round():
 
 
 def test_an_emulator_takes_a_length_of_its_own_for_each_parameter():
-    points = np.stack(np.meshgrid(np.linspace(0.0, 1.0, 9), np.linspace(0.0, 1.0, 3)), axis=-1).reshape(-1, 2)
-    emulator = Emulator(points, np.sin(9.0 * points[:, :1]) + 0.3 * points[:, 1:], np.full(27, 1e-6))
+    points = np.stack(
+        np.meshgrid(np.linspace(0.0, 1.0, 9), np.linspace(0.0, 1.0, 3)), axis=-1
+    ).reshape(-1, 2)
+    emulator = Emulator(
+        points, np.sin(9.0 * points[:, :1]) + 0.3 * points[:, 1:], np.full(27, 1e-6)
+    )
     assert emulator.lengths[0] < emulator.lengths[1]
-    np.testing.assert_allclose(emulator(np.array([0.43, 0.31]))[0], np.sin(9.0 * 0.43) + 0.093, atol=0.05)
+    np.testing.assert_allclose(
+        emulator(np.array([0.43, 0.31]))[0], np.sin(9.0 * 0.43) + 0.093, atol=0.05
+    )
 
 
 @pytest.mark.parametrize("best", [(0.731,), (0.123, 0.618), (0.31, 0.77, 0.52, 0.9)])
@@ -112,17 +148,21 @@ def test_the_search_finds_the_top_of_a_tilted_hill(best):
     np.testing.assert_allclose(unit, best, atol=0.02 if len(best) > 2 else 0.004)
     for number, (values, scores) in enumerate(_profile(score, unit)):
         low, high = _above(values, scores, unit[number], NINETY)
-        assert high - low == pytest.approx(2 * 1.645 * 0.08 * np.sqrt(np.linalg.inv(tilt)[number, number]), rel=0.1)
+        assert high - low == pytest.approx(
+            2 * 1.645 * 0.08 * np.sqrt(np.linalg.inv(tilt)[number, number]), rel=0.1
+        )
 
 
 def test_a_likelihood_that_knows_nothing_gives_the_whole_range():
-    (values, scores), = _profile(lambda point: 0.0, np.array([0.4]))
+    ((values, scores),) = _profile(lambda point: 0.0, np.array([0.4]))
     assert _above(values, scores, 0.4).tolist() == [0.0, 1.0]
 
 
 def test_components_of_a_vector_are_also_tried_alone():
     design = Candidate("support_offset", "all").design()
-    assert {(0.5, 0.3), (0.5, 0.7), (0.3, 0.5), (0.7, 0.5), (0.5, 0.4), (0.6, 0.5)} <= {tuple(np.round(point, 6)) for point in design} and len(design) == 17
+    assert {(0.5, 0.3), (0.5, 0.7), (0.3, 0.5), (0.7, 0.5), (0.5, 0.4), (0.6, 0.5)} <= {
+        tuple(np.round(point, 6)) for point in design
+    } and len(design) == 17
     assert len(Candidate("support_offset", "all").design(quick=True)) == 8  # along the axes alone
     assert len(Candidate("plate_flexibility", "all").design()) == 12
 
@@ -130,7 +170,9 @@ def test_components_of_a_vector_are_also_tried_alone():
 def test_where_an_effect_is_nothing_is_known_where_its_range_holds_it():
     scales = {"gap": 2.0e-4, "one": 1.0}
     offset, friction = Candidate("support_offset", "all"), Candidate("dry_friction", "all")
-    np.testing.assert_allclose(offset.physical(offset.neutral_unit(scales), scales)["offset_x"], 0.0, atol=1e-12)
+    np.testing.assert_allclose(
+        offset.physical(offset.neutral_unit(scales), scales)["offset_x"], 0.0, atol=1e-12
+    )
     assert np.isnan(friction.neutral_unit(scales)).all()
 
 
@@ -143,12 +185,19 @@ def test_interval_of_a_parabola():
 def test_an_interval_is_that_of_its_own_hill():
     """Where nothing was simulated the score of an emulator rises again, above what is known."""
     values = np.linspace(0.0, 1.0, 61)
-    low, high = _above(values, np.maximum(-0.5 * ((values - 0.4) / 0.05) ** 2, np.where(values > 0.9, 30.0, -20.0)), 0.41, NINETY)
+    low, high = _above(
+        values,
+        np.maximum(-0.5 * ((values - 0.4) / 0.05) ** 2, np.where(values > 0.9, 30.0, -20.0)),
+        0.41,
+        NINETY,
+    )
     np.testing.assert_allclose([low, high], [0.4 - 0.0822, 0.4 + 0.0822], atol=0.006)
 
 
 def test_a_profile_stays_where_it_was_looked_at():
-    (values, _), = _profile(lambda point: -float(point[0] ** 2), np.array([0.4]), np.array([[0.2, 0.6]]))
+    ((values, _),) = _profile(
+        lambda point: -float(point[0] ** 2), np.array([0.4]), np.array([[0.2, 0.6]])
+    )
     assert (values.min(), values.max()) == (0.2, 0.6)
 
 
@@ -176,8 +225,16 @@ def test_the_exact_alias_is_told_how_to_break():
 
 
 def verdict(name, sets, first):
-    return {"verdict": name, "ambiguity_set": sets, "ranking": [{"ids": first}], "checks": [], "effects": [],
-            "misfit": {"holdout": {"before_dB": 4.0, "after_dB": 1.1, "floor_dB": 1.0, "closed_fraction": 0.9}}}  # fmt: skip
+    return {
+        "verdict": name,
+        "ambiguity_set": sets,
+        "ranking": [{"ids": first}],
+        "checks": [],
+        "effects": [],
+        "misfit": {
+            "holdout": {"before_dB": 4.0, "after_dB": 1.1, "floor_dB": 1.0, "closed_fraction": 0.9}
+        },
+    }
 
 
 @pytest.mark.parametrize(("before_dB", "arm"), [(1.1, "weak"), (2.0, "medium"), (4.0, "strong")])
@@ -196,27 +253,57 @@ def test_verdicts_are_held_against_truths():
     assert wrong["wrong"] and not wrong["in_set"]
     table = {(row["arm"], row["quantity"]): row for row in rates([right, wrong, wrong, wrong])}
     assert table["strong", "in the set"]["rate"] == 0.25
-    assert table["strong", "in the set"]["low"] == pytest.approx(0.0063, abs=1e-4)  # Clopper-Pearson, 1 of 4
+    assert table["strong", "in the set"]["low"] == pytest.approx(
+        0.0063, abs=1e-4
+    )  # Clopper-Pearson, 1 of 4
 
 
 def test_effects_taken_out_of_the_catalogue_count_as_strangers():
-    rows = [judged(verdict("unknown", [], []), {"arm": "left_out", "effects": [["gap", {"factor": 1.5}]]}),
-            judged(verdict("named", [["hertz"]], ["hertz"]), {"arm": "stranger", "effects": [["loose_mass", {}]]})]  # fmt: skip
+    rows = [
+        judged(
+            verdict("unknown", [], []), {"arm": "left_out", "effects": [["gap", {"factor": 1.5}]]}
+        ),
+        judged(
+            verdict("named", [["hertz"]], ["hertz"]),
+            {"arm": "stranger", "effects": [["loose_mass", {}]]},
+        ),
+    ]
     table = {row["quantity"]: row for row in rates(rows)}
-    assert (table["unknown or partly"]["campaigns"], table["unknown or partly"]["rate"], table["wrong single name"]["rate"]) == (2, 0.5, 0.5)
+    assert (
+        table["unknown or partly"]["campaigns"],
+        table["unknown or partly"]["rate"],
+        table["wrong single name"]["rate"],
+    ) == (2, 0.5, 0.5)
 
 
 def test_shuffled_truths_fall_to_chance():
-    rng, names = np.random.default_rng(6), ["gap", "dry_friction", "support_offset", "hertz", "preload"]
+    rng = np.random.default_rng(6)
+    names = [
+        "gap",
+        "dry_friction",
+        "support_offset",
+        "hertz",
+        "preload",
+    ]
     truths = [names[place] for place in rng.integers(0, 5, 200)]
-    rows = [judged(verdict("named", [[name]], [name]), {"arm": "strong", "effects": [[name, {}]]}) for name in truths]
+    rows = [
+        judged(verdict("named", [[name]], [name]), {"arm": "strong", "effects": [[name, {}]]})
+        for name in truths
+    ]
     table = {row["quantity"]: row for row in rates(rows) if row["arm"] == "strong"}
     assert table["in the set"]["rate"] == table["first"]["rate"] == 1.0
-    assert table["in the set"]["by_chance"] == pytest.approx(0.2, abs=0.03) and table["first"]["by_chance"] == pytest.approx(0.2, abs=0.03)
+    assert table["in the set"]["by_chance"] == pytest.approx(0.2, abs=0.03) and table["first"][
+        "by_chance"
+    ] == pytest.approx(0.2, abs=0.03)
 
 
 def test_priors_are_those_of_the_contract():
-    assert (priors.FREQUENCY_SD, priors.DAMPING_SD, priors.GAIN_SD, priors.NAMED_BEYOND) == (0.003, 0.10, 0.02, 2.0)
+    assert (priors.FREQUENCY_SD, priors.DAMPING_SD, priors.GAIN_SD, priors.NAMED_BEYOND) == (
+        0.003,
+        0.10,
+        0.02,
+        2.0,
+    )
 
 
 def test_clusters_end_where_the_difference_halves():
@@ -226,12 +313,23 @@ def test_clusters_end_where_the_difference_halves():
 
 
 def test_what_other_damping_changes_is_no_evidence():
-    """A difference along a free direction costs its prior, however large; across it nothing is forgiven."""
+    """A difference along a free direction costs its prior, however large; across it nothing is
+    forgiven.
+    """
     covariance = np.eye(40)[None]
-    null = Null(np.array([1]), np.zeros((1, 4, 40)), np.zeros((1, 40)), covariance, covariance, np.zeros(40, int), np.full(40, 10.0))
+    null = Null(
+        np.array([1]),
+        np.zeros((1, 4, 40)),
+        np.zeros((1, 40)),
+        covariance,
+        covariance,
+        np.zeros(40, int),
+        np.full(40, 10.0),
+    )
     silent = np.where(np.arange(40) < 20, 8.0, 0.0)
     freed = null.freed(silent[None, None])
-    along, across = log_likelihood(silent, freed.covariance[0])[1], log_likelihood(silent[::-1], freed.covariance[0])[1]
+    along = log_likelihood(silent, freed.covariance[0])[1]
+    across = log_likelihood(silent[::-1], freed.covariance[0])[1]
     assert along == pytest.approx(1.0, abs=0.01)
     assert across == pytest.approx(20 * 64.0)
     assert null.covariance is covariance
@@ -243,7 +341,15 @@ def test_where_no_band_counts_nothing_is_closed():
 
 def test_scatter_of_a_models_own_runs_counts_where_it_is_clearly_larger():
     rng, size = np.random.default_rng(8), 40
-    null = Null(np.array([1]), rng.standard_normal((1, 16, size)), np.zeros((1, size)), 2.0 * np.eye(size)[None], np.eye(size)[None], np.zeros(size, int), np.full(size, 1.0e6))
+    null = Null(
+        np.array([1]),
+        rng.standard_normal((1, 16, size)),
+        np.zeros((1, size)),
+        2.0 * np.eye(size)[None],
+        np.eye(size)[None],
+        np.zeros(size, int),
+        np.full(size, 1.0e6),
+    )
     along = np.ones(size) / np.sqrt(size)
     alike = rng.standard_normal((1, 20, size))
     apart = alike + 8.0 * rng.standard_normal((1, 20, 1)) * along
@@ -255,15 +361,33 @@ def test_scatter_of_a_models_own_runs_counts_where_it_is_clearly_larger():
 
 
 def test_chi_squares_of_a_record_of_bursts_scatter_more():
-    """A record in which one run of sixteen breaks out: its chi-square without that run is far from the others', so no 200 above expectation says that something is missing."""
+    """A record in which one run of sixteen breaks out: its chi-square without that run is far from
+    the others', so no 200 above expectation says that something is missing.
+    """
     rng, size = np.random.default_rng(5), 60
     calm = rng.standard_normal((16, size))
     burst = calm + np.where(np.arange(16) == 3, 4.0, 0.0)[:, None]
     features = np.stack([calm, burst])
-    covariances = np.array([np.diag(np.full(size, 1.0)) + (1.0 + 1.0 / 16.0) * scatter_of(rows, Blend(size)).covariance for rows in features])
-    null = Null(np.array([1, 2]), features, features.mean(axis=1), covariances, covariances, np.zeros(size, int), Blend(size).blend)
+    covariances = np.array(
+        [
+            np.diag(np.full(size, 1.0))
+            + (1.0 + 1.0 / 16.0) * scatter_of(rows, Blend(size)).covariance
+            for rows in features
+        ]
+    )
+    null = Null(
+        np.array([1, 2]),
+        features,
+        features.mean(axis=1),
+        covariances,
+        covariances,
+        np.zeros(size, int),
+        Blend(size).blend,
+    )
     chi_square = null.left_out()
-    assert chi_square.shape == (2, 16) and 0.4 * size < chi_square[0].mean() < 0.8 * size  # half of the covariance is what two codes differ by
+    assert (
+        chi_square.shape == (2, 16) and 0.4 * size < chi_square[0].mean() < 0.8 * size
+    )  # half of the covariance is what two codes differ by
     assert np.argmax(chi_square[1]) == 3 and chi_square[1, 3] > 5.0 * np.median(chi_square[1])
     least, wider = naming.bare_spread(null)
     assert least == pytest.approx(naming.SPREAD * np.sqrt(2.0 * size)) and wider > 4.0 * least
@@ -279,9 +403,14 @@ class Blend:
 def test_a_likelihood_made_diagonal_once_is_the_same():
     rng, size = np.random.default_rng(4), 40
     root = rng.standard_normal((size, 2 * size))
-    covariance, change, groups, spread = root @ root.T, rng.standard_normal(size), np.arange(size) % 2, rng.uniform(0.0, 1.0, size) ** 4
+    covariance = root @ root.T
+    change = rng.standard_normal(size)
+    groups = np.arange(size) % 2
+    spread = rng.uniform(0.0, 1.0, size) ** 4
     spread[3] = 0.0
     held = LawLikelihood(covariance, change, groups, spread)
     for multiple in (0.0, 0.3, 40.0):
         residual = 5.0 * rng.standard_normal(size)
-        assert held(residual, multiple) == pytest.approx(log_likelihood(residual, covariance, change, groups, multiple * spread)[0], abs=1.0e-3)
+        assert held(residual, multiple) == pytest.approx(
+            log_likelihood(residual, covariance, change, groups, multiple * spread)[0], abs=1.0e-3
+        )

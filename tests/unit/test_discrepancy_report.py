@@ -1,4 +1,6 @@
-"""Figures and page of a discrepancy run: what is drawn is what the files hold, and every verdict has its sentence."""
+"""Figures and page of a discrepancy run: what is drawn is what the files hold, and every verdict
+has its sentence.
+"""
 
 import base64
 import csv
@@ -8,14 +10,22 @@ import re
 import numpy as np
 import pytest
 
-from tests.discrepancy_results import CHANNELS, EDGES, RECORDS, made_up_candidates, made_up_map, made_up_ranking, made_up_verdict
-from vibroimpact.discrepancy_page import discrepancy_page, verdict_sentence
-from vibroimpact.discrepancy_results import best_places, read_results
-from vibroimpact.figures.discrepancy import discrepancy_figures
-from vibroimpact.figures.discrepancy_ranking import axis_label, found_of, named_of
-from vibroimpact.figures.discrepancy_spectra import chosen_channels, chosen_records
+from tests.discrepancy_results import (
+    CHANNELS,
+    EDGES,
+    RECORDS,
+    made_up_candidates,
+    made_up_map,
+    made_up_ranking,
+    made_up_verdict,
+)
+from vibroimpact.discrepancy.results_folder import best_places, read_results
+from vibroimpact.display_units import shown_unit
+from vibroimpact.figures.discrepancy.ranking import axis_label, found_of, named_of
+from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
+from vibroimpact.figures.discrepancy.spectra import chosen_channels, chosen_records
 from vibroimpact.records import write_record, write_table
-from vibroimpact.shown_units import shown_unit
+from vibroimpact.reports.discrepancy_page import discrepancy_page, verdict_sentence
 
 KINDS = ("none", "named", "ambiguous", "partly_explained", "unknown", "not_testable")
 
@@ -50,37 +60,76 @@ def rows_of(folder, name):
 
 
 def test_candidates_come_back_best_first(folder):
-    assert [candidate["ids"] for candidate in read_results(folder).candidates] == [["dry_friction"], ["gap"]]
+    assert [candidate["ids"] for candidate in read_results(folder).candidates] == [
+        ["dry_friction"],
+        ["gap"],
+    ]
 
 
 def test_axes_say_what_they_are_and_in_which_unit(figures):
     for sheet in figures.values():
         for name, axes in sheet.axes.items():
-            shared = not axes.get_xticklabels() or not axes.xaxis.get_tick_params().get("labelbottom", True)
-            assert axes.get_xlabel().endswith(")") or shared or sheet.name in ("discrepancy_psd", "discrepancy_map"), (sheet.name, name)
-        assert any(axes.get_xlabel() for axes in sheet.axes.values()) and sheet.caption.endswith(".")
+            shared = not axes.get_xticklabels() or not axes.xaxis.get_tick_params().get(
+                "labelbottom", True
+            )
+            assert (
+                axes.get_xlabel().endswith(")")
+                or shared
+                or sheet.name in ("discrepancy_psd", "discrepancy_map")
+            ), (sheet.name, name)
+        assert any(axes.get_xlabel() for axes in sheet.axes.values()) and sheet.caption.endswith(
+            "."
+        )
 
 
 def test_the_map_holds_every_counted_cell(folder, figures):
     rows = rows_of(folder, "discrepancy_map")
     assert len(rows) == 4 * len(RECORDS) * len(CHANNELS) * 24
     before = made_up_map(9.0)
-    shown = [row for row in rows if row["panel"] == "D before" and row["curve"] == "L10_G1.3_2, apex_y"]
-    np.testing.assert_allclose([float(row["discrepancy_dB"]) for row in shown], before["D"].values[2, 0], rtol=1e-6)
-    np.testing.assert_allclose([float(row["frequency_Hz"]) for row in shown], np.sqrt(EDGES[:-1] * EDGES[1:]), rtol=1e-6)
-    quiet = [row["discrepancy_dB"] for row in rows if row["panel"] == "D before" and row["curve"] == "L0.5_G1.3_0, apex_x"]
+    shown = [
+        row for row in rows if row["panel"] == "D before" and row["curve"] == "L10_G1.3_2, apex_y"
+    ]
+    np.testing.assert_allclose(
+        [float(row["discrepancy_dB"]) for row in shown], before["D"].values[2, 0], rtol=1e-6
+    )
+    np.testing.assert_allclose(
+        [float(row["frequency_Hz"]) for row in shown], np.sqrt(EDGES[:-1] * EDGES[1:]), rtol=1e-6
+    )
+    quiet = [
+        row["discrepancy_dB"]
+        for row in rows
+        if row["panel"] == "D before" and row["curve"] == "L0.5_G1.3_0, apex_x"
+    ]
     assert set(quiet) == {"nan"}  # not 6 dB above its noise
-    meshes = [figures["discrepancy_map"].axes[f"z {stage}"].collections[0] for stage in ("before", "after")]
-    assert meshes[0].get_clim() == meshes[1].get_clim() and meshes[0].get_clim()[0] == -meshes[0].get_clim()[1]
+    meshes = [
+        figures["discrepancy_map"].axes[f"z {stage}"].collections[0]
+        for stage in ("before", "after")
+    ]
+    assert (
+        meshes[0].get_clim() == meshes[1].get_clim()
+        and meshes[0].get_clim()[0] == -meshes[0].get_clim()[1]
+    )
 
 
 def test_the_spectra_of_the_records_that_say_most_are_shown(folder, figures):
     before = made_up_map(9.0)
-    assert [RECORDS[index][0] for index in chosen_records(before)] == ["L0.5_G1.3_0", "L10_G1.3_2", "L10_G0.9_3"]
+    assert [RECORDS[index][0] for index in chosen_records(before)] == [
+        "L0.5_G1.3_0",
+        "L10_G1.3_2",
+        "L10_G0.9_3",
+    ]
     assert [CHANNELS[index] for index in chosen_channels(before)] == ["apex_y", "bend45_right_y"]
-    rows = [row for row in rows_of(folder, "discrepancy_psd") if row["record"] == "L10_G1.3_2" and row["channel"] == "apex_y"]
+    rows = [
+        row
+        for row in rows_of(folder, "discrepancy_psd")
+        if row["record"] == "L10_G1.3_2" and row["channel"] == "apex_y"
+    ]
     assert {row["curve"] for row in rows} == {"measured", "before", "after"}
-    assert all(float(row["psd_m2_per_s4_per_Hz_low"]) <= float(row["psd_m2_per_s4_per_Hz_high"]) for row in rows if row["curve"] != "measured")
+    assert all(
+        float(row["psd_m2_per_s4_per_Hz_low"]) <= float(row["psd_m2_per_s4_per_Hz_high"])
+        for row in rows
+        if row["curve"] != "measured"
+    )
 
 
 def test_the_ranking_shows_scores_and_the_null_line(folder, figures):
@@ -90,38 +139,62 @@ def test_the_ranking_shows_scores_and_the_null_line(folder, figures):
     assert held == sorted(held, reverse=True)
     bars = figures["discrepancy_ranking"].axes["main"].patches
     assert [bar.get_width() for bar in bars[:3]] == [84.0, 82.0, 61.0]
-    assert bars[0].get_facecolor() != bars[1].get_facecolor() != bars[6].get_facecolor()  # named; simulated; emulated
-    assert "best by chance (98 %)" in [line.get_label() for line in figures["discrepancy_ranking"].axes["main"].lines]
+    assert (
+        bars[0].get_facecolor() != bars[1].get_facecolor() != bars[6].get_facecolor()
+    )  # named; simulated; emulated
+    assert "best by chance (98 %)" in [
+        line.get_label() for line in figures["discrepancy_ranking"].axes["main"].lines
+    ]
 
 
 def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair_each_estimate():
     def candidate(law, value, ids=("foliate_obstacle",), name="angle"):
         return {"ids": list(ids), "name": law, "parameters": {name: {"value": value}}}
 
-    effects = [{"id": "foliate_obstacle", "parameters": {"angle": {"value": 0.4}}}, {"id": "gap", "parameters": {"gap_factor": {"value": 1.2}}}]
+    effects = [
+        {"id": "foliate_obstacle", "parameters": {"angle": {"value": 0.4}}},
+        {"id": "gap", "parameters": {"gap_factor": {"value": 1.2}}},
+    ]
     lands, lobes = candidate("foliate_lands@all", 0.4), candidate("foliate_obstacle@all", 0.5)
     pair = candidate("pair", 0.4, ("foliate_obstacle", "gap"), "foliate_obstacle.angle")
     assert named_of([lobes, lands], effects[:1]) == [lands]
     assert named_of([lobes, lands, pair], effects) == [pair]
     assert named_of([lobes, lands], []) == [lobes]
-    assert found_of(effects, "gap.gap_factor") == {"value": 1.2} and found_of(effects, "angle") == {"value": 0.4} and found_of(effects, "gap.angle") is None
+    assert (
+        found_of(effects, "gap.gap_factor") == {"value": 1.2}
+        and found_of(effects, "angle") == {"value": 0.4}
+        and found_of(effects, "gap.angle") is None
+    )
     assert axis_label("foliate_obstacle.angle", "deg") == "foliate obstacle, angle (deg)"
 
 
 def test_profiles_show_what_was_simulated(folder, figures):
-    rows = [row["parameter"] for row in rows_of(folder, "discrepancy_profiles") if row["curve"] == "mu simulated"]
+    rows = [
+        row["parameter"]
+        for row in rows_of(folder, "discrepancy_profiles")
+        if row["curve"] == "mu simulated"
+    ]
     assert [float(value) for value in rows] == [0.1, 0.15, 0.3]
 
 
 def test_parameters_are_shown_in_units_of_the_field():
     assert shown_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and shown_unit("m", [1.2]) == ("m", 1.0)
-    assert shown_unit("N/m", [4e6]) == ("MN/m", 1e-6) and shown_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3) and shown_unit("1", [0.15]) == ("1", 1.0)
-    assert shown_unit("N/m^3", [7e11, None]) == ("GN/m³", 1e-9) and shown_unit("N/m^2", [np.nan, 1.03e6]) == ("kN/m²", 1e-3)
+    assert (
+        shown_unit("N/m", [4e6]) == ("MN/m", 1e-6)
+        and shown_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3)
+        and shown_unit("1", [0.15]) == ("1", 1.0)
+    )
+    assert shown_unit("N/m^3", [7e11, None]) == ("GN/m³", 1e-9) and shown_unit(
+        "N/m^2", [np.nan, 1.03e6]
+    ) == ("kN/m²", 1e-3)
     assert axis_label("offset_x", "mm") == "offset x (mm)" and axis_label("mu", "1") == "mu (-)"
 
 
 def test_what_came_nearest_is_told_where_nothing_is_named():
-    told = verdict_sentence(made_up_verdict("unknown") | {"most_probable": [{"id": "clearance"}, {"id": "support_offset"}]})
+    told = verdict_sentence(
+        made_up_verdict("unknown")
+        | {"most_probable": [{"id": "clearance"}, {"id": "support_offset"}]}
+    )
     assert told.endswith("What came nearest, clearance and support offset, is not it.")
     assert "nearest" not in verdict_sentence(made_up_verdict("unknown"))
 
@@ -129,19 +202,41 @@ def test_what_came_nearest_is_told_where_nothing_is_named():
 def test_of_several_the_most_probable_is_shown_with_its_parameters():
     named = made_up_verdict()["effects"]
     page = discrepancy_page("campaign", made_up_verdict("ambiguous") | {"most_probable": named}, [])
-    assert "The most probable of them" in page and "0.149" in page and "Adding the most probable of them closes" in page
-    assert "The most probable of them" not in discrepancy_page("campaign", made_up_verdict("ambiguous"), [])
-    assert "0.149" not in discrepancy_page("campaign", made_up_verdict("unknown") | {"most_probable": named}, [])
+    assert (
+        "The most probable of them" in page
+        and "0.149" in page
+        and "Adding the most probable of them closes" in page
+    )
+    assert "The most probable of them" not in discrepancy_page(
+        "campaign", made_up_verdict("ambiguous"), []
+    )
+    assert "0.149" not in discrepancy_page(
+        "campaign", made_up_verdict("unknown") | {"most_probable": named}, []
+    )
 
 
 def test_an_effect_that_was_screened_at_many_places_is_shown_at_the_best():
-    rows = [{"ids": ids, "location": place, "heldout_score": score} for ids, place, score in
-            (("clearance", "leg", 40.0), ("clearance", "apex", 20.0), ("clearance", "shaker", ""), (["gap"], "all", None), ("gap", "left", np.nan))]  # fmt: skip
-    assert [row["location"] for row in best_places(rows)] == ["leg", "apex", "all"]  # what was looked at closely stays
+    rows = [
+        {"ids": ids, "location": place, "heldout_score": score}
+        for ids, place, score in (
+            ("clearance", "leg", 40.0),
+            ("clearance", "apex", 20.0),
+            ("clearance", "shaker", ""),
+            (["gap"], "all", None),
+            ("gap", "left", np.nan),
+        )
+    ]
+    assert [row["location"] for row in best_places(rows)] == [
+        "leg",
+        "apex",
+        "all",
+    ]  # what was looked at closely stays
 
 
 def test_a_quick_look_says_what_it_gives_up():
-    assert "at 16 s of every record" in discrepancy_page("campaign", made_up_verdict("unknown"), [], quick_s=16.0)
+    assert "at 16 s of every record" in discrepancy_page(
+        "campaign", made_up_verdict("unknown"), [], quick_s=16.0
+    )
     assert "quick" not in discrepancy_page("campaign", made_up_verdict("unknown"), [])
 
 
@@ -157,8 +252,13 @@ def test_a_run_without_map_or_candidates_says_so(tmp_path):
 
 
 def test_a_run_without_a_completed_model_shows_the_map_alone(folder, tmp_path):
-    sheets = {sheet.name: sheet for sheet in discrepancy_figures(read_results_without_after(folder, tmp_path))}
-    assert [text.get_text() for text in sheets["discrepancy_map"].axes["D after"].texts] == ["no completed model"]
+    sheets = {
+        sheet.name: sheet
+        for sheet in discrepancy_figures(read_results_without_after(folder, tmp_path))
+    }
+    assert [text.get_text() for text in sheets["discrepancy_map"].axes["D after"].texts] == [
+        "no completed model"
+    ]
     assert {curve for _, curve, _ in sheets["discrepancy_psd"].tables} == {"measured", "before"}
 
 
@@ -176,8 +276,19 @@ def test_the_page_is_one_file_with_everything_in_it(folder, figures):
     assert not re.findall(r'(?:src|href)="(?!data:)', page) and "dev &lt;friction&gt;" in page
     images = re.findall(r"base64,([^\"]+)", page)
     assert [base64.b64decode(image) for image in images] == [file.read_bytes() for file in files]
-    for part in ("The model lacks dry friction (mu 0.149, between 0.128 and 0.171)", "the contact rubs", "0.128 to 0.171", "24 to 33", "+7.4", "T5, power balance",
-                 "87 %", "flat tops", "3120 simulations", "0123456789abcdef", "below 0.001"):
+    for part in (
+        "The model lacks dry friction (mu 0.149, between 0.128 and 0.171)",
+        "the contact rubs",
+        "0.128 to 0.171",
+        "24 to 33",
+        "+7.4",
+        "T5, power balance",
+        "87 %",
+        "flat tops",
+        "3120 simulations",
+        "0123456789abcdef",
+        "below 0.001",
+    ):
         assert part in page, part
 
 
@@ -185,16 +296,39 @@ def test_the_page_is_one_file_with_everything_in_it(folder, figures):
 def test_every_verdict_has_its_sentence_and_page(kind):
     verdict = made_up_verdict(kind)
     sentence = verdict_sentence(verdict)
-    assert sentence.endswith(".") and {"none": "No effect", "named": "lacks dry friction", "ambiguous": "dry friction, or foliate obstacle", "unknown": "no effect of the catalogue",
-                                       "partly_explained": "something else", "not_testable": "can not be judged"}[kind] in sentence
+    assert (
+        sentence.endswith(".")
+        and {
+            "none": "No effect",
+            "named": "lacks dry friction",
+            "ambiguous": "dry friction, or foliate obstacle",
+            "unknown": "no effect of the catalogue",
+            "partly_explained": "something else",
+            "not_testable": "can not be judged",
+        }[kind]
+        in sentence
+    )
     page = discrepancy_page(kind, verdict, [])
     assert sentence.split(" (")[0] in page and ("Measure next" in page) == (kind == "ambiguous")
 
 
 def test_a_region_tells_the_modes_near_it_each_once():
     region = made_up_verdict()["regions"][0]
-    page = discrepancy_page("campaign", made_up_verdict() | {"regions": [region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]}, [])
+    page = discrepancy_page(
+        "campaign",
+        made_up_verdict()
+        | {"regions": [region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]},
+        [],
+    )
     assert "<td>104, 105, 171, 172</td>" in page
-    assert "<td>104, 171</td>" in discrepancy_page("campaign", made_up_verdict() | {"regions": [region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]}, [])
-    without = {key: region[key] for key in region if key != "nearest_modes_Hz"}  # a structure that is known by its measured responses alone
-    assert "nearest modes" not in discrepancy_page("campaign", made_up_verdict() | {"regions": [without]}, [])
+    assert "<td>104, 171</td>" in discrepancy_page(
+        "campaign",
+        made_up_verdict() | {"regions": [region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]},
+        [],
+    )
+    without = {
+        key: region[key] for key in region if key != "nearest_modes_Hz"
+    }  # a structure that is known by its measured responses alone
+    assert "nearest modes" not in discrepancy_page(
+        "campaign", made_up_verdict() | {"regions": [without]}, []
+    )

@@ -1,4 +1,6 @@
-"""The verdict from scores: who is named, who is not told apart, when a pair is needed, and when nobody is named."""
+"""The verdict from scores: who is named, who is not told apart, when a pair is needed, and when
+nobody is named.
+"""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -16,12 +18,24 @@ SCALES = {"gap": 2.0e-4, "one": 1.0, "contact_stiffness": 4.0e6, "hertz": 2.0e8}
 
 
 def finalist(name, gain, explained=EXPLAINED, held_out=10.0, part=0.0):
-    """A Finalist of a name as the verdict sees it; part: what the better of a pair's effects explains alone."""
+    """A Finalist of a name as the verdict sees it; part: what the better of a pair's effects
+    explains alone.
+    """
     candidate = candidate_named(name)
     count = len(candidate.effect.parameters)
     interval = np.tile([0.75, 0.85], (count, 1))
-    return SimpleNamespace(candidate=candidate, mean=name, gain=gain, left=explained, held_out=held_out, interval=interval, unit=interval.mean(axis=1),
-                           total=gain, parts=np.array([0.0, part]), own=lambda null: null)  # fmt: skip
+    return SimpleNamespace(
+        candidate=candidate,
+        mean=name,
+        gain=gain,
+        left=explained,
+        held_out=held_out,
+        interval=interval,
+        unit=interval.mean(axis=1),
+        total=gain,
+        parts=np.array([0.0, part]),
+        own=lambda null: null,
+    )
 
 
 @pytest.fixture
@@ -30,7 +44,14 @@ def decided(monkeypatch):
 
     def run(found, adopted=None, rest=LEFT, p=1.0e-6, share=0.9, linear=(), beyond=100.0):
         left = {row.mean: row.left for row in found} | {"null": rest}
-        monkeypatch.setattr(verdict.naming, "totals", lambda *_: {row.candidate.name: (row.gain, row.gain - row.held_out, row.held_out) for row in found})
+        monkeypatch.setattr(
+            verdict.naming,
+            "totals",
+            lambda *_: {
+                row.candidate.name: (row.gain, row.gain - row.held_out, row.held_out)
+                for row in found
+            },
+        )
         monkeypatch.setattr(verdict.naming, "explained", lambda bench, null, mean, *_: left[mean])
         monkeypatch.setattr(verdict.naming, "bare_explained", lambda *_: left["null"])
         monkeypatch.setattr(verdict, "closure", lambda *_: share)
@@ -38,7 +59,9 @@ def decided(monkeypatch):
         bench = SimpleNamespace(measured_features={"records": None})
         prepared = SimpleNamespace(adopted=adopted, linear=list(linear), scales=SCALES)
         order = sorted(found, key=lambda row: -row.gain)
-        return verdict.decide(bench, SimpleNamespace(records="records", mean="null"), prepared, order, THRESHOLD, p)
+        return verdict.decide(
+            bench, SimpleNamespace(records="records", mean="null"), prepared, order, THRESHOLD, p
+        )
 
     return run
 
@@ -66,8 +89,12 @@ def test_two_that_are_near_are_a_set_and_a_gap_is_never_alone(decided):
 def test_an_alias_that_suffices_is_not_ruled_out(decided):
     both = decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 1000.0)])
     assert both.ambiguity == [["contact_damping"], ["hunt_crossley"]]
-    assert decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 800.0, LEFT)]).ambiguity == [["contact_damping"]]
-    assert decided([finalist("hertz@all", 1200.0), finalist("contact_stiffness@all", 950.0, LEFT)]).ambiguity == [["hertz"], ["contact_stiffness"]]
+    assert decided(
+        [finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 800.0, LEFT)]
+    ).ambiguity == [["contact_damping"]]
+    assert decided(
+        [finalist("hertz@all", 1200.0), finalist("contact_stiffness@all", 950.0, LEFT)]
+    ).ambiguity == [["hertz"], ["contact_stiffness"]]
 
 
 def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
@@ -75,9 +102,15 @@ def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
     assert decided([single, pair]).ambiguity == [["dry_friction", "gap"]]
     assert decided([finalist("gap@left", 300.0), pair]).ambiguity == [["gap"]]
     insufficient = decided([single, finalist("gap@left+dry_friction@all", 400.0, LEFT)])
-    assert (insufficient.verdict, insufficient.ambiguity) == ("partly_explained", [["dry_friction", "gap"], ["gap"]])
+    assert (insufficient.verdict, insufficient.ambiguity) == (
+        "partly_explained",
+        [["dry_friction", "gap"], ["gap"]],
+    )
     little = decided([single, finalist("gap@left+dry_friction@all", 325.0)])
-    assert (little.verdict, little.ambiguity) == ("partly_explained", [["gap"], ["dry_friction", "gap"]]) and little.chosen is single
+    assert (little.verdict, little.ambiguity) == (
+        "partly_explained",
+        [["gap"], ["dry_friction", "gap"]],
+    ) and little.chosen is single
     idle = finalist("gap@left+dry_friction@all", 400.0, part=390.0)
     assert decided([single, idle]).chosen is single
 
@@ -95,31 +128,62 @@ def test_a_loss_on_held_out_records_is_a_veto(decided):
 
 def test_a_linear_effect_stands_beside_what_contact_adds(decided):
     adopted = {"name": "added_mass@apex", "unit": [0.4], "gain": 90.0}
-    rows = [adopted, {"name": "mode_frequency_error@mode_1", "gain": 85.0}, {"name": "root_stiffness@roots", "gain": 40.0}]
+    rows = [
+        adopted,
+        {"name": "mode_frequency_error@mode_1", "gain": 85.0},
+        {"name": "root_stiffness@roots", "gain": 40.0},
+    ]
     alone = decided([], adopted=adopted, rest=EXPLAINED, linear=rows)
-    assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass"], ["mode_frequency_error"]])
+    assert (alone.verdict, alone.ambiguity) == (
+        "ambiguous",
+        [["added_mass"], ["mode_frequency_error"]],
+    )
     both = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
     assert both.ambiguity == [["added_mass", "dry_friction"]]
 
 
 def test_two_linear_effects_are_one_set(decided):
-    adopted = {"name": "added_mass@apex+sensor_gain@apex_y", "unit": [0.4, 0.6], "gain": 90.0, "interval": [[0.39, 0.41], [0.55, 0.65]]}
-    rows = [adopted, {"name": "added_mass@apex+modal_damping@all", "gain": 88.0}, {"name": "added_mass@apex", "gain": 40.0}]
+    adopted = {
+        "name": "added_mass@apex+sensor_gain@apex_y",
+        "unit": [0.4, 0.6],
+        "gain": 90.0,
+        "interval": [[0.39, 0.41], [0.55, 0.65]],
+    }
+    rows = [
+        adopted,
+        {"name": "added_mass@apex+modal_damping@all", "gain": 88.0},
+        {"name": "added_mass@apex", "gain": 40.0},
+    ]
     alone = decided([], adopted=adopted, rest=EXPLAINED, linear=rows)
-    assert (alone.verdict, alone.ambiguity) == ("ambiguous", [["added_mass", "sensor_gain"], ["added_mass", "modal_damping"]])
+    assert (alone.verdict, alone.ambiguity) == (
+        "ambiguous",
+        [["added_mass", "sensor_gain"], ["added_mass", "modal_damping"]],
+    )
     beside = decided([finalist("dry_friction@all", 300.0)], adopted=adopted, linear=rows[:1])
     assert beside.ambiguity == [["added_mass", "dry_friction", "sensor_gain"]]
-    told = verdict.effects_of(SimpleNamespace(adopted=adopted, scales=SCALES | {"mass": 1.0}), alone, None)
-    assert [(row["id"], row["location"], list(row["parameters"])) for row in told] == [("added_mass", "apex", ["mass"]), ("sensor_gain", "apex_y", ["factor"])]
+    told = verdict.effects_of(
+        SimpleNamespace(adopted=adopted, scales=SCALES | {"mass": 1.0}), alone, None
+    )
+    assert [(row["id"], row["location"], list(row["parameters"])) for row in told] == [
+        ("added_mass", "apex", ["mass"]),
+        ("sensor_gain", "apex_y", ["factor"]),
+    ]
     gain = told[1]["parameters"]["factor"]
     assert gain["value"] == pytest.approx(0.25 * 16.0**0.6)
     assert gain["low"] < gain["value"] < gain["high"]
 
 
-@pytest.mark.parametrize(("location", "nominal"), [("left", 3.0e-4), ("right", 5.0e-4), ("all", None)])
+@pytest.mark.parametrize(
+    ("location", "nominal"), [("left", 3.0e-4), ("right", 5.0e-4), ("all", None)]
+)
 def test_a_gap_is_told_in_metres_of_the_clearance_that_the_model_has(decided, location, nominal):
     laws = SimpleNamespace(gap=np.array([np.nan, np.nan, 5.0e-4, 9.0e-4]))
-    model = SimpleNamespace(support_names=("left", "right", STOP), support_of_point=np.array([0, 0, 1, 2]), gap_factor=np.array([1.5, 1.5, 1.0, 1.0]), contact_laws=laws)
+    model = SimpleNamespace(
+        support_names=("left", "right", STOP),
+        support_of_point=np.array([0, 0, 1, 2]),
+        gap_factor=np.array([1.5, 1.5, 1.0, 1.0]),
+        contact_laws=laws,
+    )
     decision = decided([finalist(f"gap@{location}", 300.0)])
     (row,) = verdict.effects_of(SimpleNamespace(adopted=None, scales=SCALES), decision, model)
     factor = row["parameters"]["gap_factor"]["value"]
@@ -128,87 +192,167 @@ def test_a_gap_is_told_in_metres_of_the_clearance_that_the_model_has(decided, lo
         assert row["parameters"]["gap"]["value"] == pytest.approx(nominal * factor)
 
 
-def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_the_linear_one(decided):
+def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_the_linear_one(
+    decided,
+):
     adopted = {"name": "fluid_added_mass_damping@tube", "unit": [0.1, 0.2], "gain": 40.0}
-    beside, alone = finalist("quadratic_drag@tube", 310.0), finalist("quadratic_drag@tube@alone", 304.0)
+    beside = finalist("quadratic_drag@tube", 310.0)
+    alone = finalist("quadratic_drag@tube@alone", 304.0)
     both = decided([beside, alone], adopted=adopted, linear=[adopted])
     assert (both.verdict, both.ambiguity, both.chosen) == ("named", [["quadratic_drag"]], alone)
-    worse = decided([beside, finalist("quadratic_drag@tube@alone", 280.0)], adopted=adopted, linear=[adopted])
+    worse = decided(
+        [beside, finalist("quadratic_drag@tube@alone", 280.0)], adopted=adopted, linear=[adopted]
+    )
     assert worse.ambiguity == [["fluid_added_mass_damping", "quadratic_drag"]]
 
 
 def test_a_parameter_is_told_level_by_level(monkeypatch):
     fitted = iter([0.5, 0.25])
-    monkeypatch.setattr(levels, "calibrate", lambda *_: SimpleNamespace(unit=np.array([next(fitted)]), interval=np.array([[0.2, 0.7]])))
+    monkeypatch.setattr(
+        levels,
+        "calibrate",
+        lambda *_: SimpleNamespace(unit=np.array([next(fitted)]), interval=np.array([[0.2, 0.7]])),
+    )
     signals = SimpleNamespace(load=np.array([0.5, 3.0, 10.0]), gap=np.full(3, 2.0e-4))
-    (row,) = levels.by_level(SimpleNamespace(signals=signals), SimpleNamespace(records=np.array([1, 2])), np.zeros((2, 4)),
-                             SimpleNamespace(candidate=candidate_named("dry_friction@all"), path=None, own=lambda null: null), SCALES)  # fmt: skip
+    (row,) = levels.by_level(
+        SimpleNamespace(signals=signals),
+        SimpleNamespace(records=np.array([1, 2])),
+        np.zeros((2, 4)),
+        SimpleNamespace(
+            candidate=candidate_named("dry_friction@all"), path=None, own=lambda null: null
+        ),
+        SCALES,
+    )
     assert (row["parameter"], row["load_rms_N"]) == ("mu", [3.0, 10.0])
-    np.testing.assert_allclose([row["value"], row["low"], row["high"]], [[0.1, 100**0.25 / 100], [100**0.2 / 100] * 2, [100**0.7 / 100] * 2])
+    np.testing.assert_allclose(
+        [row["value"], row["low"], row["high"]],
+        [[0.1, 100**0.25 / 100], [100**0.2 / 100] * 2, [100**0.7 / 100] * 2],
+    )
     pair = SimpleNamespace(candidate=candidate_named("dry_friction@all+gap@all"), path=None)
     assert levels.by_level(None, None, np.zeros((2, 4)), pair, SCALES) == []
 
 
 def test_an_estimate_allows_for_a_gain_common_to_force_and_responses():
-    """Lengths and forces are known no better than such a gain: 2 %, one sigma; a friction coefficient is."""
+    """Lengths and forces are known no better than such a gain: 2 %, one sigma; a friction
+    coefficient is.
+    """
     gap, friction = candidate_named("gap@all"), candidate_named("dry_friction@all")
     unit = np.array([0.5])
     value, low, high = gap.estimate(unit, np.array([[0.5, 0.5]]), {"one": 1.0})["gap_factor"]
-    assert (value / low, high / value) == pytest.approx((1.0 / (1.0 - 1.645 * 0.02), 1.0 + 1.645 * 0.02))
+    assert (value / low, high / value) == pytest.approx(
+        (1.0 / (1.0 - 1.645 * 0.02), 1.0 + 1.645 * 0.02)
+    )
     mu, narrow, _ = friction.estimate(unit, np.array([[0.49, 0.51]]), {"one": 1.0})["mu"]
     assert narrow == pytest.approx(friction.physical([0.49], {"one": 1.0})["mu"]) and narrow < mu
 
 
 def test_a_linear_effect_stands_where_nothing_explains_the_rest(decided):
     adopted = {"name": "sensor_gain@apex_y", "gain": 400.0, "unit": [0.7]}
-    found = decided([finalist("lateral_stinger@along_x", 30.0, explained=LEFT)], adopted=adopted, share=-0.2, linear=[adopted])
-    assert (found.verdict, found.ambiguity, found.chosen) == ("partly_explained", [["sensor_gain"]], None)
+    found = decided(
+        [finalist("lateral_stinger@along_x", 30.0, explained=LEFT)],
+        adopted=adopted,
+        share=-0.2,
+        linear=[adopted],
+    )
+    assert (found.verdict, found.ambiguity, found.chosen) == (
+        "partly_explained",
+        [["sensor_gain"]],
+        None,
+    )
 
 
 def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
-    """A gain on the fitted records alone, where the bare model is within the scatter of its seeds."""
+    """A gain on the fitted records alone, where the bare model is within the scatter of its
+    seeds.
+    """
     overfit = [finalist("hunt_crossley@all", 18.0, held_out=-20.0)]
     assert decided(overfit, rest=EXPLAINED, p=0.4).verdict == "none"
     adopted = {"name": "sensor_gain@force", "gain": 52.0, "unit": [0.53]}
-    assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [["sensor_gain"]]
+    assert decided(overfit, adopted=adopted, rest=EXPLAINED, linear=[adopted]).ambiguity == [
+        ["sensor_gain"]
+    ]
 
 
-@pytest.mark.parametrize(("held_out", "expected"), [(85.0, [["contact_damping", "modal_damping"]]), (THRESHOLD - 1.0, [["modal_damping"]])])
-def test_where_nothing_is_left_beyond_chance_the_held_out_records_alone_may_name(decided, held_out, expected):
-    """Contact damping beside modal damping: 305 units of which 85 on the held-out record, within what the null's covariance holds."""
+@pytest.mark.parametrize(
+    ("held_out", "expected"),
+    [(85.0, [["contact_damping", "modal_damping"]]), (THRESHOLD - 1.0, [["modal_damping"]])],
+)
+def test_where_nothing_is_left_beyond_chance_the_held_out_records_alone_may_name(
+    decided, held_out, expected
+):
+    """Contact damping beside modal damping: 305 units of which 85 on the held-out record, within
+    what the null's covariance holds.
+    """
     adopted = {"name": "modal_damping@all", "unit": [0.9], "gain": 1000.0}
-    found = decided([finalist("contact_damping@all", 305.0, held_out=held_out)], adopted=adopted, rest=EXPLAINED, p=0.98, share=0.0, beyond=-10.0)
+    found = decided(
+        [finalist("contact_damping@all", 305.0, held_out=held_out)],
+        adopted=adopted,
+        rest=EXPLAINED,
+        p=0.98,
+        share=0.0,
+        beyond=-10.0,
+    )
     assert (found.verdict, found.ambiguity) == ("named", expected)
 
 
 def test_what_held_out_records_contradict_is_not_added_to_what_the_lowest_record_told(decided):
-    """Though the model still misses something: a loss beyond what tells candidates apart is none of chance."""
+    """Though the model still misses something: a loss beyond what tells candidates apart is none of
+    chance.
+    """
     adopted = {"name": "modal_damping@all", "gain": 125.0, "unit": [0.66]}
-    lost, kept = (decided([finalist("quadratic_stiffness@left_leg", 28.0, held_out=held_out)], adopted=adopted, linear=[adopted]) for held_out in (-13.0, -5.0))
-    assert (lost.verdict, lost.ambiguity, lost.chosen) == ("partly_explained", [["modal_damping"]], None)
+    lost, kept = (
+        decided(
+            [finalist("quadratic_stiffness@left_leg", 28.0, held_out=held_out)],
+            adopted=adopted,
+            linear=[adopted],
+        )
+        for held_out in (-13.0, -5.0)
+    )
+    assert (lost.verdict, lost.ambiguity, lost.chosen) == (
+        "partly_explained",
+        [["modal_damping"]],
+        None,
+    )
     assert (kept.verdict, kept.ambiguity) == ("named", [["modal_damping", "quadratic_stiffness"]])
 
 
 def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided):
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
-    assert verdict.refuted(part, 0.5, -2.8) and not verdict.refuted(part, 0.5, 0.4) and not verdict.refuted(part, 0.5, None)
+    assert (
+        verdict.refuted(part, 0.5, -2.8)
+        and not verdict.refuted(part, 0.5, 0.4)
+        and not verdict.refuted(part, 0.5, None)
+    )
     named = decided([finalist("gap@all", 300.0)])
-    # a record near an onset, of which the model goes both ways, is met by no mean: where the fitted ones gain, it is no witness alone
-    assert verdict.refuted(named, -0.2, -2.8) and not any(verdict.refuted(named, *shares) for shares in ((0.5, -2.8), (-0.2, -0.5), (-2.8, None), (None, -2.8)))
+    # a record near an onset, of which the model goes both ways, is met by no mean: where the fitted
+    # ones gain, it is no witness alone
+    assert verdict.refuted(named, -0.2, -2.8) and not any(
+        verdict.refuted(named, *shares)
+        for shares in ((0.5, -2.8), (-0.2, -0.5), (-2.8, None), (None, -2.8))
+    )
     assert not verdict.refuted(replace(named, verdict="none", chosen=None), -0.2, -2.8)
-    assert verdict.refuted(named, -0.52, -0.62)  # an offset of next to nothing, named for a channel that was late
+    assert verdict.refuted(
+        named, -0.52, -0.62
+    )  # an offset of next to nothing, named for a channel that was late
 
 
 def test_a_part_that_makes_no_records_better_is_no_explanation(decided):
     """Likelihood may gain by co and quad and kurtosis where no band's power comes nearer."""
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
-    assert verdict.refuted(part, -0.01, -0.2) and verdict.refuted(part, 0.05, None) and not verdict.refuted(part, None, None)
+    assert (
+        verdict.refuted(part, -0.01, -0.2)
+        and verdict.refuted(part, 0.05, None)
+        and not verdict.refuted(part, None, None)
+    )
     assert not verdict.refuted(part, 0.6, -0.2) and not verdict.refuted(part, -0.01, 0.6)
 
 
 def screened(**scores):
     """[Screened] best first of {effect at location: score}, locations after two underscores."""
-    rows = [naming.Screened(candidate_named(name.replace("__", "@")), score, np.zeros(1)) for name, score in scores.items()]
+    rows = [
+        naming.Screened(candidate_named(name.replace("__", "@")), score, np.zeros(1))
+        for name, score in scores.items()
+    ]
     return sorted(rows, key=lambda row: -row.score)
 
 
@@ -217,9 +361,21 @@ def names(rows):
 
 
 def test_an_effect_is_looked_at_closely_once_and_the_first_ones_aliases_also_from_afar():
-    rows = screened(clearance__apex=100.0, coulomb_friction__shaker=90.0, cubic_stiffness__apex=35.0, clearance__shaker=80.0, cubic_stiffness__shaker=30.0,
-                    hertz__all=70.0, preload__all=20.0)  # fmt: skip
-    assert names(naming.finalists(rows, LEFT)) == ["clearance@apex", "coulomb_friction@shaker", "hertz@all", "cubic_stiffness@apex"]
+    rows = screened(
+        clearance__apex=100.0,
+        coulomb_friction__shaker=90.0,
+        cubic_stiffness__apex=35.0,
+        clearance__shaker=80.0,
+        cubic_stiffness__shaker=30.0,
+        hertz__all=70.0,
+        preload__all=20.0,
+    )
+    assert names(naming.finalists(rows, LEFT)) == [
+        "clearance@apex",
+        "coulomb_friction@shaker",
+        "hertz@all",
+        "cubic_stiffness@apex",
+    ]
 
 
 def test_nothing_is_looked_at_closely_where_nothing_is_missing_and_no_gain_could_be_named():
@@ -230,7 +386,20 @@ def test_nothing_is_looked_at_closely_where_nothing_is_missing_and_no_gain_could
 
 
 def test_what_was_screened_beside_another_structure_is_looked_at_closely_whatever_its_score():
-    """Contact damping beside nine times the damping of all modes, which the candidates of a bank do not have: -64 there, 275 in the campaign."""
-    rows = screened(contact_damping__all=-64.0, hertz__all=-77.0, contact_stiffness__all=-79.0, quadratic_stiffness__left_leg=-82.0, hunt_crossley__all=-92.0)
-    assert names(naming.finalists(rows, EXPLAINED, elsewhere=True)) == ["contact_damping@all", "hertz@all", "contact_stiffness@all", "hunt_crossley@all"]
+    """Contact damping beside nine times the damping of all modes, which the candidates of a bank do
+    not have: -64 there, 275 in the campaign.
+    """
+    rows = screened(
+        contact_damping__all=-64.0,
+        hertz__all=-77.0,
+        contact_stiffness__all=-79.0,
+        quadratic_stiffness__left_leg=-82.0,
+        hunt_crossley__all=-92.0,
+    )
+    assert names(naming.finalists(rows, EXPLAINED, elsewhere=True)) == [
+        "contact_damping@all",
+        "hertz@all",
+        "contact_stiffness@all",
+        "hunt_crossley@all",
+    ]
     assert names(naming.finalists(rows, EXPLAINED)) == []

@@ -3,35 +3,60 @@
 import numpy as np
 import pytest
 
-from vibroimpact.identify.estimate import METHODS, Estimate, graded, table_rows, unresolved, weakened
-from vibroimpact.identify.segments import effective_duration, left_out_changes, segment_covariance, widened
-from vibroimpact.spectral_kernel import spectral_kernel
+from vibroimpact.identify.estimate import (
+    METHODS,
+    Estimate,
+    graded,
+    table_rows,
+    unresolved,
+    weakened,
+)
+from vibroimpact.identify.segments import (
+    effective_duration,
+    left_out_changes,
+    segment_covariance,
+    widened,
+)
+from vibroimpact.spectra.window_leakage import spectral_kernel
 
 RANGE = (1.0e3, 1.0e8)
 
 
-@pytest.mark.parametrize("k, error, model_error, free, quality", [
-    (1.0e5, 2.0e3, 2.0e3, 570.0, "ok"),
-    (1.0e5, 2.0e4, 2.0e4, 570.0, "weak"),  # 28 %
-    (1.0e5, 5.0e4, 2.0e4, 570.0, "unresolved"),  # 54 %
-    (1.0e3, 500.0, 570.0, 570.0, "unresolved"),  # can not be told from none
-    (2.5e3, 400.0, 570.0, 570.0, "unresolved"),  # 2 x 570 + 4 x 400 = 2740
-    (2.8e3, 400.0, 600.0, 400.0, "weak"),
-    (4.0e6, 5.0e5, 5.6e5, 570.0, "ok"),
-    (-2.0e3, 400.0, 570.0, 570.0, "unresolved"),
-    (2.0e8, 1.0e6, 1.0e6, 570.0, "unresolved"),
-    (np.inf, np.nan, np.nan, 570.0, "unresolved"),
-])
+@pytest.mark.parametrize(
+    "k, error, model_error, free, quality",
+    [
+        (1.0e5, 2.0e3, 2.0e3, 570.0, "ok"),
+        (1.0e5, 2.0e4, 2.0e4, 570.0, "weak"),  # 28 %
+        (1.0e5, 5.0e4, 2.0e4, 570.0, "unresolved"),  # 54 %
+        (1.0e3, 500.0, 570.0, 570.0, "unresolved"),  # can not be told from none
+        (2.5e3, 400.0, 570.0, 570.0, "unresolved"),  # 2 x 570 + 4 x 400 = 2740
+        (2.8e3, 400.0, 600.0, 400.0, "weak"),
+        (4.0e6, 5.0e5, 5.6e5, 570.0, "ok"),
+        (-2.0e3, 400.0, 570.0, 570.0, "unresolved"),
+        (2.0e8, 1.0e6, 1.0e6, 570.0, "unresolved"),
+        (np.inf, np.nan, np.nan, 570.0, "unresolved"),
+    ],
+)
 def test_quality_weighs_chance_and_the_model_s_error(k, error, model_error, free, quality):
     found = graded(Estimate("lscf", k, error, 60.0, 5.0, 20.0, 0.02), model_error, free, RANGE)
     assert found.quality == quality and bool(found.note) == (quality != "ok")
-    assert np.isnan(found.k) == (quality == "unresolved") and np.isnan(found.c) == (quality == "unresolved")
+    assert np.isnan(found.k) == (quality == "unresolved") and np.isnan(found.c) == (
+        quality == "unresolved"
+    )
     assert (found.frequency, found.damping_ratio) == (20.0, 0.02)
 
 
 def test_a_damping_with_too_large_an_error_is_left_out_alone():
-    found = graded(Estimate("lscf", 1.0e5, 2.0e3, 60.0, 45.0), 2.0e3, 570.0, RANGE, c_error_limit=40.0)
-    assert found.quality == "ok" and found.k == 1.0e5 and np.isnan(found.c) and np.isnan(found.c_standard_error) and "c = 60" in found.note
+    found = graded(
+        Estimate("lscf", 1.0e5, 2.0e3, 60.0, 45.0), 2.0e3, 570.0, RANGE, c_error_limit=40.0
+    )
+    assert (
+        found.quality == "ok"
+        and found.k == 1.0e5
+        and np.isnan(found.c)
+        and np.isnan(found.c_standard_error)
+        and "c = 60" in found.note
+    )
 
 
 def test_weakened_never_makes_better():
@@ -41,16 +66,42 @@ def test_weakened_never_makes_better():
 
 
 def test_rows_have_the_columns_of_the_consistency_table():
-    rows = table_rows([Estimate(method, 1.0e5, 1.0e3) for method in METHODS], {"gap_m": 2.0e-4, "load_rms_N": 5.0, "seed": 3})
-    assert list(rows[0]) == ["gap_m", "load_rms_N", "load_over_gap", "seed", "method", "k_N_per_m", "k_standard_error", "c_N_s_per_m",
-                             "c_standard_error", "frequency_Hz", "damping_ratio", "quality"]
-    assert [row["method"] for row in rows] == list(METHODS) and rows[0]["load_over_gap"] == pytest.approx(2.5e4) and rows[0]["seed"] == 3
+    rows = table_rows(
+        [Estimate(method, 1.0e5, 1.0e3) for method in METHODS],
+        {"gap_m": 2.0e-4, "load_rms_N": 5.0, "seed": 3},
+    )
+    assert list(rows[0]) == [
+        "gap_m",
+        "load_rms_N",
+        "load_over_gap",
+        "seed",
+        "method",
+        "k_N_per_m",
+        "k_standard_error",
+        "c_N_s_per_m",
+        "c_standard_error",
+        "frequency_Hz",
+        "damping_ratio",
+        "quality",
+    ]
+    assert (
+        [row["method"] for row in rows] == list(METHODS)
+        and rows[0]["load_over_gap"] == pytest.approx(2.5e4)
+        and rows[0]["seed"] == 3
+    )
 
 
 def overlapping(generator, segments=12):
-    """Values of overlapping segments: correlated with the neighbours as 65 % overlapped Hann segments are, and their nu."""
+    """Values of overlapping segments: correlated with the neighbours as 65 % overlapped Hann
+    segments are, and their nu.
+    """
     rho = np.array([1.0, 0.35, 0.04])
-    covariance = np.array([[rho[abs(i - j)] if abs(i - j) < 3 else 0.0 for j in range(segments)] for i in range(segments)])
+    covariance = np.array(
+        [
+            [rho[abs(i - j)] if abs(i - j) < 3 else 0.0 for j in range(segments)]
+            for i in range(segments)
+        ]
+    )
     values = np.linalg.cholesky(covariance) @ generator.standard_normal(segments)
     return values, 2.0 * segments**2 / covariance.sum()
 
@@ -59,7 +110,9 @@ def test_scatter_of_overlapping_segments_gives_the_error_of_their_mean():
     generator = np.random.default_rng(1)
     records = [overlapping(generator) for _ in range(4000)]
     means = np.array([values.mean() for values, _ in records])
-    claimed = np.mean([segment_covariance(values[:, None], averages)[0, 0] for values, averages in records])
+    claimed = np.mean(
+        [segment_covariance(values[:, None], averages)[0, 0] for values, averages in records]
+    )
     assert claimed == pytest.approx(means.var(), rel=0.06)
     assert np.all(np.isinf(segment_covariance(np.ones((3, 2)), 4.0)))
 
@@ -79,4 +132,6 @@ def test_a_covariance_is_widened_and_never_narrowed():
 
 
 def test_independent_values_per_hertz_tell_the_length_of_the_record():
-    assert effective_duration(17.817, spectral_kernel("hann", 10.0)) == pytest.approx(49.0, rel=0.08)
+    assert effective_duration(17.817, spectral_kernel("hann", 10.0)) == pytest.approx(
+        49.0, rel=0.08
+    )

@@ -1,4 +1,6 @@
-"""Intervals: the scatter of an estimate over the completed model's own seeds, and where what was simulated ends them."""
+"""Intervals: the scatter of an estimate over the completed model's own seeds, and where what was
+simulated ends them.
+"""
 
 from types import SimpleNamespace
 
@@ -10,25 +12,46 @@ from vibroimpact.discrepancy.finalists import Finalist
 from vibroimpact.discrepancy.neighbourhood import near, offset
 from vibroimpact.discrepancy.screening import Path
 
-NULL = SimpleNamespace(blend=np.ones(1), freed=lambda free: SimpleNamespace(scattered=lambda rows: None))
+NULL = SimpleNamespace(
+    blend=np.ones(1), freed=lambda free: SimpleNamespace(scattered=lambda rows: None)
+)
 
 
 def path_at(*points):
     """A Path of points of one parameter that holds nothing else."""
-    return Path(np.array(points)[:, None], np.zeros((len(points), 1, 1)), np.full(len(points), 2), [None] * len(points))
+    return Path(
+        np.array(points)[:, None],
+        np.zeros((len(points), 1, 1)),
+        np.full(len(points), 2),
+        [None] * len(points),
+    )
 
 
 @pytest.fixture
 def widened(monkeypatch):
-    """Return the function (estimates of the seeds, scores of the points) -> interval of a Finalist at 0.5 that was told within 0.49 to 0.51."""
+    """Return the function (estimates of the seeds, scores of the points) -> interval of a Finalist
+    at 0.5 that was told within 0.49 to 0.51.
+    """
 
     def run(estimates, scores, points=(0.4, 0.5, 0.6, 0.8)):
         told = iter(estimates)
-        monkeypatch.setattr(estimate_scatter, "calibrate", lambda *_: SimpleNamespace(unit=np.array([next(told)])))
+        monkeypatch.setattr(
+            estimate_scatter, "calibrate", lambda *_: SimpleNamespace(unit=np.array([next(told)]))
+        )
         monkeypatch.setattr(estimate_scatter, "scores_along", lambda *_: np.array(scores))
         monkeypatch.setattr(estimate_scatter, "fit_mask", lambda *_: None)
         candidate = SimpleNamespace(periodic=())
-        found = Finalist(candidate, np.array([0.5]), np.array([[0.49, 0.51]]), None, 0.0, np.zeros((1, len(estimates), 1)), path_at(*points), [], np.zeros((0, 1, 1)))
+        found = Finalist(
+            candidate,
+            np.array([0.5]),
+            np.array([[0.49, 0.51]]),
+            None,
+            0.0,
+            np.zeros((1, len(estimates), 1)),
+            path_at(*points),
+            [],
+            np.zeros((0, 1, 1)),
+        )
         return estimate_scatter.with_scatter(None, NULL, None, found).interval[0]
 
     return run
@@ -46,9 +69,21 @@ def test_seeds_are_looked_for_near_the_estimate(monkeypatch, widened):
         boxes.append(arguments[-1].tolist())
         return SimpleNamespace(unit=np.array([0.5]))
 
-    widened([0.5], [0.0, 100.0, 0.0, 0.0])  # the other parts of the interval are made up from here on
+    widened(
+        [0.5], [0.0, 100.0, 0.0, 0.0]
+    )  # the other parts of the interval are made up from here on
     monkeypatch.setattr(estimate_scatter, "calibrate", calibrate)
-    found = Finalist(SimpleNamespace(periodic=()), np.array([0.1]), np.array([[0.0, 0.2]]), None, 0.0, np.zeros((1, 2, 1)), path_at(0.1, 0.2, 0.3, 0.4), [], np.zeros((0, 1, 1)))
+    found = Finalist(
+        SimpleNamespace(periodic=()),
+        np.array([0.1]),
+        np.array([[0.0, 0.2]]),
+        None,
+        0.0,
+        np.zeros((1, 2, 1)),
+        path_at(0.1, 0.2, 0.3, 0.4),
+        [],
+        np.zeros((0, 1, 1)),
+    )
     estimate_scatter.with_scatter(None, NULL, None, found)
     assert boxes == [[[0.0, pytest.approx(0.3)]]] * 2
 
@@ -59,7 +94,9 @@ def test_seeds_that_agree_leave_the_interval(widened):
 
 def test_points_that_are_not_clearly_worse_belong_to_the_interval(widened):
     assert widened([0.5, 0.5], [0.0, 100.0, 60.0, 90.0]) == pytest.approx([0.49, 0.8])
-    assert widened([0.5, 0.5], [0.0, 100.0, 10.0, 90.0]) == pytest.approx([0.49, 0.51])  # beyond one that is
+    assert widened([0.5, 0.5], [0.0, 100.0, 10.0, 90.0]) == pytest.approx(
+        [0.49, 0.51]
+    )  # beyond one that is
 
 
 def test_an_interval_ends_where_what_was_simulated_is_clearly_worse(widened):

@@ -1,4 +1,6 @@
-"""Forces: band, RMS, Gaussian amplitude, independence of seeds; measured records come back at another rate."""
+"""Forces: band, RMS, Gaussian amplitude, independence of seeds; measured records come back at
+another rate.
+"""
 
 import tracemalloc
 from types import SimpleNamespace
@@ -8,10 +10,15 @@ import pytest
 import xarray as xr
 from scipy.io import savemat
 
-from vibroimpact.cases import random_stream
-from vibroimpact.excitation import ForceError, band_limited_noise, fast_length, resample_measured
-from vibroimpact.force_stream import ForceStream, unit_force
-from vibroimpact.force_files import ForceFileError, read_force
+from vibroimpact.excitation.force_files import ForceFileError, read_force
+from vibroimpact.excitation.force_stream import ForceStream, unit_force
+from vibroimpact.excitation.random_force import (
+    ForceError,
+    band_limited_noise,
+    fast_length,
+    resample_measured,
+)
+from vibroimpact.study.cases import random_stream
 
 BAND = (5.0, 200.0)
 
@@ -35,7 +42,8 @@ def test_noise_is_gaussian_with_unit_rms():
 
 def test_seeds_are_independent_and_reproducible():
     one, other, again = (
-        band_limited_noise(random_stream(2012, seed, "force"), 2**17, 2048.0, BAND) for seed in (0, 1, 0)
+        band_limited_noise(random_stream(2012, seed, "force"), 2**17, 2048.0, BAND)
+        for seed in (0, 1, 0)
     )
     assert np.array_equal(one, again)
     assert abs(np.corrcoef(one, other)[0, 1]) < 5 / np.sqrt(2 * 195 * 64)
@@ -47,37 +55,82 @@ def test_rms_over_the_record_is_exact():
     assert np.sqrt(np.mean(values[10000:50000] ** 2)) == pytest.approx(1.0, rel=1e-14)
 
 
-@pytest.mark.parametrize(("samples", "rate", "band"), [(400_000, 51200.0, BAND), (60_007, 51200.0, (100.0, 3000.0)), (5000, 1000.0, (5.0, 400.0))])
+@pytest.mark.parametrize(
+    ("samples", "rate", "band"),
+    [(400_000, 51200.0, BAND), (60_007, 51200.0, (100.0, 3000.0)), (5000, 1000.0, (5.0, 400.0))],
+)
 def test_a_streamed_force_is_the_inverse_transform_of_its_lines(samples, rate, band):
     section, recorded = SimpleNamespace(kind="band_limited", band_Hz=band), slice(100, samples - 2)
     values = band_limited_noise(np.random.default_rng(8), samples, rate, band)
     expected = values / np.sqrt(np.mean(values[recorded] ** 2))
-    assert np.max(np.abs(unit_force(section, np.random.default_rng(8), samples, rate, recorded) - expected)) < 1e-12
+    assert (
+        np.max(
+            np.abs(
+                unit_force(section, np.random.default_rng(8), samples, rate, recorded) - expected
+            )
+        )
+        < 1e-12
+    )
 
 
-@pytest.mark.parametrize("section", [
-    SimpleNamespace(kind="band_limited", band_Hz=BAND), SimpleNamespace(kind="white_noise"), SimpleNamespace(kind="none"),
-    SimpleNamespace(kind="harmonic", frequency_Hz=7.3, phase_deg=20.0),
-], ids=lambda section: section.kind)
+@pytest.mark.parametrize(
+    "section",
+    [
+        SimpleNamespace(kind="band_limited", band_Hz=BAND),
+        SimpleNamespace(kind="white_noise"),
+        SimpleNamespace(kind="none"),
+        SimpleNamespace(kind="harmonic", frequency_Hz=7.3, phase_deg=20.0),
+    ],
+    ids=lambda section: section.kind,
+)
 def test_a_step_has_the_same_bits_in_whatever_stretch_it_is_asked_for(section):
     def stream():
-        return ForceStream(section, np.random.default_rng(9), 90_000, 51200.0, slice(1000, 80_000), first_time_s=-0.5)
+        return ForceStream(
+            section,
+            np.random.default_rng(9),
+            90_000,
+            51200.0,
+            slice(1000, 80_000),
+            first_time_s=-0.5,
+        )
 
     whole = stream().values(0, 90_000)
     pieces = stream()
-    for first, count in [(0, 1), (0, 7001), (7000, 30_000), (37_000, 53_000), (25_599, 2), (88_000, 2000), (100, 10)]:
+    for first, count in [
+        (0, 1),
+        (0, 7001),
+        (7000, 30_000),
+        (37_000, 53_000),
+        (25_599, 2),
+        (88_000, 2000),
+        (100, 10),
+    ]:
         assert np.array_equal(pieces.values(first, count), whole[first : first + count])
 
 
 def test_white_noise_in_pieces_is_one_draw():
-    stream = ForceStream(SimpleNamespace(kind="white_noise"), np.random.default_rng(10), 70_000, 51200.0, slice(0, 70_000))
-    assert np.array_equal(stream.values(0, 70_000), np.random.default_rng(10).standard_normal(70_000))
+    stream = ForceStream(
+        SimpleNamespace(kind="white_noise"),
+        np.random.default_rng(10),
+        70_000,
+        51200.0,
+        slice(0, 70_000),
+    )
+    assert np.array_equal(
+        stream.values(0, 70_000), np.random.default_rng(10).standard_normal(70_000)
+    )
 
 
 def test_a_force_of_a_long_record_takes_little_memory():
     """Of 400 s, 160 MB as a whole, the Fourier lines and one block are held."""
     tracemalloc.start()
-    stream = ForceStream(SimpleNamespace(kind="band_limited", band_Hz=BAND), np.random.default_rng(11), 400 * 51200, 51200.0, slice(0, 51200))
+    stream = ForceStream(
+        SimpleNamespace(kind="band_limited", band_Hz=BAND),
+        np.random.default_rng(11),
+        400 * 51200,
+        51200.0,
+        slice(0, 51200),
+    )
     stream.values(0, 25000)
     assert tracemalloc.get_traced_memory()[1] < 40e6
     tracemalloc.stop()
@@ -88,7 +141,9 @@ def test_empty_band_is_refused():
         band_limited_noise(np.random.default_rng(0), 1000, 1000.0, (5.2, 5.3))
 
 
-@pytest.mark.parametrize(("rate", "to_rate"), [(2048.0, 51200.0), (400.0, 51200.0), (1000.0, 51200.0)])
+@pytest.mark.parametrize(
+    ("rate", "to_rate"), [(2048.0, 51200.0), (400.0, 51200.0), (1000.0, 51200.0)]
+)
 def test_resampling_keeps_a_band_limited_wave(rate, to_rate):
     def wave(t):
         return np.cos(2 * np.pi * 17.3 * t) + 0.5 * np.sin(2 * np.pi * 71.0 * t + 0.3)
@@ -104,7 +159,14 @@ def measured_files(folder, values, rate):
     """The same record as netCDF, CSV and MATLAB file."""
     time = np.arange(values.size) / rate
     xr.Dataset({"force": ("time", values)}, {"time": time}).to_netcdf(folder / "force.nc")
-    np.savetxt(folder / "force.csv", np.column_stack([time, values]), delimiter=",", header="time,force", comments="", fmt="%.17g")
+    np.savetxt(
+        folder / "force.csv",
+        np.column_stack([time, values]),
+        delimiter=",",
+        header="time,force",
+        comments="",
+        fmt="%.17g",
+    )
     savemat(folder / "force.mat", {"force": values[None, :], "Fs": rate})
     return [folder / f"force.{kind}" for kind in ("nc", "csv", "mat")]
 
@@ -120,7 +182,9 @@ def test_the_three_kinds_of_file_hold_the_same_record(tmp_path):
 def test_a_measured_force_drives_a_case(tmp_path):
     values = np.random.default_rng(5).standard_normal(4000)
     path = measured_files(tmp_path, values, 400.0)[0]
-    section = SimpleNamespace(kind="measured", file=str(path), variable="force", sampling_frequency_Hz=None)
+    section = SimpleNamespace(
+        kind="measured", file=str(path), variable="force", sampling_frequency_Hz=None
+    )
     force = unit_force(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
     assert np.sqrt(np.mean(force[51200 : 4 * 51200] ** 2)) == pytest.approx(1.0, rel=1e-14)
     assert np.corrcoef(force[::128], values[:2000])[0, 1] > 0.999
@@ -133,7 +197,9 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path):
     netcdf, table, _ = measured_files(tmp_path, values, 400.0)
     with pytest.raises(ForceFileError, match="no variable 'Force': it has force, time"):
         read_force(netcdf, "Force", None)
-    with pytest.raises(ForceFileError, match="sampled at 400 Hz, but excitation.sampling_frequency_Hz = 500"):
+    with pytest.raises(
+        ForceFileError, match="sampled at 400 Hz, but excitation.sampling_frequency_Hz = 500"
+    ):
         read_force(netcdf, "force", 500.0)
     with pytest.raises(ForceFileError, match="no such file"):
         read_force(tmp_path / "none.nc", "force", None)

@@ -1,4 +1,6 @@
-"""The aircraft's records: a file with a known pole, and the benchmark's published behaviour where the data are at hand."""
+"""The aircraft's records: a file with a known pole, and the benchmark's published behaviour where
+the data are at hand.
+"""
 
 from pathlib import Path
 
@@ -12,7 +14,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def write_level(folder, level, frequency=7.3, ratio=0.008, noise=0.0):
-    """A file like the benchmark's: 9 periods of a multisine, three channels with two modes; the first period is a transient."""
+    """A file like the benchmark's: 9 periods of a multisine, three channels with two modes; the
+    first period is a transient.
+    """
     generator = np.random.default_rng(level)
     place = np.fft.rfftfreq(8192, 1.0 / 400.0)
     excited = (place >= 2.0) & (place <= 15.0)
@@ -22,33 +26,57 @@ def write_level(folder, level, frequency=7.3, ratio=0.008, noise=0.0):
     response = np.zeros((3, place.size), complex)
     for mode, damping, shape in modes:
         pole = 2.0 * np.pi * mode
-        response += np.outer(shape, -(omega**2) / (pole**2 - omega**2 + 2j * damping * pole * omega)) * 0.01
+        response += (
+            np.outer(shape, -(omega**2) / (pole**2 - omega**2 + 2j * damping * pole * omega)) * 0.01
+        )
     signals = np.fft.irfft(response * force, 8192)
     acceleration = np.tile(signals, (1, 9)) + noise * generator.standard_normal((3, 9 * 8192))
     acceleration[:, :8192] += 50.0 * np.exp(-np.arange(8192) / 400.0)
     path = folder / f"F16Data_FullMSine_Level{level}.mat"
-    savemat(path, {"Force": np.tile(np.fft.irfft(force, 8192), 9)[None], "Acceleration": acceleration, "Fs": 400.0})
+    savemat(
+        path,
+        {
+            "Force": np.tile(np.fft.irfft(force, 8192), 9)[None],
+            "Acceleration": acceleration,
+            "Fs": 400.0,
+        },
+    )
     return path
 
 
 def test_a_known_pole_and_shape_come_back(tmp_path):
-    rows = pole_table([write_level(tmp_path, 3), write_level(tmp_path, 1, frequency=7.35, ratio=0.006)])
+    rows = pole_table(
+        [write_level(tmp_path, 3), write_level(tmp_path, 1, frequency=7.35, ratio=0.006)]
+    )
     assert [(row["level"], row["method"]) for row in rows] == [
-        (level, method) for level in (1, 3) for method in ("peak_half", "peak_quarter", "peak_25th", "lscf", "ods")]
+        (level, method)
+        for level in (1, 3)
+        for method in ("peak_half", "peak_quarter", "peak_25th", "lscf", "ods")
+    ]
     for row in rows:
         if row["method"] != "ods":
-            assert row["frequency_Hz"] == pytest.approx(7.3 if row["level"] == 3 else 7.35, rel=1.0e-3)
-            assert row["damping_ratio"] == pytest.approx(0.008 if row["level"] == 3 else 0.006, rel=0.05)
+            assert row["frequency_Hz"] == pytest.approx(
+                7.3 if row["level"] == 3 else 7.35, rel=1.0e-3
+            )
+            assert row["damping_ratio"] == pytest.approx(
+                0.008 if row["level"] == 3 else 0.006, rel=0.05
+            )
             assert row["quality"] == "ok"
         assert (row["shape_2_re"], row["shape_3_re"]) == pytest.approx((2.0, 1.9), rel=0.02)
     exact = [row for row in rows if row["method"] == "lscf"]
-    assert exact[0]["frequency_Hz"] == pytest.approx(7.35, rel=1.0e-6) and exact[0]["damping_ratio"] == pytest.approx(0.006, rel=1.0e-4)
+    assert exact[0]["frequency_Hz"] == pytest.approx(7.35, rel=1.0e-6) and exact[0][
+        "damping_ratio"
+    ] == pytest.approx(0.006, rel=1.0e-4)
 
 
 def test_the_transient_period_is_left_out_and_the_rest_averaged(tmp_path):
     response = read_response(write_level(tmp_path, 5))
-    assert response.level == 5 and response.load_rms_N == pytest.approx(np.sqrt(0.5 * 267) * 2.0 * 3000.0 / 8192.0)
-    assert response.frequency[1] == pytest.approx(400.0 / 8192.0) and np.all(response.per_force[:, response.frequency > 15.0] == 0.0)
+    assert response.level == 5 and response.load_rms_N == pytest.approx(
+        np.sqrt(0.5 * 267) * 2.0 * 3000.0 / 8192.0
+    )
+    assert response.frequency[1] == pytest.approx(400.0 / 8192.0) and np.all(
+        response.per_force[:, response.frequency > 15.0] == 0.0
+    )
     line = np.argmin(np.abs(response.frequency - 7.3))
     omega, poles = response.frequency[line], np.array([7.3, 11.0])
     modes = -(omega**2) / (poles**2 - omega**2 + 2j * np.array([0.008, 0.01]) * poles * omega)
@@ -67,15 +95,25 @@ def test_a_file_that_is_not_the_benchmark_s_is_named(tmp_path):
 def test_the_measured_mode_softens_and_its_response_falls(study_config):
     files = sorted((ROOT / study_config.f16_data).glob("F16Data_FullMSine_Level*.mat"))
     if not files:
-        pytest.skip(f"no F-16 records in {study_config.f16_data}: download them from nonlinearbenchmark.org")
+        pytest.skip(
+            f"no F-16 records in {study_config.f16_data}: download them from nonlinearbenchmark.org"
+        )
     rows = pole_table(files)
     first, last = (next(row for row in rows if row["level"] == level) for level in (1, 7))
     assert (first["peak_line_Hz"], last["peak_line_Hz"]) == pytest.approx((7.324, 7.227), abs=0.001)
     by_level = {row["level"]: row["channel_3_per_force"] for row in rows}
-    assert [by_level[level] for level in (1, 3, 5, 7)] == pytest.approx([0.258, 0.233, 0.097, 0.075], abs=0.0005)
+    assert [by_level[level] for level in (1, 3, 5, 7)] == pytest.approx(
+        [0.258, 0.233, 0.097, 0.075], abs=0.0005
+    )
     for method in ("peak_half", "peak_quarter", "lscf"):
         poles = {row["level"]: row for row in rows if row["method"] == method}
-        assert poles[1]["frequency_Hz"] == pytest.approx(7.32, abs=0.01) and 7.14 < poles[7]["frequency_Hz"] < 7.24
+        assert (
+            poles[1]["frequency_Hz"] == pytest.approx(7.32, abs=0.01)
+            and 7.14 < poles[7]["frequency_Hz"] < 7.24
+        )
         ratios = [poles[level]["damping_ratio"] for level in (1, 3, 5, 7)]
-        assert ratios == pytest.approx(np.maximum.accumulate(ratios), rel=0.05) and ratios[3] > 2.5 * ratios[0]
+        assert (
+            ratios == pytest.approx(np.maximum.accumulate(ratios), rel=0.05)
+            and ratios[3] > 2.5 * ratios[0]
+        )
         assert all(poles[level]["quality"] == "ok" for level in poles)

@@ -1,12 +1,14 @@
-"""The prepared family of linear tubes, and the support that belongs to a pole, against the plain functions of linear.py."""
+"""The prepared family of linear tubes, and the support that belongs to a pole, against the plain
+functions of linear.py.
+"""
 
 import numpy as np
 import pytest
 
-from vibroimpact import linear
-from vibroimpact.identify.family import LinearFamily, driven_modes
 from vibroimpact.identify.reference_tube import Bins, ReferenceTube, Sensors
 from vibroimpact.identify.update import frequency_of, pole_of, support_from_pole
+from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.linear.family import LinearFamily, driven_modes
 
 MEMBERS = [(0.0, 0.0), (1.0e3, -2.0), (1.0e5, 62.0), (4.0e6, 1.0e4), (1.0e9, 0.0)]
 
@@ -23,7 +25,11 @@ def test_responses_are_those_of_the_full_solution(study_model, modes, k, c):
     response = LinearFamily(modes, frequency).response(shapes)
     expected = linear.frf(study_model, k, c, frequency, shapes)
     np.testing.assert_allclose(response.frf(k, c), expected, rtol=1.0e-7)
-    np.testing.assert_allclose(response.psd(k, c, slice(10, 20), slice(1, 2)), np.abs(expected[1:, 10:20]) ** 2, rtol=1.0e-7)
+    np.testing.assert_allclose(
+        response.psd(k, c, slice(10, 20), slice(1, 2)),
+        np.abs(expected[1:, 10:20]) ** 2,
+        rtol=1.0e-7,
+    )
 
 
 def test_slope_of_the_response_to_the_support(study_model, modes):
@@ -31,7 +37,11 @@ def test_slope_of_the_response_to_the_support(study_model, modes):
     response = LinearFamily(modes, frequency).response(study_model.sensor_shapes[:, [1]])
     value, slope = response.frf_slope(1.0e5, 60.0)
     np.testing.assert_allclose(value, response.frf(1.0e5, 60.0))
-    np.testing.assert_allclose(slope, (response.frf(1.0e5 + 10.0, 60.0) - response.frf(1.0e5 - 10.0, 60.0)) / 20.0, rtol=1.0e-4)
+    np.testing.assert_allclose(
+        slope,
+        (response.frf(1.0e5 + 10.0, 60.0) - response.frf(1.0e5 - 10.0, 60.0)) / 20.0,
+        rtol=1.0e-4,
+    )
 
 
 @pytest.mark.parametrize("k", [-300.0, 1.0, 1.0e3, 1.0e5, 4.0e6, 1.0e8])
@@ -42,7 +52,9 @@ def test_support_of_a_pole_is_the_inverse_of_the_first_pole(study_model, modes, 
     found = support_from_pole(modes, *frequency_of(pole))
     assert (found.k, found.c) == pytest.approx((k, c), rel=1.0e-5, abs=1.0e-4)
     if k > 0.0:
-        assert (found.k, found.c) == pytest.approx(linear.support_from_pole(study_model, pole), rel=1.0e-4, abs=1.0e-3)
+        assert (found.k, found.c) == pytest.approx(
+            linear.support_from_pole(study_model, pole), rel=1.0e-4, abs=1.0e-3
+        )
 
 
 @pytest.mark.parametrize("k, c", [(1.0e3, 20.0), (1.0e5, 60.0), (4.0e6, 9.0e3)])
@@ -50,9 +62,17 @@ def test_jacobian_of_the_support(study_model, modes, k, c):
     frequency, ratio = frequency_of(linear.first_pole(study_model, k, c))
     found = support_from_pole(modes, frequency, ratio)
     for column, step in ((0, (1.0e-4, 0.0)), (1, (0.0, 1.0e-6))):
-        ahead, behind = (support_from_pole(modes, frequency + sign * step[0], ratio + sign * step[1]) for sign in (1.0, -1.0))
+        ahead, behind = (
+            support_from_pole(modes, frequency + sign * step[0], ratio + sign * step[1])
+            for sign in (1.0, -1.0)
+        )
         numeric = np.array([ahead.k - behind.k, ahead.c - behind.c]) / (2.0 * sum(step))
-        np.testing.assert_allclose(found.jacobian[:, column], numeric, rtol=1.0e-4, atol=1.0e-6 * np.abs(found.jacobian).max())
+        np.testing.assert_allclose(
+            found.jacobian[:, column],
+            numeric,
+            rtol=1.0e-4,
+            atol=1.0e-6 * np.abs(found.jacobian).max(),
+        )
 
 
 def test_a_pole_above_the_clamped_frequency_belongs_to_no_support(study_model, modes):
@@ -65,7 +85,14 @@ def test_a_pole_above_the_clamped_frequency_belongs_to_no_support(study_model, m
 @pytest.fixture(scope="module")
 def tube(study_model):
     sensors = Sensors(("apex.y", "bend_45.y"), 0, 1, (0, 1))
-    return ReferenceTube(study_model, Bins(0.1, 1200, 80, 600, "hann"), sensors, (5.0, 200.0), (6.0, 99.0), (1.0e3, 1.0e8))
+    return ReferenceTube(
+        study_model,
+        Bins(0.1, 1200, 80, 600, "hann"),
+        sensors,
+        (5.0, 200.0),
+        (6.0, 99.0),
+        (1.0e3, 1.0e8),
+    )
 
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 30.0), (1.0e6, 1000.0)])
@@ -74,10 +101,25 @@ def test_the_other_modes_times_the_first_one_are_the_whole_spectrum(study_model,
     index = np.arange(round(40 * frequency) - 60, round(40 * frequency) + 61)
     factor = tube.other_modes(frequency, ratio)(index)
     place = index / 40.0
-    alone = 1.0 / ((1.0 - (place / frequency) ** 2) ** 2 + 4.0 * ratio**2 * (place / frequency) ** 2)
-    whole = np.abs(linear.frf(study_model, k, c, place, study_model.sensor_shapes[:, [study_model.sensor_names.index("apex.y")]])[0]) ** 2
-    np.testing.assert_allclose(factor * alone / (factor * alone)[60], whole / whole[60], rtol=1.0e-5)
-    assert 0.5 < factor.min() and factor.max() < 2.0
+    alone = 1.0 / (
+        (1.0 - (place / frequency) ** 2) ** 2 + 4.0 * ratio**2 * (place / frequency) ** 2
+    )
+    whole = (
+        np.abs(
+            linear.frf(
+                study_model,
+                k,
+                c,
+                place,
+                study_model.sensor_shapes[:, [study_model.sensor_names.index("apex.y")]],
+            )[0]
+        )
+        ** 2
+    )
+    np.testing.assert_allclose(
+        factor * alone / (factor * alone)[60], whole / whole[60], rtol=1.0e-5
+    )
+    assert factor.min() > 0.5 and factor.max() < 2.0
 
 
 def test_damping_of_the_first_mode_to_first_order(study_model, tube):
@@ -86,12 +128,18 @@ def test_damping_of_the_first_mode_to_first_order(study_model, tube):
         pole = linear.first_pole(study_model, k, c)
         assert -pole.real / abs(pole) == pytest.approx(1.1 * tube.free_ratio(k), rel=0.01)
         assert tube.damping_for(k, 1.1 * tube.free_ratio(k)) == pytest.approx(c)
-        assert tube.first_frequency(k) == pytest.approx(linear.natural_frequencies(study_model, k, 1)[0], rel=1.0e-3)
+        assert tube.first_frequency(k) == pytest.approx(
+            linear.natural_frequencies(study_model, k, 1)[0], rel=1.0e-3
+        )
         ahead = linear.natural_frequencies(study_model, 1.01 * k, 1)[0]
-        assert tube.frequency_slope(k) == pytest.approx(np.log(ahead / linear.natural_frequencies(study_model, k, 1)[0]) / np.log(1.01), rel=0.02)
+        assert tube.frequency_slope(k) == pytest.approx(
+            np.log(ahead / linear.natural_frequencies(study_model, k, 1)[0]) / np.log(1.01),
+            rel=0.02,
+        )
 
 
 def test_errors_of_the_model_near_the_free_tube(tube):
-    # 0.3 % of the first frequency is what 570 N/m move; 2 % of gain is a shape's change at some 3500 N/m.
+    # 0.3 % of the first frequency is what 570 N/m move; 2 % of gain is a shape's change at some
+    # 3500 N/m.
     assert 450.0 < tube.pole_error_free < 700.0
     assert 2.0e3 < tube.shape_error_free < 5.0e3

@@ -1,4 +1,6 @@
-"""The figures: the data beside each picture are the data in it, axes say what they are and in what unit, and known numbers come out."""
+"""The figures: the data beside each picture are the data in it, axes say what they are and in what
+unit, and known numbers come out.
+"""
 
 import ast
 import csv
@@ -9,28 +11,51 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from vibroimpact.campaign import read_campaign, write_campaign
-from vibroimpact.cases import all_cases, nearest_loads
-from vibroimpact.config import load_config
-from vibroimpact.figures import basis, broadband, checks, contact, equivalent, overlay, poles, psd_table, response, scatter, shapes, tube
-from vibroimpact.figures.cases_of_gap import paths_of_gap, shown_gap, spread_loads, transition_load
-from vibroimpact.figures.linear_limits import HELD, driven_frequencies
+from vibroimpact.campaign.file import read_campaign, write_campaign
+from vibroimpact.config.reading import load_config
+from vibroimpact.config.stage_keys import stage_params
+from vibroimpact.config.stage_settings import Settings
 from vibroimpact.figures.sheet import Sheet, edges, rounded
+from vibroimpact.figures.study import (
+    basis,
+    broadband,
+    checks,
+    contact,
+    equivalent,
+    overlay,
+    poles,
+    psd_table,
+    response,
+    shapes,
+    tube,
+)
+from vibroimpact.figures.study import (
+    seed_scatter as scatter,
+)
+from vibroimpact.figures.study.cases_of_gap import (
+    paths_of_gap,
+    shown_gap,
+    spread_loads,
+    transition_load,
+)
+from vibroimpact.figures.study.linear_limits import HELD, driven_frequencies
 from vibroimpact.figures.style import COLUMNS, label_of, ordered_colours, shown
 from vibroimpact.identify.case import identify_case
 from vibroimpact.identify.estimate import table_rows
-from vibroimpact.reduction import build_model, quality_report
-from vibroimpact.settings import Settings
-from vibroimpact.simulate import simulate_cases
-from vibroimpact.spectra_of_case import case_spectra
-from vibroimpact.stages import stage_params
-from vibroimpact.structure import build_structure
-from vibroimpact.synthetic_campaign import synthetic_campaign
+from vibroimpact.reduction.reduced_model import build_model, quality_report
+from vibroimpact.structure.tube import build_structure
+from vibroimpact.study.case_spectra import case_spectra
+from vibroimpact.study.cases import all_cases, nearest_loads
+from vibroimpact.study.simulation import simulate_cases
+from vibroimpact.study.synthetic_campaign import synthetic_campaign
 
 ROOT = Path(__file__).parents[2]
 UNIT = re.compile(r"\(.+\)$")
-SMALL = {"basis": {"free_modes_to_Hz": 1000.0, "constrained_modes_to_Hz": 500.0}, "integration": {"steps_per_second": 20480, "start_up_s": 1.0},
-         "grid": {"load_rms_N": [0.1, 4.0, 15.0], "gap_m": [2.8886e-4, 5.1106e-5], "seeds": 1}}
+SMALL = {
+    "basis": {"free_modes_to_Hz": 1000.0, "constrained_modes_to_Hz": 500.0},
+    "integration": {"steps_per_second": 20480, "start_up_s": 1.0},
+    "grid": {"load_rms_N": [0.1, 4.0, 15.0], "gap_m": [2.8886e-4, 5.1106e-5], "seeds": 1},
+}
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +67,9 @@ def config():
 
 @pytest.fixture(scope="module")
 def study(config):
-    """Model, and {Case: Dataset} of records, spectra and curves, and the rows of the table, of a study of six short cases."""
+    """Model, and {Case: Dataset} of records, spectra and curves, and the rows of the table, of a
+    study of six short cases.
+    """
     model, found = build_model(config), {"records": {}, "spectra": {}, "curves": {}}
     rows = []
     for case, record in simulate_cases(config, model, all_cases(config.grid)):
@@ -56,30 +83,70 @@ def study(config):
 
 @pytest.fixture(scope="module")
 def sheets(config, study, tmp_path_factory):
-    """Every Sheet, drawn with the configuration that its stage is given, and saved; {name: Sheet} and the folder."""
+    """Every Sheet, drawn with the configuration that its stage is given, and saved; {name: Sheet}
+    and the folder.
+    """
     folder = tmp_path_factory.mktemp("figures")
     model, found, rows = study
-    of_gap = {name: {case: dataset for case, dataset in datasets.items() if case.gap_m == shown_gap(config)} for name, datasets in found.items()}
+    of_gap = {
+        name: {
+            case: dataset for case, dataset in datasets.items() if case.gap_m == shown_gap(config)
+        }
+        for name, datasets in found.items()
+    }
     gap_rows = [row for row in rows if row["gap_m"] == shown_gap(config)]
-    parts = {stage: Settings(stage_params(config, stage)) for stage in
-             ("figures_model", "figures_response", "figures_identification", "figures_checks", "synthetic_campaign")}
-    write_campaign(synthetic_campaign(parts["synthetic_campaign"], model, nearest_loads(config.grid, config.overlay.load_rms_N)), folder / "campaign.nc")
+    parts = {
+        stage: Settings(stage_params(config, stage))
+        for stage in (
+            "figures_model",
+            "figures_response",
+            "figures_identification",
+            "figures_checks",
+            "synthetic_campaign",
+        )
+    }
+    write_campaign(
+        synthetic_campaign(
+            parts["synthetic_campaign"],
+            model,
+            nearest_loads(config.grid, config.overlay.load_rms_N),
+        ),
+        folder / "campaign.nc",
+    )
     part, structure = parts["figures_model"], build_structure(parts["figures_model"])
     drawn = tube.figure_01_layout(part, structure) + tube.figure_02_free_modes(part, structure)
-    drawn += contact.figure_03_contact_law(part, structure) + contact.figure_04_first_frequency(part) + basis.basis_quality(part, quality_report(config))
+    drawn += (
+        contact.figure_03_contact_law(part, structure)
+        + contact.figure_04_first_frequency(part)
+        + basis.basis_quality(part, quality_report(config))
+    )
     part = parts["figures_response"]
     responses = psd_table.gather(part, model, found["spectra"].values())
-    drawn += overlay.figure_05_overlay(part, model, responses, read_campaign(folder / "campaign.nc"))
-    drawn += response.figure_06_levels(part, model, responses) + response.figure_07_overlay_of_loads(part, model, responses)
-    drawn += response.figure_08_load_and_stiffness(part, model, responses) + response.in_plane_share(part, responses)
+    drawn += overlay.figure_05_overlay(
+        part, model, responses, read_campaign(folder / "campaign.nc")
+    )
+    drawn += response.figure_06_levels(
+        part, model, responses
+    ) + response.figure_07_overlay_of_loads(part, model, responses)
+    drawn += response.figure_08_load_and_stiffness(
+        part, model, responses
+    ) + response.in_plane_share(part, responses)
     part = parts["figures_identification"]
     drawn += poles.figure_09_poles(part, model, of_gap["curves"], of_gap["spectra"], gap_rows)
     drawn += poles.figure_09_stabilisation(part, of_gap["curves"], of_gap["spectra"], gap_rows)
-    drawn += shapes.figure_10_shapes(part, model, of_gap["curves"], gap_rows) + shapes.figure_11_singular_values(part, of_gap["curves"])
-    drawn += broadband.figure_12_broadband(part, model, of_gap["curves"], of_gap["spectra"], gap_rows)
+    drawn += shapes.figure_10_shapes(
+        part, model, of_gap["curves"], gap_rows
+    ) + shapes.figure_11_singular_values(part, of_gap["curves"])
+    drawn += broadband.figure_12_broadband(
+        part, model, of_gap["curves"], of_gap["spectra"], gap_rows
+    )
     part = parts["figures_checks"]
-    drawn += equivalent.figure_13_equivalent_support(part, model, rows) + equivalent.collapse(part, model, rows)
-    drawn += checks.energy_balance(part, found["records"]) + checks.contact_statistics(part, found["records"])
+    drawn += equivalent.figure_13_equivalent_support(part, model, rows) + equivalent.collapse(
+        part, model, rows
+    )
+    drawn += checks.energy_balance(part, found["records"]) + checks.contact_statistics(
+        part, found["records"]
+    )
     for sheet in drawn:
         sheet.save(folder)
     return {sheet.name: sheet for sheet in drawn}, folder
@@ -105,13 +172,17 @@ def column(rows, name):
 
 def test_there_is_a_figure_for_every_declared_name_and_for_each_of_the_papers(sheets):
     assert sorted(sheets[0]) == sorted(declared())
-    assert {int(name[7:9]) for name in declared() if name.startswith("figure_")} == set(range(1, 14))
+    assert {int(name[7:9]) for name in declared() if name.startswith("figure_")} == set(
+        range(1, 14)
+    )
 
 
 @pytest.mark.parametrize("name", declared())
 def test_a_figure_is_a_picture_a_page_a_table_and_a_caption(sheets, name):
     _, folder = sheets
-    assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG") and (folder / f"{name}.png").stat().st_size > 20_000
+    assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG") and (
+        folder / f"{name}.png"
+    ).stat().st_size > 20_000
     assert (folder / f"{name}.pdf").read_bytes().startswith(b"%PDF")
     assert len(table(folder, name)) > 2
     assert (folder / f"{name}.txt").read_text(encoding="utf-8").strip().endswith(".")
@@ -128,14 +199,18 @@ def test_axes_name_their_quantities_and_units(sheets, name):
         if not inner:  # a colour bar, or a second scale: its y axis
             labels = labels[1:]
         for text in labels:  # an inner panel may leave an axis to its neighbour
-            assert UNIT.search(text) or (inner and not text), f"{name}, {axes.get_label()}: '{text}'"
+            assert UNIT.search(text) or (inner and not text), (
+                f"{name}, {axes.get_label()}: '{text}'"
+            )
     for side in ("get_xlabel", "get_ylabel"):
         assert any(UNIT.search(getattr(axes, side)()) for axes in sheet.axes.values())
 
 
 @pytest.mark.parametrize("name", declared())
 def test_the_table_holds_what_is_plotted(sheets, name):
-    """Every line and map in the picture has its rows in the CSV, with the same values in the unit of the axes after the declared factor."""
+    """Every line and map in the picture has its rows in the CSV, with the same values in the unit
+    of the axes after the declared factor.
+    """
     sheet, folder = sheets[0][name], sheets[1]
     rows = table(folder, name)
     compared = 0
@@ -144,17 +219,23 @@ def test_the_table_holds_what_is_plotted(sheets, name):
             place = re.fullmatch(r"rows (\d+):(\d+)", artist.get_gid() or "")
             if place is None:
                 continue
-            mine = rows[int(place[1]):int(place[2])]
+            mine = rows[int(place[1]) : int(place[2])]
             assert {row["panel"] for row in mine} <= {axes.get_label()}
-            drawn = artist.get_data() if hasattr(artist, "get_data") else [np.ravel(artist.get_array())]
+            drawn = (
+                artist.get_data() if hasattr(artist, "get_data") else [np.ravel(artist.get_array())]
+            )
             for values in drawn:
-                assert holds(mine, np.asarray(values, dtype=float)), f"{name}, panel {axes.get_label()}: {artist} is not in the table"
+                assert holds(mine, np.asarray(values, dtype=float)), (
+                    f"{name}, panel {axes.get_label()}: {artist} is not in the table"
+                )
             compared += len(mine)
     assert compared > 2
 
 
 def holds(rows, values):
-    """Whether some declared column of the rows, in the unit of its axis, holds these values (row,)."""
+    """Whether some declared column of the rows, in the unit of its axis, holds these values
+    (row,).
+    """
     if not rows:
         return values.size == 0
     columns = [shown(name, column(rows, name)) for name in rows[0] if name in COLUMNS]
@@ -162,14 +243,25 @@ def holds(rows, values):
 
 
 def test_the_table_rounds_to_its_digits_and_keeps_what_is_not_a_number():
-    assert rounded([1.23456789, -9.87654321e-13, 0.0, 4.0e6]) == [1.234568, -9.876543e-13, 0.0, 4.0e6]
-    assert np.isnan(rounded([np.nan, 1.0])[0]) and rounded(np.array([3, 4])) == [3, 4] and rounded(["a"]) == ["a"]
+    assert rounded([1.23456789, -9.87654321e-13, 0.0, 4.0e6]) == [
+        1.234568,
+        -9.876543e-13,
+        0.0,
+        4.0e6,
+    ]
+    assert (
+        np.isnan(rounded([np.nan, 1.0])[0])
+        and rounded(np.array([3, 4])) == [3, 4]
+        and rounded(["a"]) == ["a"]
+    )
 
 
 def test_columns_of_different_lengths_are_refused():
     sheet = Sheet("wrong", "wrong", "wrong.")
     with pytest.raises(ValueError, match="wrong, curve: columns of different lengths"):
-        sheet.record(sheet.axes["main"], "curve", load_rms_N=[1.0, 2.0], frequency_Hz=[1.0, 2.0, 3.0])
+        sheet.record(
+            sheet.axes["main"], "curve", load_rms_N=[1.0, 2.0], frequency_Hz=[1.0, 2.0, 3.0]
+        )
     with pytest.raises(KeyError):
         sheet.line(sheet.axes["main"], ("no_such_column", [1.0]), ("frequency_Hz", [1.0]), "curve")
 
@@ -184,9 +276,14 @@ def test_cells_of_a_map_touch_half_way():
 
 def test_first_frequency_by_number_of_contact_points(study_config):
     # Stand-in tube, two independent codes agreeing, 40 elements in the bend.
-    table = {4.0e6: {1: 27.751, 2: 28.215, 3: 28.069, 5: 27.993, 9: 27.954}, 1.0e9: {1: 28.186, 2: 33.621, 3: 33.516, 5: 33.331, 9: 33.173}}
+    table = {
+        4.0e6: {1: 27.751, 2: 28.215, 3: 28.069, 5: 27.993, 9: 27.954},
+        1.0e9: {1: 28.186, 2: 33.621, 3: 33.516, 5: 33.331, 9: 33.173},
+    }
     for points in contact.POINTS:
-        model = contact.model_with_points(Settings(stage_params(study_config, "figures_model")), points)
+        model = contact.model_with_points(
+            Settings(stage_params(study_config, "figures_model")), points
+        )
         found = driven_frequencies(model, [*table], 1)[:, 0]
         np.testing.assert_allclose(found, [values[points] for values in table.values()], rtol=1e-3)
     assert driven_frequencies(model, HELD)[0, 0] == pytest.approx(34.08, abs=0.05)
@@ -196,24 +293,42 @@ def test_free_modes_are_those_of_the_testbed(study_config):
     # Two independent codes agreeing: k = 1 N/m, Timoshenko, 80 elements in the bend.
     frequency, shapes_found = tube.free_modes(build_structure(study_config), 7500.0)
     np.testing.assert_allclose(frequency, [15.97, 28.96, 45.03, 104.45, 104.68, 171.12], rtol=1e-3)
-    across = np.sum(shapes_found[:, :, 1] ** 2, axis=1) > np.sum(shapes_found[:, :, 0] ** 2 + shapes_found[:, :, 2] ** 2, axis=1)
+    across = np.sum(shapes_found[:, :, 1] ** 2, axis=1) > np.sum(
+        shapes_found[:, :, 0] ** 2 + shapes_found[:, :, 2] ** 2, axis=1
+    )
     assert across.tolist() == [True, False, True, False, True, True]
 
 
 def test_the_secant_stiffness_is_force_over_displacement(sheets):
-    rows = [row for row in table(sheets[1], "figure_03_contact_law") if row["curve"] == "contact force"]
+    rows = [
+        row for row in table(sheets[1], "figure_03_contact_law") if row["curve"] == "contact force"
+    ]
     displacement, force = column(rows, "radial_displacement_m"), column(rows, "contact_force_N")
     gap = 2.8886e-4
-    np.testing.assert_allclose(force, np.sign(displacement) * 4.0e6 * np.maximum(np.abs(displacement) - gap, 0.0), rtol=1e-5, atol=1e-3)
+    np.testing.assert_allclose(
+        force,
+        np.sign(displacement) * 4.0e6 * np.maximum(np.abs(displacement) - gap, 0.0),
+        rtol=1e-5,
+        atol=1e-3,
+    )
     moved = displacement != 0.0
-    np.testing.assert_allclose(column(rows, "secant_stiffness_N_per_m")[moved], force[moved] / displacement[moved], rtol=1e-5, atol=1.0)
+    np.testing.assert_allclose(
+        column(rows, "secant_stiffness_N_per_m")[moved],
+        force[moved] / displacement[moved],
+        rtol=1e-5,
+        atol=1.0,
+    )
 
 
 def test_below_contact_the_response_is_the_linear_one(sheets):
-    """Figure 7: at 0.1 N nothing touches, and the PSD over load² scatters about the dashed line of the free tube."""
+    """Figure 7: at 0.1 N nothing touches, and the PSD over load² scatters about the dashed line of
+    the free tube.
+    """
     rows = table(sheets[1], "figure_07_overlay_of_loads")
     psd = "psd_per_load2_m2_per_N2_per_Hz"
-    measured = [row for row in rows if row["curve"] == "non-linear" and float(row["load_rms_N"]) == 0.1]
+    measured = [
+        row for row in rows if row["curve"] == "non-linear" and float(row["load_rms_N"]) == 0.1
+    ]
     linear = [row for row in rows if row["curve"] == "linear" and float(row["k_N_per_m"]) == 1.0]
     frequency = column(measured, "frequency_Hz")
     np.testing.assert_array_equal(frequency, column(linear, "frequency_Hz"))
@@ -226,28 +341,55 @@ def test_the_in_plane_share_is_a_ratio_of_mean_squares():
     frequency = np.arange(11.0)
     psd = np.zeros((4, 11))
     psd[:, 3] = [0.02, 2.0, 5.0, 5.0]
-    dataset = xr.Dataset({"psd_displacement_mean": (("sensor", "frequency"), psd)},
-                         {"sensor": ["apex.x", "apex.y", "leg.x", "leg.y"], "frequency": frequency}, {"gap_m": 1e-4, "load_rms_N": 2.0, "seed": 3})
+    dataset = xr.Dataset(
+        {"psd_displacement_mean": (("sensor", "frequency"), psd)},
+        {"sensor": ["apex.x", "apex.y", "leg.x", "leg.y"], "frequency": frequency},
+        {"gap_m": 1e-4, "load_rms_N": 2.0, "seed": 3},
+    )
     share = psd_table._in_plane_share(dataset, "y")
     assert [(row["point"], row["seed"]) for row in share] == [("apex", 3), ("leg", 3)]
-    np.testing.assert_allclose([row["in_plane_share_dB"] for row in share], [-20.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(
+        [row["in_plane_share_dB"] for row in share], [-20.0, 0.0], atol=1e-12
+    )
 
 
 def test_bars_run_from_the_smallest_to_the_largest_seed_without_the_unresolved():
     sheet = Sheet("bars", "bars", "bars.")
-    rows = [{"load_rms_N": 1.0, "k_N_per_m": k} for k in (3.0, 1.0, 2.0, np.nan)] + [{"load_rms_N": 2.0, "k_N_per_m": np.nan}]
+    rows = [{"load_rms_N": 1.0, "k_N_per_m": k} for k in (3.0, 1.0, 2.0, np.nan)] + [
+        {"load_rms_N": 2.0, "k_N_per_m": np.nan}
+    ]
     scatter.over_seeds(sheet, sheet.axes["main"], rows, "load_rms_N", "k_N_per_m", "lscf")
-    row, = sheet.rows()
-    assert (row["load_rms_N"], row["k_N_per_m"], row["k_N_per_m_low"], row["k_N_per_m_high"], row["values"]) == (1.0, 2.0, 1.0, 3.0, 3)
-    assert scatter.over_seeds(sheet, sheet.axes["main"], rows[-1:], "load_rms_N", "k_N_per_m", "ods") is None
+    (row,) = sheet.rows()
+    assert (
+        row["load_rms_N"],
+        row["k_N_per_m"],
+        row["k_N_per_m_low"],
+        row["k_N_per_m_high"],
+        row["values"],
+    ) == (1.0, 2.0, 1.0, 3.0, 3)
+    assert (
+        scatter.over_seeds(sheet, sheet.axes["main"], rows[-1:], "load_rms_N", "k_N_per_m", "ods")
+        is None
+    )
 
 
 def test_loads_are_chosen_by_the_way_of_the_peak():
-    rows = [{"method": "lscf", "load_rms_N": load, "frequency_Hz": frequency, "damping_ratio": ratio}
-            for load, frequency, ratio in ((0.1, 16.0, 0.015), (0.2, 16.0, 0.015), (1.0, 16.1, 0.02), (2.0, 19.0, 0.06), (5.0, 23.0, 0.03))]
+    rows = [
+        {"method": "lscf", "load_rms_N": load, "frequency_Hz": frequency, "damping_ratio": ratio}
+        for load, frequency, ratio in (
+            (0.1, 16.0, 0.015),
+            (0.2, 16.0, 0.015),
+            (1.0, 16.1, 0.02),
+            (2.0, 19.0, 0.06),
+            (5.0, 23.0, 0.03),
+        )
+    ]
     assert spread_loads(rows, 3) == [0.1, 2.0, 5.0]
     assert transition_load(rows) == 2.0
-    assert transition_load([{**row, "frequency_Hz": np.nan, "damping_ratio": np.nan} for row in rows]) == 5.0
+    assert (
+        transition_load([{**row, "frequency_Hz": np.nan, "damping_ratio": np.nan} for row in rows])
+        == 5.0
+    )
 
 
 def test_files_of_a_gap_are_found_by_their_names():
@@ -257,25 +399,51 @@ def test_files_of_a_gap_are_found_by_their_names():
 
 def test_colours_of_loads_differ_and_grow_lighter():
     colours = [*ordered_colours([0.1, 1.0, 10.0]).values()]
-    lightness = [sum(int(colour[place:place + 2], 16) for place in (1, 3, 5)) for colour in colours]
+    lightness = [
+        sum(int(colour[place : place + 2], 16) for place in (1, 3, 5)) for colour in colours
+    ]
     assert len(set(colours)) == 3 and lightness == sorted(lightness)
 
 
 def test_a_campaigns_records_are_those_of_the_nearest_gap_in_order_of_load():
-    campaign = xr.Dataset({"load_rms": ("record", [10.0, 0.5, 3.0, 10.0, 1.0]), "gap": ("record", [3e-4, 3e-4, 3e-4, 2e-4, np.nan])})
+    campaign = xr.Dataset(
+        {
+            "load_rms": ("record", [10.0, 0.5, 3.0, 10.0, 1.0]),
+            "gap": ("record", [3e-4, 3e-4, 3e-4, 2e-4, np.nan]),
+        }
+    )
     assert overlay._shown_records(campaign.isel(record=slice(0, 4)), 2.9e-4) == [1, 2, 0]
     assert overlay._shown_records(campaign.isel(record=slice(0, 4)), 1.0e-4) == [3]
 
 
 def test_a_study_that_resolves_nothing_still_has_its_figures(config, study, tmp_path):
     model, found, rows = study
-    unresolved = [{**row, **dict.fromkeys(("k_N_per_m", "c_N_s_per_m", "frequency_Hz", "damping_ratio"), np.nan), "quality": "unresolved"} for row in rows]
-    bare = {case: dataset.drop_vars([name for name in dataset.data_vars if not name.startswith(("peak", "map"))]) for case, dataset in found["curves"].items()}
-    empty = {case: dataset.assign(peak_curve=dataset["peak_curve"] * np.nan) for case, dataset in bare.items()}
-    drawn = equivalent.figure_13_equivalent_support(config, model, unresolved) + equivalent.collapse(config, model, unresolved)
+    unresolved = [
+        {
+            **row,
+            **dict.fromkeys(("k_N_per_m", "c_N_s_per_m", "frequency_Hz", "damping_ratio"), np.nan),
+            "quality": "unresolved",
+        }
+        for row in rows
+    ]
+    bare = {
+        case: dataset.drop_vars(
+            [name for name in dataset.data_vars if not name.startswith(("peak", "map"))]
+        )
+        for case, dataset in found["curves"].items()
+    }
+    empty = {
+        case: dataset.assign(peak_curve=dataset["peak_curve"] * np.nan)
+        for case, dataset in bare.items()
+    }
+    drawn = equivalent.figure_13_equivalent_support(
+        config, model, unresolved
+    ) + equivalent.collapse(config, model, unresolved)
     drawn += poles.figure_09_poles(config, model, empty, found["spectra"], unresolved)
     drawn += poles.figure_09_stabilisation(config, empty, found["spectra"], unresolved)
-    drawn += shapes.figure_10_shapes(config, model, empty, unresolved) + shapes.figure_11_singular_values(config, empty)
+    drawn += shapes.figure_10_shapes(
+        config, model, empty, unresolved
+    ) + shapes.figure_11_singular_values(config, empty)
     drawn += broadband.figure_12_broadband(config, model, empty, found["spectra"], unresolved)
     for sheet in drawn:
         sheet.save(tmp_path)

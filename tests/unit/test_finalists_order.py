@@ -16,21 +16,38 @@ def ordered(monkeypatch):
     """Return the function ({name: (gain, explained)}) -> [name], best first."""
 
     def run(rows):
-        monkeypatch.setattr(jobs.naming, "totals", lambda *_: {name: (gain, gain, 0.0) for name, (gain, _) in rows.items()})
+        monkeypatch.setattr(
+            jobs.naming,
+            "totals",
+            lambda *_: {name: (gain, gain, 0.0) for name, (gain, _) in rows.items()},
+        )
         monkeypatch.setattr(jobs.naming, "explained", lambda bench, null, mean, *_: rows[mean][1])
-        found = [SimpleNamespace(candidate=candidate_named(name), mean=name, own=lambda null: null) for name in rows]
+        found = [
+            SimpleNamespace(candidate=candidate_named(name), mean=name, own=lambda null: null)
+            for name in rows
+        ]
         bench = SimpleNamespace(measured_features={"records": None})
-        return [row.candidate.name for row in jobs.ordered(bench, SimpleNamespace(records="records"), found)[0]]
+        return [
+            row.candidate.name
+            for row in jobs.ordered(bench, SimpleNamespace(records="records"), found)[0]
+        ]
 
     return run
 
 
 def test_the_larger_gain_comes_first(ordered):
-    assert ordered({"gap@all": (300.0, LEFT), "hertz@all": (500.0, LEFT)}) == ["hertz@all", "gap@all"]
+    assert ordered({"gap@all": (300.0, LEFT), "hertz@all": (500.0, LEFT)}) == [
+        "hertz@all",
+        "gap@all",
+    ]
 
 
 def test_of_two_that_are_not_told_apart_the_one_that_suffices_comes_first(ordered):
-    rows = {"hertz@all": (663.0, LEFT), "contact_stiffness@all": (641.0, ENOUGH), "plate_flexibility@all": (170.0, ENOUGH)}
+    rows = {
+        "hertz@all": (663.0, LEFT),
+        "contact_stiffness@all": (641.0, ENOUGH),
+        "plate_flexibility@all": (170.0, ENOUGH),
+    }
     assert ordered(rows)[:2] == ["contact_stiffness@all", "hertz@all"]
     assert ordered(rows | {"hertz@all": (663.0, ENOUGH)})[0] == "hertz@all"
     assert ordered(rows | {"contact_stiffness@all": (400.0, ENOUGH)})[0] == "hertz@all"
@@ -41,20 +58,60 @@ def test_nothing_comes_first_of_nothing(ordered):
 
 
 def test_an_alias_of_the_best_is_looked_at_longer_than_another_effect():
-    ranked = {"ranked": [{"name": name, "score": score} for name, score in (("support_offset@all", 500.0), ("support_offset@left", 480.0), ("gap@all", 300.0), ("preload@all", 200.0))]}
+    ranked = {
+        "ranked": [
+            {"name": name, "score": score}
+            for name, score in (
+                ("support_offset@all", 500.0),
+                ("support_offset@left", 480.0),
+                ("gap@all", 300.0),
+                ("preload@all", 200.0),
+            )
+        ]
+    }
     assert jobs.least_gain("gap@all", ranked) == pytest.approx(500.0 * jobs.LOSING)
     assert jobs.least_gain("preload@all", ranked) == pytest.approx(500.0 * jobs.ALIAS_LOSING)
-    assert jobs.least_gain("support_offset@left", ranked) == pytest.approx(300.0 * jobs.LOSING)  # of another effect: gap, which it is no alias of
+    assert jobs.least_gain("support_offset@left", ranked) == pytest.approx(
+        300.0 * jobs.LOSING
+    )  # of another effect: gap, which it is no alias of
     assert jobs.least_gain("gap@all", {"ranked": ranked["ranked"][2:3]}) == -np.inf
-    behind = {"ranked": [{"name": "hertz@all", "score": -77.0}, {"name": "contact_damping@all", "score": -64.0}]}
-    assert jobs.least_gain("contact_damping@all", behind) == naming.LEAST_GAIN  # what others lose is no measure
+    behind = {
+        "ranked": [
+            {"name": "hertz@all", "score": -77.0},
+            {"name": "contact_damping@all", "score": -64.0},
+        ]
+    }
+    assert (
+        jobs.least_gain("contact_damping@all", behind) == naming.LEAST_GAIN
+    )  # what others lose is no measure
     assert jobs.least_gain("gap@left", {"pairs": {}, "least": 70.0, "threshold": 15.0}) == 70.0
-    assert jobs.least_gain("gap@all+hertz@all", {"pairs": {}, "least": 70.0, "threshold": 15.0}) == 85.0  # what a name asks
-    assert jobs.least_gain("gap@all+hertz@all", {"pairs": {}, "least": 700.0, "threshold": 15.0}) == pytest.approx(700.0 * (1.0 + priors.SECOND_SHARE))
+    assert (
+        jobs.least_gain("gap@all+hertz@all", {"pairs": {}, "least": 70.0, "threshold": 15.0})
+        == 85.0
+    )  # what a name asks
+    assert jobs.least_gain(
+        "gap@all+hertz@all", {"pairs": {}, "least": 700.0, "threshold": 15.0}
+    ) == pytest.approx(700.0 * (1.0 + priors.SECOND_SHARE))
 
 
 def test_the_best_as_screened_and_what_looks_like_it_are_tried_at_every_place():
-    ranked = {"ranked": [{"name": "clearance@shaker", "score": 900.0}, {"name": "coulomb_friction@shaker", "score": 800.0}, {"name": "cubic_stiffness@apex", "score": 700.0}]}
-    names = ("clearance@shaker", "clearance@apex", "coulomb_friction@shaker", "cubic_stiffness@apex")
-    assert [jobs.leading(candidate_named(name), ranked) for name in names] == [True, False, False, True]
+    ranked = {
+        "ranked": [
+            {"name": "clearance@shaker", "score": 900.0},
+            {"name": "coulomb_friction@shaker", "score": 800.0},
+            {"name": "cubic_stiffness@apex", "score": 700.0},
+        ]
+    }
+    names = (
+        "clearance@shaker",
+        "clearance@apex",
+        "coulomb_friction@shaker",
+        "cubic_stiffness@apex",
+    )
+    assert [jobs.leading(candidate_named(name), ranked) for name in names] == [
+        True,
+        False,
+        False,
+        True,
+    ]
     assert not jobs.leading(candidate_named("clearance@shaker"), {"pairs": {}})

@@ -1,11 +1,13 @@
-"""Results kept by content: the same object for the same content, another for another, and no more than a few."""
+"""Results kept by content: the same object for the same content, another for another, and no more
+than a few.
+"""
 
 import numpy as np
 
-from vibroimpact.config import check_config
-from vibroimpact.kept import MOST, Kept, content_key
-from vibroimpact.reduction import build_model
-from vibroimpact.structure import build_structure
+from vibroimpact.config.reading import check_config
+from vibroimpact.memo import MOST, Kept, content_key
+from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.structure.tube import build_structure
 
 
 def test_a_result_is_made_once_and_the_oldest_forgotten():
@@ -17,15 +19,42 @@ def test_a_result_is_made_once_and_the_oldest_forgotten():
 
 def test_keys_tell_contents_and_shapes_apart():
     rows = np.arange(6.0)
-    keys = {content_key("a", rows), content_key("b", rows), content_key("a", rows + 1.0e-9), content_key("a", rows.reshape(2, 3))}
+    keys = {
+        content_key("a", rows),
+        content_key("b", rows),
+        content_key("a", rows + 1.0e-9),
+        content_key("a", rows.reshape(2, 3)),
+    }
     assert len(keys) == 4 and content_key("a", rows.copy()) in keys
 
 
 def test_a_support_s_law_shares_the_structure_and_a_stiffer_root_does_not(study_config):
     values = study_config.model_dump(mode="json")
     bare = build_structure(study_config)
-    other = check_config(values | {"supports": [support | {"friction": 0.2} for support in values["supports"]]}, "rubbing")
-    soft = check_config(values | {"structure": values["structure"] | {"root": {"kind": "springs", "translation_N_per_m": 1e6, "rotation_N_m_per_rad": 1e3}}}, "soft")
+    other = check_config(
+        values | {"supports": [support | {"friction": 0.2} for support in values["supports"]]},
+        "rubbing",
+    )
+    soft = check_config(
+        values
+        | {
+            "structure": (
+                values["structure"]
+                | {
+                    "root": {
+                        "kind": "springs",
+                        "translation_N_per_m": 1e6,
+                        "rotation_N_m_per_rad": 1e3,
+                    }
+                }
+            )
+        },
+        "soft",
+    )
     assert build_structure(other).stiffness is bare.stiffness
     assert build_structure(soft).stiffness is not bare.stiffness
-    assert build_model(soft).omega[0] < 0.99 * build_model(other).omega[0] == 0.99 * build_model(study_config).omega[0]
+    assert (
+        build_model(soft).omega[0]
+        < 0.99 * build_model(other).omega[0]
+        == 0.99 * build_model(study_config).omega[0]
+    )

@@ -1,4 +1,6 @@
-"""Intervals that hold an estimate by any law of its effect: runs by each other law, read by the effect's own."""
+"""Intervals that hold an estimate by any law of its effect: runs by each other law, read by the
+effect's own.
+"""
 
 from types import SimpleNamespace
 
@@ -9,22 +11,38 @@ from vibroimpact.discrepancy import law_directions
 from vibroimpact.discrepancy.finalists import Finalist
 from vibroimpact.discrepancy.screening import Path
 
-NULL = SimpleNamespace(records=[0], blend=np.ones(1), freed=lambda free: SimpleNamespace(scattered=lambda rows: None))
+NULL = SimpleNamespace(
+    records=[0], blend=np.ones(1), freed=lambda free: SimpleNamespace(scattered=lambda rows: None)
+)
 BENCH = SimpleNamespace(corrected_by=lambda nuisance: None)
 PATH = Path(np.array([[0.4], [0.5], [0.6]]), np.zeros((3, 1, 1)), np.full(3, 2), [None] * 3)
 
 
 @pytest.fixture
 def by_any_law(monkeypatch):
-    """Return the function (estimates of the runs by each law, the own first) -> interval of a Finalist at 0.5 that was told within 0.49 to 0.51."""
+    """Return the function (estimates of the runs by each law, the own first) -> interval of a
+    Finalist at 0.5 that was told within 0.49 to 0.51.
+    """
 
     def run(*estimates):
         means = np.array(estimates)[:, None, None] if estimates else None
         monkeypatch.setattr(law_directions, "law_means", lambda *_: means)
-        monkeypatch.setattr(law_directions, "calibrate", lambda bench, null, mean, *_: SimpleNamespace(unit=mean[0]))
+        monkeypatch.setattr(
+            law_directions, "calibrate", lambda bench, null, mean, *_: SimpleNamespace(unit=mean[0])
+        )
         monkeypatch.setattr(law_directions, "fit_mask", lambda *_: None)
         candidate = SimpleNamespace(periodic=(), physical=lambda unit, scales: {})
-        found = Finalist(candidate, np.array([0.5]), np.array([[0.49, 0.51]]), None, 0.0, np.zeros((1, 2, 1)), PATH, [], np.zeros((0, 1, 1)))
+        found = Finalist(
+            candidate,
+            np.array([0.5]),
+            np.array([[0.49, 0.51]]),
+            None,
+            0.0,
+            np.zeros((1, 2, 1)),
+            PATH,
+            [],
+            np.zeros((0, 1, 1)),
+        )
         return law_directions.within_any_law(BENCH, NULL, found, None).interval[0]
 
     return run

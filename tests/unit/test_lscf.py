@@ -1,4 +1,6 @@
-"""Known poles come back from the least-squares complex frequency estimator, and the chart tells stable from unstable ones."""
+"""Known poles come back from the least-squares complex frequency estimator, and the chart tells
+stable from unstable ones.
+"""
 
 import numpy as np
 import pytest
@@ -6,9 +8,15 @@ import pytest
 from vibroimpact.identify.half_spectra import half_spectra, lag_window
 from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.operational_pole import PoleSearch, least_covariance, operational_pole
-from vibroimpact.identify.stabilisation import StabilisationChart, first_stable_order, nearest_pole, stabilisation_chart, stable_column
+from vibroimpact.identify.stabilisation import (
+    StabilisationChart,
+    first_stable_order,
+    nearest_pole,
+    stabilisation_chart,
+    stable_column,
+)
 from vibroimpact.identify.update import frequency_of, pole_of
-from vibroimpact.spectral_kernel import window_autocorrelation
+from vibroimpact.spectra.window_leakage import window_autocorrelation
 
 FREQUENCIES = np.array([12.0, 21.0, 33.0])
 RATIOS = np.array([0.01, 0.025, 0.004])
@@ -16,7 +24,9 @@ SHAPES = np.array([[1.0, 0.4, -0.8], [0.7, -1.0, 0.5], [0.3, 0.9, 1.0]])  # (out
 
 
 def responses(frequency, drive):
-    """Receptances (output, drive, frequency) of three modes, forces at the outputs named by drive."""
+    """Receptances (output, drive, frequency) of three modes, forces at the outputs named by
+    drive.
+    """
     omega, modal = 2.0 * np.pi * frequency, 2.0 * np.pi * FREQUENCIES
     receptance = 1.0 / (modal**2 - omega[:, None] ** 2 + 2j * RATIOS * modal * omega[:, None])
     return np.einsum("om,dm,fm->odf", SHAPES, SHAPES[drive], receptance)
@@ -42,11 +52,15 @@ def test_lower_orders_are_leading_parts_of_the_highest():
     frequency = np.arange(5.0, 45.0, 0.1)
     values = responses(frequency, [0, 1])
     together, alone = NormalEquations(frequency, values, 12), NormalEquations(frequency, values, 5)
-    np.testing.assert_allclose(np.sort_complex(together.poles(5)[0]), np.sort_complex(alone.poles(5)[0]), rtol=1.0e-6)
+    np.testing.assert_allclose(
+        np.sort_complex(together.poles(5)[0]), np.sort_complex(alone.poles(5)[0]), rtol=1.0e-6
+    )
 
 
 def white_noise_spectra(frequency):
-    """Exact one-sided cross-spectra (output, reference, frequency) under a unit white force on output 0, all outputs references."""
+    """Exact one-sided cross-spectra (output, reference, frequency) under a unit white force on
+    output 0, all outputs references.
+    """
     response = responses(frequency, [0])[:, 0]
     return response[:, None, :] * response[None, :, :].conj()
 
@@ -81,13 +95,18 @@ def test_half_spectra_undo_the_window_and_count_lag_0_half(window):
 
 
 def random_record(seed, seconds=120):
-    """Segment spectra (output, segment, frequency) of the three outputs under white noise, 10 s Hann segments with half overlap."""
+    """Segment spectra (output, segment, frequency) of the three outputs under white noise, 10 s
+    Hann segments with half overlap.
+    """
     rate, samples = 128, 128 * (seconds + 10)
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)
     force = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
     motion = np.fft.irfft(responses(frequency, [0])[:, 0] * force, samples)[:, -seconds * rate :]
     window = np.hanning(10 * rate + 1)[:-1]
-    parts = [motion[:, start : start + 10 * rate] * window for start in range(0, (seconds - 10) * rate + 1, 5 * rate)]
+    parts = [
+        motion[:, start : start + 10 * rate] * window
+        for start in range(0, (seconds - 10) * rate + 1, 5 * rate)
+    ]
     return np.fft.rfft(np.stack(parts, axis=1), axis=-1)
 
 
@@ -95,27 +114,39 @@ def test_known_pole_comes_back_from_random_records_within_its_standard_error():
     search = PoleSearch(np.arange(641) * 0.1, (5.0, 45.0), "hann", 12)
     errors, scores = [], []
     for seed in range(16):
-        found = operational_pole(random_record(seed), (0, 1), search, (21.0, 1.0), averages=30.0, duration_s=120.0)
+        found = operational_pole(
+            random_record(seed), (0, 1), search, (21.0, 1.0), averages=30.0, duration_s=120.0
+        )
         deviation = np.array([found.frequency, found.damping_ratio]) - (21.0, 0.025)
         errors.append(deviation)
         scores.append(deviation / np.sqrt(np.diag(found.covariance)))
     errors, scores = np.array(errors), np.array(scores)
     assert np.abs(errors.mean(axis=0) / (21.0, 0.025)) == pytest.approx(np.zeros(2), abs=0.06)
-    assert np.all(np.sqrt(np.mean(scores**2, axis=0)) < 2.0) and np.all(np.sqrt(np.mean(scores**2, axis=0)) > 0.5)
+    assert np.all(np.sqrt(np.mean(scores**2, axis=0)) < 2.0) and np.all(
+        np.sqrt(np.mean(scores**2, axis=0)) > 0.5
+    )
     bound = np.sqrt(np.diag(least_covariance(21.0, 0.025, 120.0)))
     assert np.all(errors.std(axis=0) > 0.7 * bound) and np.all(errors.std(axis=0) < 2.5 * bound)
 
 
 def chart(*columns):
     """A chart of (order, [(frequency, ratio, stable), ...]) columns."""
-    rows = [(order, pole_of(frequency, ratio), stable) for order, poles in columns for frequency, ratio, stable in poles]
+    rows = [
+        (order, pole_of(frequency, ratio), stable)
+        for order, poles in columns
+        for frequency, ratio, stable in poles
+    ]
     order, pole, stable = (np.array(column) for column in zip(*rows, strict=True))
     return StabilisationChart(order, pole, stable, stable, stable)
 
 
 def test_the_first_order_with_one_stable_pole_is_taken():
     start = pole_of(20.0, 0.05)
-    calm = chart((3, [(20.0, 0.06, False)]), (4, [(20.1, 0.05, True), (45.0, 0.01, True)]), (5, [(20.1, 0.05, True)]))
+    calm = chart(
+        (3, [(20.0, 0.06, False)]),
+        (4, [(20.1, 0.05, True), (45.0, 0.01, True)]),
+        (5, [(20.1, 0.05, True)]),
+    )
     assert first_stable_order(calm, start, 3.0) == (4, True)
     late = chart((3, [(20.0, 0.06, False)]), (4, [(20.1, 0.05, False)]), (5, [(20.1, 0.05, True)]))
     assert first_stable_order(late, start, 3.0) == (5, True)
@@ -123,23 +154,37 @@ def test_the_first_order_with_one_stable_pole_is_taken():
 
 def test_orders_that_split_a_broad_peak_are_passed_over():
     start = pole_of(20.0, 0.05)
-    split = chart((3, [(20.0, 0.06, False)]), (4, [(20.0, 0.05, False)]), (5, [(18.5, 0.04, True), (21.2, 0.04, True)]),
-                  (6, [(18.5, 0.04, True), (21.2, 0.04, True)]))
+    split = chart(
+        (3, [(20.0, 0.06, False)]),
+        (4, [(20.0, 0.05, False)]),
+        (5, [(18.5, 0.04, True), (21.2, 0.04, True)]),
+        (6, [(18.5, 0.04, True), (21.2, 0.04, True)]),
+    )
     assert first_stable_order(split, start, 3.0) == (4, False)
     early = chart((3, [(20.0, 0.06, False)]), (4, [(18.5, 0.04, False), (21.2, 0.04, False)]))
     assert first_stable_order(early, start, 3.0) == (3, False)
 
 
 def test_the_longest_stable_column_is_found():
-    lone = chart((2, [(7.4, 0.03, True)]), (3, [(7.3, 0.01, False)]), (4, [(7.32, 0.005, True)]), (5, [(7.31, 0.005, True)]), (6, [(9.0, 0.01, True)]),
-                 (7, [(7.2, 0.02, True)]))
-    np.testing.assert_allclose(stable_column(lone, pole_of(7.3, 0.001), 0.3), [pole_of(7.32, 0.005), pole_of(7.31, 0.005)])
+    lone = chart(
+        (2, [(7.4, 0.03, True)]),
+        (3, [(7.3, 0.01, False)]),
+        (4, [(7.32, 0.005, True)]),
+        (5, [(7.31, 0.005, True)]),
+        (6, [(9.0, 0.01, True)]),
+        (7, [(7.2, 0.02, True)]),
+    )
+    np.testing.assert_allclose(
+        stable_column(lone, pole_of(7.3, 0.001), 0.3), [pole_of(7.32, 0.005), pole_of(7.31, 0.005)]
+    )
     assert stable_column(lone, pole_of(3.0, 0.001), 0.3).size == 0
 
 
 def test_flags_compare_with_the_order_before():
     frequency = np.arange(5.0, 45.0, 0.1)
-    found = stabilisation_chart(NormalEquations(frequency, responses(frequency, [0, 1]), 14), 0.0, range(2, 15))
+    found = stabilisation_chart(
+        NormalEquations(frequency, responses(frequency, [0, 1]), 14), 0.0, range(2, 15)
+    )
     last = found.order == 14
     for place, ratio in zip(FREQUENCIES, RATIOS, strict=True):
         chosen = np.flatnonzero(last)[nearest_pole(found.pole[last], pole_of(place, ratio), 1.0)]

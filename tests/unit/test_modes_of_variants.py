@@ -5,13 +5,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.config import check_config
+from vibroimpact.config.reading import check_config
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.linearised import same_modes
 from vibroimpact.discrepancy.null import unseen_damping
-from vibroimpact.reduction import build_model
+from vibroimpact.reduction.reduced_model import build_model
 
-PLATE = {"mass_kg": 0.7, "stiffness_N_per_m": 2.5e5}  # 95.1 Hz, between the third and the fourth mode
+PLATE = {
+    "mass_kg": 0.7,
+    "stiffness_N_per_m": 2.5e5,
+}  # 95.1 Hz, between the third and the fourth mode
 SEEN = np.array([0, 2, 4, 5])
 
 
@@ -35,14 +38,22 @@ def test_modes_are_matched_by_shape(study_model, with_plates):
 
 
 def test_a_correction_goes_to_the_mode_and_not_to_its_number(study_model, with_plates):
-    nuisance = linear.Nuisance(SEEN, np.array([1.0, 1.0, 1.01, 1.0]), np.array([1.0, 1.0, 1.2, 1.0]), np.ones(1))
+    nuisance = linear.Nuisance(
+        SEEN, np.array([1.0, 1.0, 1.01, 1.0]), np.array([1.0, 1.0, 1.2, 1.0]), np.ones(1)
+    )
     moved = linear.corrected(with_plates, nuisance, study_model)
     assert np.flatnonzero(moved.damping != with_plates.damping).tolist() == [8]
     assert moved.omega[8] == pytest.approx(1.01 * study_model.omega[4])
 
 
 def test_free_damping_leaves_plates_and_seen_modes_alone(values, study_model, with_plates):
-    bench = SimpleNamespace(model=lambda variant: with_plates, bare=study_model, linear_stage=True, modes_told=True, measured_fit=SimpleNamespace(modes=SEEN))
+    bench = SimpleNamespace(
+        model=lambda variant: with_plates,
+        bare=study_model,
+        linear_stage=True,
+        modes_told=True,
+        measured_fit=SimpleNamespace(modes=SEEN),
+    )
     damped = unseen_damping(bench, values, 0.6)
     changed = np.flatnonzero(damped.damping != with_plates.damping)
     assert not set(changed) & {0, 2, 8, 9} and not set(changed) & {3, 4, 5, 6}

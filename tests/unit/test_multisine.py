@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vibroimpact.multisine import PeriodError, distortion, find_period, level_lines
+from vibroimpact.spectra.periodic_lines import PeriodError, distortion, find_period, level_lines
 
 PERIOD, RATE = 1024, 256.0
 
@@ -11,7 +11,9 @@ PERIOD, RATE = 1024, 256.0
 def signal(lines, period=PERIOD):
     """(time,) with complex amplitudes {line: c} of c exp(i omega t) and its conjugate."""
     time = np.arange(period)
-    return sum(2.0 * np.real(c * np.exp(2j * np.pi * line * time / period)) for line, c in lines.items())
+    return sum(
+        2.0 * np.real(c * np.exp(2j * np.pi * line * time / period)) for line, c in lines.items()
+    )
 
 
 def test_amplitudes_come_back_and_the_transient_is_left_out():
@@ -20,7 +22,9 @@ def test_amplitudes_come_back_and_the_transient_is_left_out():
     records[:PERIOD] += 100.0 * np.exp(-np.arange(PERIOD) / 50.0)
     level = level_lines("one", "fit", np.tile(force, 5), records[None], RATE, PERIOD, 1)
     assert level.periods == 4 and level.frequency[8] == pytest.approx(2.0)
-    assert level.force[[8, 20]] == pytest.approx([1.0 + 0.5j, -0.3j]) and level.response[0, [8, 20]] == pytest.approx([0.2j, 1.5])
+    assert level.force[[8, 20]] == pytest.approx([1.0 + 0.5j, -0.3j]) and level.response[
+        0, [8, 20]
+    ] == pytest.approx([0.2j, 1.5])
     assert level.load_rms == pytest.approx(np.sqrt(2.0 * (1.25 + 0.09)))
     assert level.rms((1.0, 6.0)) == pytest.approx([np.sqrt(2.0 * (0.04 + 2.25))])
 
@@ -29,9 +33,20 @@ def test_noise_is_the_scatter_of_the_mean():
     generator = np.random.default_rng(1)
     count, size = 400, 0.3
     force = np.tile(signal({5: 1.0}), count)
-    level = level_lines("noisy", "fit", force, (force + size * generator.standard_normal(force.size))[None], RATE, PERIOD, 0)
-    # A line of white noise has the variance size²/PERIOD, its mean over the periods a count-th of it.
-    assert np.median(level.noise[0, 10:400]) == pytest.approx(size / np.sqrt(PERIOD * count), rel=0.05)
+    level = level_lines(
+        "noisy",
+        "fit",
+        force,
+        (force + size * generator.standard_normal(force.size))[None],
+        RATE,
+        PERIOD,
+        0,
+    )
+    # A line of white noise has the variance size²/PERIOD, its mean over the periods a count-th of
+    # it.
+    assert np.median(level.noise[0, 10:400]) == pytest.approx(
+        size / np.sqrt(PERIOD * count), rel=0.05
+    )
     assert np.abs(level.response[0, 10:400]).mean() < 2.0 * size / np.sqrt(PERIOD * count)
 
 
@@ -53,16 +68,33 @@ def test_a_record_without_period_is_refused_with_what_to_do():
         find_period(np.random.default_rng(1).standard_normal(5000))
 
 
-@pytest.mark.parametrize(("law", "large", "small"), [(lambda y: 0.1 * y**3, "odd_fraction", "even_fraction"), (lambda y: 0.1 * y**2, "even_fraction", "odd_fraction")])
+@pytest.mark.parametrize(
+    ("law", "large", "small"),
+    [
+        (lambda y: 0.1 * y**3, "odd_fraction", "even_fraction"),
+        (lambda y: 0.1 * y**2, "even_fraction", "odd_fraction"),
+    ],
+)
 def test_silent_lines_tell_odd_from_even_laws(law, large, small):
     generator = np.random.default_rng(2)
-    lines = {line: 0.2 * np.exp(2j * np.pi * generator.uniform()) for line in range(1, 100, 2) if line % 8 != 3}
+    lines = {
+        line: 0.2 * np.exp(2j * np.pi * generator.uniform())
+        for line in range(1, 100, 2)
+        if line % 8 != 3
+    }
     force = np.tile(signal(lines), 3)
-    told = distortion(level_lines("law", "fit", force, (force + law(force))[None], RATE, PERIOD, 0), (0.2, 25.0))
+    told = distortion(
+        level_lines("law", "fit", force, (force + law(force))[None], RATE, PERIOD, 0), (0.2, 25.0)
+    )
     assert told["excited_lines"] == len(lines) and told["detection_lines"] > 40
     assert told[large][0] > 0.02 and told[small][0] < 1.0e-6
 
 
 def test_a_full_multisine_tells_that_it_can_not_tell():
     force = np.tile(signal(dict.fromkeys(range(8, 60), 0.1 + 0j)), 3)
-    assert "every line of the band is excited" in distortion(level_lines("full", "fit", force, force[None], RATE, PERIOD, 0), (2.0, 14.75))["told"]
+    assert (
+        "every line of the band is excited"
+        in distortion(
+            level_lines("full", "fit", force, force[None], RATE, PERIOD, 0), (2.0, 14.75)
+        )["told"]
+    )

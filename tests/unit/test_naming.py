@@ -9,7 +9,13 @@ LINEAR, JOINT, AGAIN = {"one": [1.0, 1.2]}, {"one": [0.8, 0.9]}, {"one": [0.1, 0
 
 def candidate(name, ids, error, cost=0.01):
     """Values of a candidate with one error on the level it is tried on."""
-    return {"name": name, "ids": ids, "errors": {"one": [error, error]}, "tried": ["one"], "cost": cost}
+    return {
+        "name": name,
+        "ids": ids,
+        "errors": {"one": [error, error]},
+        "tried": ["one"],
+        "cost": cost,
+    }
 
 
 def test_a_score_is_the_gain_in_squared_error():
@@ -18,44 +24,99 @@ def test_a_score_is_the_gain_in_squared_error():
 
 
 def test_the_best_is_named_alone_when_the_others_are_far():
-    choice = choose([candidate("a", ["cubic_stiffness"], 0.05), candidate("b", ["clearance"], 0.3)], [], LINEAR, JOINT, AGAIN)
-    assert (choice.verdict, choice.chosen, choice.ambiguity) == ("named", "a", [["cubic_stiffness"]])
+    choice = choose(
+        [candidate("a", ["cubic_stiffness"], 0.05), candidate("b", ["clearance"], 0.3)],
+        [],
+        LINEAR,
+        JOINT,
+        AGAIN,
+    )
+    assert (choice.verdict, choice.chosen, choice.ambiguity) == (
+        "named",
+        "a",
+        [["cubic_stiffness"]],
+    )
 
 
 def test_two_that_explain_as_well_are_a_set():
-    choice = choose([candidate("a", ["cubic_stiffness"], 0.050), candidate("b", ["clearance"], 0.052)], [], LINEAR, JOINT, AGAIN)
-    assert choice.verdict == "ambiguous" and choice.ambiguity == [["cubic_stiffness"], ["clearance"]]
+    choice = choose(
+        [candidate("a", ["cubic_stiffness"], 0.050), candidate("b", ["clearance"], 0.052)],
+        [],
+        LINEAR,
+        JOINT,
+        AGAIN,
+    )
+    assert choice.verdict == "ambiguous" and choice.ambiguity == [
+        ["cubic_stiffness"],
+        ["clearance"],
+    ]
 
 
 def test_one_that_fits_worse_does_not_join_the_set_by_luck():
-    choice = choose([candidate("a", ["cubic_stiffness"], 0.050), candidate("b", ["clearance"], 0.052, cost=0.05)], [], LINEAR, JOINT, AGAIN)
+    choice = choose(
+        [
+            candidate("a", ["cubic_stiffness"], 0.050),
+            candidate("b", ["clearance"], 0.052, cost=0.05),
+        ],
+        [],
+        LINEAR,
+        JOINT,
+        AGAIN,
+    )
     assert choice.verdict == "named" and choice.ambiguity == [["cubic_stiffness"]]
 
 
 def test_a_second_effect_must_earn_its_place():
     first = candidate("a", ["cubic_stiffness"], 0.05)
-    little, much = (candidate("a+b", ["cubic_stiffness", "quadratic_stiffness"], error) for error in (0.048, 0.02))
+    little, much = (
+        candidate("a+b", ["cubic_stiffness", "quadratic_stiffness"], error)
+        for error in (0.048, 0.02)
+    )
     assert choose([first], [little], LINEAR, JOINT, AGAIN).chosen == "a"
     choice = choose([first], [much], LINEAR, JOINT, AGAIN)
-    assert choice.chosen == "a+b" and choice.ambiguity == [["cubic_stiffness", "quadratic_stiffness"]]
+    assert choice.chosen == "a+b" and choice.ambiguity == [
+        ["cubic_stiffness", "quadratic_stiffness"]
+    ]
 
 
 def test_a_second_effect_that_gains_nothing_does_not_join_the_set():
-    choice = choose([candidate("a", ["cubic_stiffness"], 0.05)], [candidate("a+b", ["cubic_stiffness", "quadratic_drag"], 0.0499)], LINEAR, JOINT, AGAIN)
+    choice = choose(
+        [candidate("a", ["cubic_stiffness"], 0.05)],
+        [candidate("a+b", ["cubic_stiffness", "quadratic_drag"], 0.0499)],
+        LINEAR,
+        JOINT,
+        AGAIN,
+    )
     assert (choice.verdict, choice.ambiguity) == ("named", [["cubic_stiffness"]])
 
 
-@pytest.mark.parametrize(("kind", "left", "floor", "wanted"), [
-    ("none", 0.1, 0.01, "none"), ("none", 0.6, 0.01, "unknown"), ("none", 0.6, 0.5, "none"), ("named", 0.04, 0.01, "named"), ("named", 0.08, 0.01, "partly_explained"),
-    ("named", 0.15, 0.1, "named"), ("named", 0.7, 0.5, "partly_explained"), ("ambiguous", 0.9, 0.01, "ambiguous"), ("unknown", 0.01, 0.01, "unknown")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("kind", "left", "floor", "wanted"),
+    [
+        ("none", 0.1, 0.01, "none"),
+        ("none", 0.6, 0.01, "unknown"),
+        ("none", 0.6, 0.5, "none"),
+        ("named", 0.04, 0.01, "named"),
+        ("named", 0.08, 0.01, "partly_explained"),
+        ("named", 0.15, 0.1, "named"),
+        ("named", 0.7, 0.5, "partly_explained"),
+        ("ambiguous", 0.9, 0.01, "ambiguous"),
+        ("unknown", 0.01, 0.01, "unknown"),
+    ],
+)
 def test_what_is_left_of_the_tried_records_bounds_the_verdict(kind, left, floor, wanted):
     assert believed(kind, 1.5, left, left, floor) == wanted
 
 
 def test_a_linear_structure_lacks_nothing():
-    choice = choose([candidate("a", ["cubic_stiffness"], 0.09)], [], {"one": [0.1, 0.1]}, JOINT, AGAIN)
+    choice = choose(
+        [candidate("a", ["cubic_stiffness"], 0.09)], [], {"one": [0.1, 0.1]}, JOINT, AGAIN
+    )
     assert (choice.verdict, choice.ambiguity) == ("none", [])
 
 
 def test_a_law_that_explains_little_more_than_a_linear_model_is_not_named():
-    assert choose([candidate("a", ["cubic_stiffness"], 0.6)], [], LINEAR, JOINT, AGAIN).verdict == "unknown"
+    assert (
+        choose([candidate("a", ["cubic_stiffness"], 0.6)], [], LINEAR, JOINT, AGAIN).verdict
+        == "unknown"
+    )

@@ -1,22 +1,31 @@
-"""Deflection shape and broadband correlation on exact spectra: the members of the family come back."""
+"""Deflection shape and broadband correlation on exact spectra: the members of the family come
+back.
+"""
 
 import numpy as np
 import pytest
 
-from vibroimpact import linear
 from vibroimpact.identify.broadband import family_map, identify_broadband
-from vibroimpact.identify.family import LinearFamily, driven_modes
 from vibroimpact.identify.ods import deflection_shape, mac, match_shape, own_shape
 from vibroimpact.identify.peak import level_edges
 from vibroimpact.identify.reference_tube import Bins, ReferenceTube, Sensors
 from vibroimpact.identify.update import frequency_of
-from vibroimpact.spectral_kernel import spectral_kernel
+from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.linear.family import LinearFamily, driven_modes
+from vibroimpact.spectra.window_leakage import spectral_kernel
 
 
 @pytest.fixture(scope="module")
 def tube(study_model):
     sensors = Sensors(("apex.y", "bend_45.y"), 0, 1, (0, 1))
-    return ReferenceTube(study_model, Bins(0.1, 1200, 80, 600, "none"), sensors, (5.0, 200.0), (6.0, 99.0), (1.0e3, 1.0e8))
+    return ReferenceTube(
+        study_model,
+        Bins(0.1, 1200, 80, 600, "none"),
+        sensors,
+        (5.0, 200.0),
+        (6.0, 99.0),
+        (1.0e3, 1.0e8),
+    )
 
 
 def test_mac_sees_neither_size_nor_phase():
@@ -32,7 +41,14 @@ def test_first_singular_vector_is_the_shape_that_carries_the_band():
     shape /= np.linalg.norm(shape)
     frequency = np.arange(5.0, 30.0, 0.1)
     weak = 0.05 * generator.standard_normal((9, 6, frequency.size))
-    spectra = shape[:, None, None] * (generator.standard_normal((6, frequency.size)) + 1j * generator.standard_normal((6, frequency.size))) + weak
+    spectra = (
+        shape[:, None, None]
+        * (
+            generator.standard_normal((6, frequency.size))
+            + 1j * generator.standard_normal((6, frequency.size))
+        )
+        + weak
+    )
     found = deflection_shape(spectra, frequency, (10.0, 20.0))
     inside = (frequency >= 10.0) & (frequency <= 20.0)
     values = np.linalg.svd(spectra[:, :, inside].reshape(9, -1), compute_uv=False)
@@ -46,9 +62,15 @@ def test_first_singular_vector_is_the_shape_that_carries_the_band():
 def test_exact_shapes_give_k_where_the_mode_s_shape_alone_does_not(study_model, tube, k, c):
     frequency, ratio = frequency_of(linear.first_pole(study_model, k, c))
     line = linear.frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
-    measured = deflection_shape(line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0))
-    match = match_shape(measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.1 * ratio))
-    assert match.k == pytest.approx(k, rel=0.02)  # the damping's uncertainty is taken out of k; without it:
+    measured = deflection_shape(
+        line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
+    )
+    match = match_shape(
+        measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.1 * ratio)
+    )
+    assert match.k == pytest.approx(
+        k, rel=0.02
+    )  # the damping's uncertainty is taken out of k; without it:
     sure = match_shape(measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.0))
     assert sure.k == pytest.approx(k, rel=1.0e-3) and sure.mac == pytest.approx(1.0, abs=1.0e-9)
     by_mode_shape = match.k_grid[np.argmax(match.mac_grid)]
@@ -60,9 +82,18 @@ def test_the_change_with_damping_is_that_of_a_new_match(study_model, tube):
     k, c = 4.0e6, 1.0e4
     frequency, ratio = frequency_of(linear.first_pole(study_model, k, c))
     line = linear.frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
-    measured = deflection_shape(line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0))
-    match = match_shape(measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.05 * ratio))
-    higher, lower = (match_shape(measured, tube.at_line, tube.mode_shapes, tube.shape_members(factor * ratio, 0.0)).k for factor in (1.05, 0.95))
+    measured = deflection_shape(
+        line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
+    )
+    match = match_shape(
+        measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.05 * ratio)
+    )
+    higher, lower = (
+        match_shape(
+            measured, tube.at_line, tube.mode_shapes, tube.shape_members(factor * ratio, 0.0)
+        ).k
+        for factor in (1.05, 0.95)
+    )
     assert match.damping_change == pytest.approx(0.5 * np.log(higher / lower), rel=0.05)
 
 
@@ -75,12 +106,21 @@ def test_own_shape_of_a_narrow_band_is_the_response_there(study_model, tube):
 def test_broadband_correlation_returns_a_member_at_any_level(study_model, k, c):
     kernel = spectral_kernel("hann", 10.0)
     bins = np.arange(60, 991) / 10.0
-    response = LinearFamily(driven_modes(study_model), kernel.fine_index(bins) / 40.0).response(study_model.sensor_shapes[:, [3]])
+    response = LinearFamily(driven_modes(study_model), kernel.fine_index(bins) / 40.0).response(
+        study_model.sensor_shapes[:, [3]]
+    )
     psd = kernel.smooth(response.psd(k, c)[0])
     grid = np.geomspace(1.0e3, 1.0e8, 16)
-    family = family_map(response, kernel, grid, np.outer(np.interp(grid, [1.0e3, 1.0e5, 1.0e8], [28.0, 62.0, 1.0e5]), (0.0, 1.0, 3.0)))
+    family = family_map(
+        response,
+        kernel,
+        grid,
+        np.outer(np.interp(grid, [1.0e3, 1.0e5, 1.0e8], [28.0, 62.0, 1.0e5]), (0.0, 1.0, 3.0)),
+    )
     for size in (1.0, 1.0e6):
-        fit = identify_broadband(size * psd, response, kernel, family, lambda stiffness: -3.0, averages=18.0)
+        fit = identify_broadband(
+            size * psd, response, kernel, family, lambda stiffness: -3.0, averages=18.0
+        )
         assert (fit.k, fit.c) == pytest.approx((k, c), rel=1.0e-5)
         assert fit.correlation == pytest.approx(1.0, abs=1.0e-8)
         np.testing.assert_allclose(fit.curve, size * psd, rtol=1.0e-4)

@@ -1,4 +1,6 @@
-"""Matrices from Nastran OP4 files: every form of the format, the names in it, what is refused, and the frequencies of what is built."""
+"""Matrices from Nastran OP4 files: every form of the format, the names in it, what is refused, and
+the frequencies of what is built.
+"""
 
 import sys
 
@@ -6,18 +8,20 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from vibroimpact.config import check_config
-from vibroimpact.matrix_files import OP4_READER, MatrixFileError, read_matrix
-from vibroimpact.point_structure import build_point_structure
-from vibroimpact.reduction import build_model
+from vibroimpact.config.reading import check_config
+from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.structure.matrix_files import OP4_READER, MatrixFileError, read_matrix
+from vibroimpact.structure.point_structure import build_point_structure
 
-# Two masses of 2 kg between three springs of 8000 N/m, ground to ground: omega² = k / m and 3 k / m.
+# Two masses of 2 kg between three springs of 8000 N/m, ground to ground: omega² = k / m and 3 k /
+# m.
 MASS, STIFFNESS = np.diag([2.0, 2.0]), np.array([[16.0e3, -8.0e3], [-8.0e3, 16.0e3]])
 OMEGA = np.sqrt([4.0e3, 12.0e3])
 DAMPING = np.array([[5.0, -1.0], [-1.0, 5.0]])
 
-# By hand, as the format is documented: columns, rows (negative: bigmat), form, type, name, number format; then column, first row (0: sparse), length.
-# The stiffness is sparse, each column one string: 4 words and 1, first row.
+# By hand, as the format is documented: columns, rows (negative: bigmat), form, type, name, number
+# format; then column, first row (0: sparse), length. The stiffness is sparse, each column one
+# string: 4 words and 1, first row.
 BY_HAND = """\
        2       2       6       2MGG     1P,3E23.16
        1       1       1
@@ -41,29 +45,57 @@ BY_HAND = """\
 @pytest.fixture
 def op4():
     """The library that writes OP4 files for these tests, and reads them for the project."""
-    pytest.importorskip("pyyeti", reason=f"OP4 files need pyyeti, which is not installed: pip install {OP4_READER}")
+    pytest.importorskip(
+        "pyyeti", reason=f"OP4 files need pyyeti, which is not installed: pip install {OP4_READER}"
+    )
     from pyyeti.nastran import op4
 
     return op4
 
 
 def frequencies(path):
-    """Angular frequencies (2,) rad/s of the model built from an OP4 file with mass and stiffness in it."""
-    structure = {"kind": "matrices", "mass": str(path), "stiffness": str(path), "points": {"a": {"x": 0}, "b": {"x": 1}}}
-    config = check_config({
-        "study": "op4", "structure": structure, "damping": {"kind": "modal", "other_ratio": 0.0}, "excitation": {"kind": "none"},
-        "integration": {"steps_per_second": 20000, "start_up_s": 0.0, "imperfection": 0.0},
-        "grid": {"load_rms_N": [1.0], "gap_m": [1.0], "seeds": 1}, "record": {"duration_s": 0.5, "every_step": True},
-    }, "op4")  # fmt: skip
+    """Angular frequencies (2,) rad/s of the model built from an OP4 file with mass and stiffness in
+    it.
+    """
+    structure = {
+        "kind": "matrices",
+        "mass": str(path),
+        "stiffness": str(path),
+        "points": {"a": {"x": 0}, "b": {"x": 1}},
+    }
+    config = check_config(
+        {
+            "study": "op4",
+            "structure": structure,
+            "damping": {"kind": "modal", "other_ratio": 0.0},
+            "excitation": {"kind": "none"},
+            "integration": {"steps_per_second": 20000, "start_up_s": 0.0, "imperfection": 0.0},
+            "grid": {"load_rms_N": [1.0], "gap_m": [1.0], "seeds": 1},
+            "record": {"duration_s": 0.5, "every_step": True},
+        },
+        "op4",
+    )
     built = build_point_structure(config)
-    assert np.array_equal(built.mass.toarray(), MASS) and np.array_equal(built.stiffness.toarray(), STIFFNESS)
+    assert np.array_equal(built.mass.toarray(), MASS) and np.array_equal(
+        built.stiffness.toarray(), STIFFNESS
+    )
     return build_model(config).omega
 
 
 @pytest.mark.parametrize("form", ["dense", "bigmat", "nonbigmat"])
-@pytest.mark.parametrize("file", [{"binary": True, "endian": "<"}, {"binary": True, "endian": ">"}, {"binary": False}], ids=["little", "big", "ascii"])
+@pytest.mark.parametrize(
+    "file",
+    [{"binary": True, "endian": "<"}, {"binary": True, "endian": ">"}, {"binary": False}],
+    ids=["little", "big", "ascii"],
+)
 def test_every_form_of_the_format_has_the_same_frequencies(tmp_path, op4, form, file):
-    op4.write(str(tmp_path / "plate.op4"), ["KGG", "V", "MGG"], [STIFFNESS, np.ones((2, 3)), MASS], sparse=form, **file)
+    op4.write(
+        str(tmp_path / "plate.op4"),
+        ["KGG", "V", "MGG"],
+        [STIFFNESS, np.ones((2, 3)), MASS],
+        sparse=form,
+        **file,
+    )
     assert frequencies(tmp_path / "plate.op4") == pytest.approx(OMEGA, rel=1e-12)
 
 
@@ -72,10 +104,25 @@ def test_a_file_written_by_hand_has_them_too(tmp_path, op4):
     assert frequencies(tmp_path / "HAND.OP4") == pytest.approx(OMEGA, rel=1e-12)
 
 
-@pytest.mark.parametrize("names", [("MASS", "Stiffnes", "damping"), ("m", "K", "C"), ("M", "K", "B"), ("MGG", "KGG", "BGG"), ("maa", "kaa", "baa"),
-                                   ("MXX", "KXX", "BXX"), ("MLL", "KLL", "BLL")], ids=" ".join)  # fmt: skip
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("MASS", "Stiffnes", "damping"),
+        ("m", "K", "C"),
+        ("M", "K", "B"),
+        ("MGG", "KGG", "BGG"),
+        ("maa", "kaa", "baa"),
+        ("MXX", "KXX", "BXX"),
+        ("MLL", "KLL", "BLL"),
+    ],
+    ids=" ".join,
+)
 def test_matrices_are_known_by_their_names(tmp_path, op4, names):
-    op4.write(str(tmp_path / "all.op4"), ["K4GG", "PHIX", *names], [np.eye(2), np.ones((2, 2)), MASS, STIFFNESS, sparse.csr_matrix(DAMPING)])
+    op4.write(
+        str(tmp_path / "all.op4"),
+        ["K4GG", "PHIX", *names],
+        [np.eye(2), np.ones((2, 2)), MASS, STIFFNESS, sparse.csr_matrix(DAMPING)],
+    )
     for name, matrix in (("mass", MASS), ("stiffness", STIFFNESS), ("damping", DAMPING)):
         assert np.array_equal(read_matrix(tmp_path / "all.op4", name).toarray(), matrix)
 
@@ -88,18 +135,35 @@ def test_the_only_matrix_needs_no_name_and_a_plain_name_goes_first(tmp_path, op4
 
 
 def test_op4_files_that_can_not_be_used_are_refused(tmp_path, op4):
-    for name, matrices in (("complex", [("MGG", MASS + 1j), ("KGG", STIFFNESS)]), ("long", [("MGG", np.ones((2, 3))), ("KGG", STIFFNESS)]),
-                           ("half", [("MGG", np.triu(STIFFNESS)), ("KGG", STIFFNESS)]), ("sets", [("MGG", MASS), ("MAA", MASS)]),
-                           ("twice", [("MGG", MASS), ("MGG", MASS)]), ("others", [("KGG", STIFFNESS), ("MHH", MASS)])):  # fmt: skip
-        op4.write(str(tmp_path / f"{name}.op4"), [each for each, _ in matrices], [matrix for _, matrix in matrices])
+    for name, matrices in (
+        ("complex", [("MGG", MASS + 1j), ("KGG", STIFFNESS)]),
+        ("long", [("MGG", np.ones((2, 3))), ("KGG", STIFFNESS)]),
+        ("half", [("MGG", np.triu(STIFFNESS)), ("KGG", STIFFNESS)]),
+        ("sets", [("MGG", MASS), ("MAA", MASS)]),
+        ("twice", [("MGG", MASS), ("MGG", MASS)]),
+        ("others", [("KGG", STIFFNESS), ("MHH", MASS)]),
+    ):
+        op4.write(
+            str(tmp_path / f"{name}.op4"),
+            [each for each, _ in matrices],
+            [matrix for _, matrix in matrices],
+        )
     (tmp_path / "cut.op4").write_text(BY_HAND[:120])
     (tmp_path / "cut_binary.op4").write_bytes((tmp_path / "sets.op4").read_bytes()[:100])
     (tmp_path / "text.op4").write_text("No matrix, but a letter about one.")
     (tmp_path / "empty.op4").write_text("")
-    for name, part in (("complex", "mass is complex: give its real part"), ("long", "a square matrix is needed"), ("half", "not symmetric"),
-                       ("sets", "mgg, maa could each be the mass matrix"), ("twice", "mgg, mgg could each be"), ("others", "holds kgg, mhh: name the mass matrix M, or as Nastran does, MGG"),
-                       ("cut", "can not be read as OP4"), ("cut_binary", "can not be read as OP4"), ("text", "can not be read as OP4"),
-                       ("empty", "can not be read as OP4")):  # fmt: skip
+    for name, part in (
+        ("complex", "mass is complex: give its real part"),
+        ("long", "a square matrix is needed"),
+        ("half", "not symmetric"),
+        ("sets", "mgg, maa could each be the mass matrix"),
+        ("twice", "mgg, mgg could each be"),
+        ("others", "holds kgg, mhh: name the mass matrix M, or as Nastran does, MGG"),
+        ("cut", "can not be read as OP4"),
+        ("cut_binary", "can not be read as OP4"),
+        ("text", "can not be read as OP4"),
+        ("empty", "can not be read as OP4"),
+    ):
         with pytest.raises(MatrixFileError, match=part):
             read_matrix(tmp_path / f"{name}.op4", "mass")
 
@@ -107,5 +171,7 @@ def test_op4_files_that_can_not_be_used_are_refused(tmp_path, op4):
 def test_without_its_reader_a_sentence_says_what_to_install(tmp_path, monkeypatch):
     (tmp_path / "hand.op4").write_text(BY_HAND)
     monkeypatch.setitem(sys.modules, "pyyeti.nastran", None)
-    with pytest.raises(MatrixFileError, match=f"reading OP4 needs pyyeti: pip install {OP4_READER}"):
+    with pytest.raises(
+        MatrixFileError, match=f"reading OP4 needs pyyeti: pip install {OP4_READER}"
+    ):
         read_matrix(tmp_path / "hand.op4", "mass")

@@ -1,10 +1,19 @@
-"""Widths of a peak: exact inversion at every level, and the fit that reads them from a noisy, windowed spectrum."""
+"""Widths of a peak: exact inversion at every level, and the fit that reads them from a noisy,
+windowed spectrum.
+"""
 
 import numpy as np
 import pytest
 
-from vibroimpact.identify.peak import LEVELS, damping_from_width, find_peak, fit_peak, level_edges, resonance
-from vibroimpact.spectral_kernel import spectral_kernel
+from vibroimpact.identify.peak import (
+    LEVELS,
+    damping_from_width,
+    find_peak,
+    fit_peak,
+    level_edges,
+    resonance,
+)
+from vibroimpact.spectra.window_leakage import spectral_kernel
 
 FREQUENCY = np.arange(0, 601) * 0.1
 
@@ -21,7 +30,9 @@ def test_width_and_damping_are_inverse(level, ratio):
     edges = level_edges(20.0, ratio, level)
     peak = 1.0 / (4.0 * ratio**2 * (1.0 - ratio**2))
     for edge in edges:
-        assert resonance(np.array([edge]), np.log(20.0), np.log(ratio))[0, 0] == pytest.approx(peak / level, rel=1.0e-9)
+        assert resonance(np.array([edge]), np.log(20.0), np.log(ratio))[0, 0] == pytest.approx(
+            peak / level, rel=1.0e-9
+        )
     assert damping_from_width(edges, level) == pytest.approx((20.0, ratio), rel=1.0e-9)
 
 
@@ -36,8 +47,18 @@ def test_slopes_of_the_resonance():
     place, ratio, step = np.log(20.0), np.log(0.03), 1.0e-6
     frequency = np.linspace(15.0, 25.0, 41)
     curve, by_frequency, by_ratio = resonance(frequency, place, ratio)
-    np.testing.assert_allclose(by_frequency, (resonance(frequency, place + step, ratio)[0] - curve) / step, rtol=1.0e-3, atol=1.0e-3)
-    np.testing.assert_allclose(by_ratio, (resonance(frequency, place, ratio + step)[0] - curve) / step, rtol=1.0e-3, atol=1.0e-3)
+    np.testing.assert_allclose(
+        by_frequency,
+        (resonance(frequency, place + step, ratio)[0] - curve) / step,
+        rtol=1.0e-3,
+        atol=1.0e-3,
+    )
+    np.testing.assert_allclose(
+        by_ratio,
+        (resonance(frequency, place, ratio + step)[0] - curve) / step,
+        rtol=1.0e-3,
+        atol=1.0e-3,
+    )
 
 
 @pytest.mark.parametrize("window", ["hann", "boxcar", "none"])
@@ -52,7 +73,9 @@ def test_an_exact_spectrum_gives_its_pole_at_every_level(window, level):
 
 def test_without_the_kernel_the_window_s_width_is_taken_for_damping():
     psd = expected(16.0, 0.015, spectral_kernel("hann", 10.0))
-    blind = fit_peak(FREQUENCY, psd, spectral_kernel("none", 10.0), 2.0, find_peak(FREQUENCY, psd, (8.0, 45.0)))
+    blind = fit_peak(
+        FREQUENCY, psd, spectral_kernel("none", 10.0), 2.0, find_peak(FREQUENCY, psd, (8.0, 45.0))
+    )
     assert 1.025 < blind.damping_ratio / 0.015 < 1.12
 
 
@@ -64,7 +87,16 @@ def test_noisy_spectra_are_read_without_bias_and_with_the_right_standard_error()
         fits = []
         for _ in range(150):
             noisy = psd * generator.gamma(averages / 2.0, 2.0 / averages, psd.size)
-            fits.append(fit_peak(FREQUENCY, noisy, kernel, level, find_peak(FREQUENCY, noisy, (8.0, 45.0)), averages=averages))
+            fits.append(
+                fit_peak(
+                    FREQUENCY,
+                    noisy,
+                    kernel,
+                    level,
+                    find_peak(FREQUENCY, noisy, (8.0, 45.0)),
+                    averages=averages,
+                )
+            )
         found = np.array([(fit.frequency, fit.damping_ratio) for fit in fits])
         errors = np.sqrt(np.mean([np.diag(fit.covariance) for fit in fits], axis=0))
         bias = (found.mean(axis=0) - (21.0, 0.025)) / (found.std(axis=0) / np.sqrt(150))

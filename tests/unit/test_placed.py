@@ -1,4 +1,6 @@
-"""Where an effect sits: places that were not screened are tried at the best point, and all others again once it is known how strong it is."""
+"""Where an effect sits: places that were not screened are tried at the best point, and all others
+again once it is known how strong it is.
+"""
 
 from types import SimpleNamespace
 
@@ -10,25 +12,48 @@ from vibroimpact.discrepancy.candidates import PLACES, spread
 from vibroimpact.discrepancy.screening import Path
 
 BENCH, NULL = SimpleNamespace(values={}), SimpleNamespace(records=[0])
-SCORES = {  # at the shaker the strongest comes nearest, on the leg the weaker is right, and above it a little more of it nearly so
-    "shaker": {1.0: -100.0, 0.6: -200.0}, "leg": {1.0: -300.0, 0.6: 50.0}, "upper": {0.6: -90.0, 0.66: -20.0}, "apex": {}}  # fmt: skip
+# at the shaker the strongest comes nearest, on the leg the weaker is right, and above it a little
+# more of it nearly so
+SCORES = {
+    "shaker": {1.0: -100.0, 0.6: -200.0},
+    "leg": {1.0: -300.0, 0.6: 50.0},
+    "upper": {0.6: -90.0, 0.66: -20.0},
+    "apex": {},
+}
 
 
 def path(place, points):
     points = np.atleast_2d(points)
-    return Path(points, np.array([[[SCORES[place].get(round(point[0], 2), -400.0)]] for point in points]), np.ones(len(points)), [None] * len(points))
+    return Path(
+        points,
+        np.array([[[SCORES[place].get(round(point[0], 2), -400.0)]] for point in points]),
+        np.ones(len(points)),
+        [None] * len(points),
+    )
 
 
 @pytest.fixture(autouse=True)
 def simulated(monkeypatch):
-    monkeypatch.setattr(finalists, "other_places", lambda candidate, values: [place for place in SCORES if place != candidate.name])
-    monkeypatch.setattr(finalists, "simulate_path", lambda bench, place, points, *_, **__: path(place, points))
-    monkeypatch.setattr(finalists, "scores_of", lambda bench, null, measured, path, fit: path.features[:, 0, 0])
+    monkeypatch.setattr(
+        finalists,
+        "other_places",
+        lambda candidate, values: [place for place in SCORES if place != candidate.name],
+    )
+    monkeypatch.setattr(
+        finalists, "simulate_path", lambda bench, place, points, *_, **__: path(place, points)
+    )
+    monkeypatch.setattr(
+        finalists, "scores_of", lambda bench, null, measured, path, fit: path.features[:, 0, 0]
+    )
 
 
 def place_of(at, points):
-    """The place of what `placed` makes of a candidate at a place with some points, and its points there."""
-    place, known = finalists.placed(BENCH, NULL, None, at, path(at, points), ["leg", "apex"], {}, None)
+    """The place of what `placed` makes of a candidate at a place with some points, and its points
+    there.
+    """
+    place, known = finalists.placed(
+        BENCH, NULL, None, at, path(at, points), ["leg", "apex"], {}, None
+    )
     return place, known.parameters[:, 0].tolist()
 
 
@@ -41,13 +66,17 @@ def test_places_are_tried_at_the_best_point():
 def test_a_place_that_comes_as_near_is_looked_at_again(at, expected):
     """Within the scatter of two seeds."""
     candidate = SimpleNamespace(name=at, periodic=())
-    found = SimpleNamespace(candidate=candidate, unit=np.array([0.6]), path=path(at, [[0.6]]), own=lambda null: null)
+    found = SimpleNamespace(
+        candidate=candidate, unit=np.array([0.6]), path=path(at, [[0.6]]), own=lambda null: null
+    )
     assert finalists.placed_again(BENCH, NULL, None, found, {}, None)[0] == expected
 
 
 def test_no_place_comes_as_near():
     candidate = SimpleNamespace(name="leg", periodic=())
-    found = SimpleNamespace(candidate=candidate, unit=np.array([0.3]), path=path("leg", [[0.6]]), own=lambda null: null)
+    found = SimpleNamespace(
+        candidate=candidate, unit=np.array([0.3]), path=path("leg", [[0.6]]), own=lambda null: null
+    )
     assert finalists.placed_again(BENCH, NULL, None, found, {}, None) is None
 
 

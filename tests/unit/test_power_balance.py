@@ -18,18 +18,31 @@ def test_the_power_of_a_damper_is_force_squared_over_its_constant():
     acceleration = np.fft.irfft(1j * omega * velocity, len(force))
     displacement = np.fft.irfft(velocity / np.where(inside, 1j * omega, 1.0), len(force))
     for kind, response in (("acceleration", acceleration), ("displacement", displacement)):
-        assert input_power(force, response, kind, RATE, (10.0, 210.0)) == pytest.approx(np.mean(force**2) / 50.0, rel=0.02)
-        assert input_power(force, np.roll(response, 3), kind, RATE, (10.0, 210.0)) < 0.9 * np.mean(force**2) / 50.0
+        assert input_power(force, response, kind, RATE, (10.0, 210.0)) == pytest.approx(
+            np.mean(force**2) / 50.0, rel=0.02
+        )
+        assert (
+            input_power(force, np.roll(response, 3), kind, RATE, (10.0, 210.0))
+            < 0.9 * np.mean(force**2) / 50.0
+        )
 
 
 def test_a_spring_takes_no_power():
     force = np.random.default_rng(2).standard_normal(int(RATE * SECONDS))
-    assert input_power(force, force / 1.0e3, "displacement", RATE, (10.0, 210.0)) == pytest.approx(0.0, abs=1.0e-12)
+    assert input_power(force, force / 1.0e3, "displacement", RATE, (10.0, 210.0)) == pytest.approx(
+        0.0, abs=1.0e-12
+    )
 
 
 def campaign(point, direction):
-    return xr.Dataset({"channel_point": (("channel", "xyz"), [[0.0, 0.0, 1.0], point]), "channel_direction": (("channel", "xyz"), [[0.0, 1.0, 0.0], direction]),
-                       "force_channel_point": (("force_channel", "xyz"), [[0.2, 0.0, 0.9]]), "force_channel_direction": (("force_channel", "xyz"), [[0.0, 1.0, 0.0]])})
+    return xr.Dataset(
+        {
+            "channel_point": (("channel", "xyz"), [[0.0, 0.0, 1.0], point]),
+            "channel_direction": (("channel", "xyz"), [[0.0, 1.0, 0.0], direction]),
+            "force_channel_point": (("force_channel", "xyz"), [[0.2, 0.0, 0.9]]),
+            "force_channel_direction": (("force_channel", "xyz"), [[0.0, 1.0, 0.0]]),
+        }
+    )
 
 
 def test_a_channel_at_the_drive_is_found_with_its_sense():

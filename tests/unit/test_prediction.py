@@ -1,22 +1,34 @@
-"""The equivalent linear model's prediction: exact where the tube is linear, and the pieces that make the table."""
+"""The equivalent linear model's prediction: exact where the tube is linear, and the pieces that
+make the table.
+"""
 
 import numpy as np
 import pytest
 
-from vibroimpact.linear import frf, synthesise_records
-from vibroimpact.validation.equivalent_law import fit_law, free_level, plate_stiffness
-from vibroimpact.validation.prediction import amplified, expected_peak_factor, linear_response, prediction_rows, summary_rows
+from vibroimpact.linear.equivalent_linear import frf, synthesise_records
+from vibroimpact.validation.prediction.equivalent_law import fit_law, free_level, plate_stiffness
+from vibroimpact.validation.prediction.table import (
+    amplified,
+    expected_peak_factor,
+    linear_response,
+    prediction_rows,
+    summary_rows,
+)
 
 BAND = (5.0, 200.0)
 
 
 def test_a_linear_tube_is_predicted_by_its_own_support(study_model):
-    """RMS displacement and stress of a synthesised record of the linear tube with (k, c), within what 49 s tell."""
+    """RMS displacement and stress of a synthesised record of the linear tube with (k, c), within
+    what 49 s tell.
+    """
     k, c, load, rate = 1e5, 300.0, 3.0, 2048.0
     generator = np.random.default_rng(2)
     lines = np.zeros(int(98 * rate) // 2 + 1, complex)
     inside = slice(int(BAND[0] * 98), int(BAND[1] * 98))
-    lines[inside] = generator.standard_normal(lines[inside].size) + 1j * generator.standard_normal(lines[inside].size)
+    lines[inside] = generator.standard_normal(lines[inside].size) + 1j * generator.standard_normal(
+        lines[inside].size
+    )
     force = np.fft.irfft(lines, int(98 * rate))
     force *= load / force.std()
     expected = linear_response(study_model, k, c, load, BAND, 98.0)
@@ -25,8 +37,16 @@ def test_a_linear_tube_is_predicted_by_its_own_support(study_model):
         if name.endswith(".y"):
             assert record.std() == pytest.approx(expected.rms_displacement[name], rel=0.12)
     sections = study_model.stress_shapes.shape[1]
-    stress = synthesise_records(study_model, k, c, force, rate, output_shapes=study_model.stress_shapes.reshape(study_model.modes, -1)).reshape(sections, 2, -1)
-    rms, peak = np.sqrt((stress**2).sum(axis=1).mean(axis=-1)), np.sqrt((stress**2).sum(axis=1)).max(axis=-1)
+    stress = synthesise_records(
+        study_model,
+        k,
+        c,
+        force,
+        rate,
+        output_shapes=study_model.stress_shapes.reshape(study_model.modes, -1),
+    ).reshape(sections, 2, -1)
+    rms = np.sqrt((stress**2).sum(axis=1).mean(axis=-1))
+    peak = np.sqrt((stress**2).sum(axis=1)).max(axis=-1)
     assert rms == pytest.approx(list(expected.rms_stress.values()), rel=0.12)
     assert peak == pytest.approx(list(expected.peak_stress.values()), rel=0.25)
 
@@ -51,8 +71,16 @@ def summary(power=1.5):
     rows = []
     for gap in (1e-4, 3e-4):
         for load in np.geomspace(1.0, 20.0, 8):
-            rows += [{"method": method, "gap_m": gap, "load_rms_N": load, "k_median": (load / gap) ** power, "c_median": 0.01 * load / gap}
-                     for method in ("lscf", "ods", "broadband", "peak_half")]  # fmt: skip
+            rows += [
+                {
+                    "method": method,
+                    "gap_m": gap,
+                    "load_rms_N": load,
+                    "k_median": (load / gap) ** power,
+                    "c_median": 0.01 * load / gap,
+                }
+                for method in ("lscf", "ods", "broadband", "peak_half")
+            ]
     return rows
 
 
@@ -60,24 +88,32 @@ def test_the_law_returns_what_it_was_fitted_on_and_extends_it():
     law = fit_law(summary(), lambda load, gap: load / gap)
     for level in np.geomspace(law.level[0], law.level[-1], 7):
         k, c = law.at(level)
-        assert (k, c) == (pytest.approx(level**1.5, rel=0.01), pytest.approx(0.01 * level, rel=0.05))
+        assert (k, c) == (
+            pytest.approx(level**1.5, rel=0.01),
+            pytest.approx(0.01 * level, rel=0.05),
+        )
         assert law.inside(level)
     assert law.at(1.0) == (0.0, 0.0)
-    assert law.at(3.0 * law.level[-1])[0] == pytest.approx((3.0 * law.level[-1]) ** 1.5, rel=0.05) and not law.inside(3.0 * law.level[-1])
+    assert law.at(3.0 * law.level[-1])[0] == pytest.approx(
+        (3.0 * law.level[-1]) ** 1.5, rel=0.05
+    ) and not law.inside(3.0 * law.level[-1])
 
 
 def test_a_load_left_out_is_not_fitted():
     rows = summary()
     left = rows[4 * 3]["load_rms_N"]
     spoiled = [{**row, "k_median": 1e-30} if row["load_rms_N"] == left else row for row in rows]
-    kept, without = fit_law(rows, lambda load, gap: load / gap, without_load=left), fit_law(spoiled, lambda load, gap: load / gap, without_load=left)
+    kept = fit_law(rows, lambda load, gap: load / gap, without_load=left)
+    without = fit_law(spoiled, lambda load, gap: load / gap, without_load=left)
     assert np.array_equal(kept.k, without.k)
 
 
 def test_the_level_of_a_tube_is_its_free_motion_over_the_gap(study_model):
     frequency = np.arange(*BAND, 0.02)
     middle = study_model.contact_shapes[:, 2:3, 1]
-    assert free_level(study_model, BAND) == pytest.approx(np.sqrt(np.mean(np.abs(frf(study_model, 1.0, 0.0, frequency, middle)) ** 2)), rel=0.02)
+    assert free_level(study_model, BAND) == pytest.approx(
+        np.sqrt(np.mean(np.abs(frf(study_model, 1.0, 0.0, frequency, middle)) ** 2)), rel=0.02
+    )
     static, _ = plate_stiffness(study_model)
     assert 1e4 < static < 1e6  # between the tube's softest mode and the contact
 

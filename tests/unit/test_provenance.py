@@ -1,5 +1,8 @@
-"""Provenance: the files that a script imports, and digests that change with what they stand for and with nothing else."""
+"""Provenance: the files that a script imports, and digests that change with what they stand for and
+with nothing else.
+"""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -37,11 +40,23 @@ def imported(library, text):
     """The names of the library files behind a script with the given text."""
     script = library / "script.py"
     script.write_text(text)
-    return {str(file.relative_to(library / "src" / "vibroimpact")) for file in imported_files(script, library / "src")}
+    return {
+        str(file.relative_to(library / "src" / "vibroimpact"))
+        for file in imported_files(script, library / "src")
+    }
 
 
 def test_imports_are_followed_through_every_form(library):
-    everything = {"__init__.py", "top.py", "middle.py", "inner/__init__.py", "inner/sibling.py", "inner/deep.py", "plain.py", "circle.py"}
+    everything = {
+        "__init__.py",
+        "top.py",
+        "middle.py",
+        "inner/__init__.py",
+        "inner/sibling.py",
+        "inner/deep.py",
+        "plain.py",
+        "circle.py",
+    }
     assert imported(library, "from vibroimpact.top import name") == everything
     assert imported(library, "from vibroimpact import top") == everything
     assert imported(library, "import vibroimpact.top as t") == everything
@@ -49,17 +64,35 @@ def test_imports_are_followed_through_every_form(library):
 
 def test_what_is_not_imported_is_not_listed(library):
     assert imported(library, "import vibroimpact.alone") == {"__init__.py", "alone.py"}
-    assert imported(library, "from vibroimpact.inner.sibling import x") == {"__init__.py", "inner/__init__.py", "inner/sibling.py"}
+    assert imported(library, "from vibroimpact.inner.sibling import x") == {
+        "__init__.py",
+        "inner/__init__.py",
+        "inner/sibling.py",
+    }
     assert imported(library, "import numpy, vibroimpacts.top") == set()
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_the_files_of_a_script_are_those_that_python_loads(script):
-    """Against the interpreter: run the script's imports, list the modules of the package that were loaded."""
-    imports = [line for line in script.read_text().splitlines() if line.startswith(("import ", "from "))]
-    listing = "import sys; print('\\n'.join(m.__file__ for n, m in sys.modules.items() if n.split('.')[0] == 'vibroimpact'))"
-    run = subprocess.run([sys.executable, "-c", "\n".join([*imports, listing])], capture_output=True, text=True, check=True,
-                         env={"PYTHONPATH": str(ROOT / "src"), "PATH": "", "MPLBACKEND": "agg"})
+    """Against the interpreter: run the script's imports, list the modules of the package that were
+    loaded.
+    """
+    imports = [
+        ast.unparse(node)
+        for node in ast.parse(script.read_text()).body
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+    ]
+    listing = (
+        "import sys; print('\\n'.join(m.__file__ for n, m in sys.modules.items() if n.split('.')[0]"
+        " == 'vibroimpact'))"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", "\n".join([*imports, listing])],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={"PYTHONPATH": str(ROOT / "src"), "PATH": "", "MPLBACKEND": "agg"},
+    )
     loaded = {Path(line) for line in run.stdout.split()}
     assert loaded <= set(imported_files(script, ROOT / "src"))
 
@@ -67,7 +100,12 @@ def test_the_files_of_a_script_are_those_that_python_loads(script):
 def test_a_config_digest_stands_for_keys_and_values():
     digest = config_digest({"a": 1.0, "b": {"c": [1, 2]}})
     assert digest == config_digest({"b": {"c": [1, 2]}, "a": 1.0})
-    others = [{"a": 1.1, "b": {"c": [1, 2]}}, {"a": 1.0, "b": {"c": [2, 1]}}, {"a": 1.0}, {"x": 1.0, "b": {"c": [1, 2]}}]
+    others = [
+        {"a": 1.1, "b": {"c": [1, 2]}},
+        {"a": 1.0, "b": {"c": [2, 1]}},
+        {"a": 1.0},
+        {"x": 1.0, "b": {"c": [1, 2]}},
+    ]
     assert digest not in {config_digest(other) for other in others}
 
 
@@ -76,14 +114,16 @@ def test_a_source_digest_stands_for_the_contents_wherever_they_lie(tmp_path):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "a.py").write_text("1")
         (tmp_path / folder / "b.py").write_text("2")
-    here, there = ([tmp_path / folder / "a.py", tmp_path / folder / "b.py"] for folder in ("here", "there"))
+    here, there = (
+        [tmp_path / folder / "a.py", tmp_path / folder / "b.py"] for folder in ("here", "there")
+    )
     assert source_digest(here) == source_digest(reversed(there))
     there[0].write_text("3")
     assert source_digest(here) != source_digest(there)
 
 
 def test_an_origin_names_digests_and_versions():
-    found = origin({"seed": 1}, [ROOT / "src" / "vibroimpact" / "cases.py"])
+    found = origin({"seed": 1}, [ROOT / "src" / "vibroimpact" / "units.py"])
     assert set(found) == {"config_digest", "source_digest", "versions"}
     assert f"python {sys.version.split()[0]}" in found["versions"]
     assert "not installed" not in versions().values()

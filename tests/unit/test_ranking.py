@@ -8,25 +8,40 @@ from vibroimpact.discrepancy import conclusion
 from vibroimpact.discrepancy.candidates import candidate_named
 
 SPRING = SimpleNamespace(candidate=candidate_named("quadratic_stiffness@left_leg"))
-PREPARED = SimpleNamespace(adopted={"name": "added_mass@apex", "unit": [0.5], "gain": 100.0}, linear=[])
+PREPARED = SimpleNamespace(
+    adopted={"name": "added_mass@apex", "unit": [0.5], "gain": 100.0}, linear=[]
+)
 SCREENING = {"threshold": 15.0, "ranked": []}
 
 
 @pytest.fixture
 def ranked(monkeypatch):
-    """Return the function (gain of a spring beside an adopted mass, verdict, what it chose) -> [ids], best first."""
+    """Return the function (gain of a spring beside an adopted mass, verdict, what it chose) ->
+    [ids], best first.
+    """
     monkeypatch.setattr(conclusion.verdict, "closure", lambda *_: 0.0)
 
     def run(gain, verdict, chosen):
         totals = {SPRING.candidate.name: (gain, gain, 0.0)}
-        rows = conclusion.ranking_rows(None, None, PREPARED, [SPRING], totals, SCREENING, None, SimpleNamespace(verdict=verdict, chosen=chosen))
+        rows = conclusion.ranking_rows(
+            None,
+            None,
+            PREPARED,
+            [SPRING],
+            totals,
+            SCREENING,
+            None,
+            SimpleNamespace(verdict=verdict, chosen=chosen),
+        )
         return [row["ids"] for row in rows]
 
     return run
 
 
 def test_what_is_named_comes_before_an_effect_that_was_not_added_to_it(ranked):
-    """28 units beyond the threshold, but held-out records contradict it: the mass alone is the answer, and the first of the list."""
+    """28 units beyond the threshold, but held-out records contradict it: the mass alone is the
+    answer, and the first of the list.
+    """
     assert ranked(28.0, "named", None) == ["added_mass", "added_mass+quadratic_stiffness"]
 
 
@@ -34,6 +49,8 @@ def test_what_was_added_comes_first(ranked):
     assert ranked(28.0, "named", SPRING) == ["added_mass+quadratic_stiffness", "added_mass"]
 
 
-@pytest.mark.parametrize(("gain", "first"), [(28.0, "added_mass+quadratic_stiffness"), (10.0, "added_mass")])
+@pytest.mark.parametrize(
+    ("gain", "first"), [(28.0, "added_mass+quadratic_stiffness"), (10.0, "added_mass")]
+)
 def test_where_nothing_is_named_gain_decides(ranked, gain, first):
     assert ranked(gain, "unknown", None)[0] == first

@@ -2,18 +2,38 @@
 
 import pytest
 
-from vibroimpact.figures.discrepancy_ranking import ranking_figure
+from vibroimpact.figures.discrepancy.ranking import ranking_figure
 
 
 def rows(*pairs):
     """Rows of a ranking of (ids, location), the first best."""
-    return [{"ids": ids, "location": place, "fit_score": 10.0, "heldout_score": 20.0 - number, "closed_fraction": 0.5, "threshold": 15.0} for number, (ids, place) in enumerate(pairs)]
+    return [
+        {
+            "ids": ids,
+            "location": place,
+            "fit_score": 10.0,
+            "heldout_score": 20.0 - number,
+            "closed_fraction": 0.5,
+            "threshold": 15.0,
+        }
+        for number, (ids, place) in enumerate(pairs)
+    ]
 
 
-@pytest.mark.parametrize(("pairs", "labels"), [
-    ([("gap", "all"), ("dry_friction", "all")], ["gap", "dry friction"]),
-    ([("lateral_stinger+lateral_stinger", "along_x"), ("lateral_stinger+gap", "all")], ["lateral stinger + lateral stinger (along x)", "lateral stinger + gap"]),
-    ([("foliate_obstacle", "all"), ("foliate_obstacle", "all, foliate lands")], ["foliate obstacle (all)", "foliate obstacle (all, foliate lands)"])])  # fmt: skip
+@pytest.mark.parametrize(
+    ("pairs", "labels"),
+    [
+        ([("gap", "all"), ("dry_friction", "all")], ["gap", "dry friction"]),
+        (
+            [("lateral_stinger+lateral_stinger", "along_x"), ("lateral_stinger+gap", "all")],
+            ["lateral stinger + lateral stinger (along x)", "lateral stinger + gap"],
+        ),
+        (
+            [("foliate_obstacle", "all"), ("foliate_obstacle", "all, foliate lands")],
+            ["foliate obstacle (all)", "foliate obstacle (all, foliate lands)"],
+        ),
+    ],
+)
 def test_a_place_is_told_where_the_effects_do_not_tell_bars_apart(pairs, labels):
     (sheet,) = ranking_figure(rows(*pairs))
     assert [text.get_text() for text in sheet.axes["main"].get_yticklabels()] == labels

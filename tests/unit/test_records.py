@@ -4,16 +4,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from vibroimpact import records, variables
+from vibroimpact import records
+from vibroimpact.reduction import model_file
+from vibroimpact.study import record_variables as variables
 
 
 def test_the_model_comes_back_bit_for_bit(study_model, tmp_path):
-    records.write_model(study_model, tmp_path / "model.nc")
-    again = records.read_model(tmp_path / "model.nc")
+    model_file.write_model(study_model, tmp_path / "model.nc")
+    again = model_file.read_model(tmp_path / "model.nc")
     for name in study_model.__dataclass_fields__:
         came, given = getattr(again, name), getattr(study_model, name)
-        columns = vars(given) if name in records.LAWS else {}
-        assert all(np.array_equal(getattr(came, column), value, equal_nan=True) for column, value in columns.items()), name
+        columns = vars(given) if name in model_file.LAWS else {}
+        assert all(
+            np.array_equal(getattr(came, column), value, equal_nan=True)
+            for column, value in columns.items()
+        ), name
         assert columns or np.array_equal(came, given), name
 
 
@@ -36,7 +41,11 @@ def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
 def test_a_file_filled_in_pieces_is_the_file_of_the_whole(tmp_path):
     values = np.arange(12.0, dtype="f4").reshape(2, 6)
     coordinates = {"time": ("time", np.arange(6.0)), "place": ("point", [0.5, 1.5], {"units": "m"})}
-    whole = xr.Dataset({"series": (("point", "time"), values, {"units": "m"}), "name": ("point", ["a", "b"])}, coordinates, {"case": "one"})
+    whole = xr.Dataset(
+        {"series": (("point", "time"), values, {"units": "m"}), "name": ("point", ["a", "b"])},
+        coordinates,
+        {"case": "one"},
+    )
     parts = {"series": (("point", "time"), "f4", {"units": "m"})}
     with records.RecordFile(tmp_path / "pieces.nc", whole.drop_vars("series"), parts) as file:
         for place in (slice(0, 4), slice(4, 6)):
@@ -44,15 +53,24 @@ def test_a_file_filled_in_pieces_is_the_file_of_the_whole(tmp_path):
         assert not (tmp_path / "pieces.nc").exists()
     for read in (records.read_record, records.read_dataset):
         again = read(tmp_path / "pieces.nc")
-        assert again.equals(whole) and again.attrs["case"] == "one" and again["place"].attrs == {"units": "m"}
+        assert (
+            again.equals(whole)
+            and again.attrs["case"] == "one"
+            and again["place"].attrs == {"units": "m"}
+        )
 
 
 def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
-    dataset = xr.Dataset({"a": ("x", [1.0, 2.0]), "b": ("y", [3.0]), "c": ((), 4)}, {"x": [5, 6], "y": ["seven"], "beside": ("x", [8.0, 9.0])})
+    dataset = xr.Dataset(
+        {"a": ("x", [1.0, 2.0]), "b": ("y", [3.0]), "c": ((), 4)},
+        {"x": [5, 6], "y": ["seven"], "beside": ("x", [8.0, 9.0])},
+    )
     records.write_record(dataset, tmp_path / "some.nc")
     some = records.read_record(tmp_path / "some.nc", ["a", "c"])
     assert some.equals(dataset[["a", "c"]]) and set(some.coords) == {"x", "beside"}
-    assert records.read_record(tmp_path / "some.nc").equals(records.read_dataset(tmp_path / "some.nc"))
+    assert records.read_record(tmp_path / "some.nc").equals(
+        records.read_dataset(tmp_path / "some.nc")
+    )
     with pytest.raises(KeyError):
         records.read_record(tmp_path / "some.nc", ["none"])
 

@@ -1,4 +1,6 @@
-"""The Ritz basis: uncoupled groups, orthonormality, exact static compliance, dependent vectors, free structures."""
+"""The Ritz basis: uncoupled groups, orthonormality, exact static compliance, dependent vectors,
+free structures.
+"""
 
 from types import SimpleNamespace
 
@@ -6,11 +8,18 @@ import numpy as np
 import pytest
 from scipy import linalg, sparse
 
-from vibroimpact.reduction import build_model
-from vibroimpact.ritz import basis_vectors, eigenmodes, orthonormal_basis, uncoupled_groups
-from vibroimpact.structure import build_structure
+from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.reduction.ritz_basis import (
+    basis_vectors,
+    eigenmodes,
+    orthonormal_basis,
+    uncoupled_groups,
+)
+from vibroimpact.structure.tube import build_structure
 
-BASIS = SimpleNamespace(free_modes_to_Hz=2000.0, constrained_modes_to_Hz=800.0, attachment_shapes=True)
+BASIS = SimpleNamespace(
+    free_modes_to_Hz=2000.0, constrained_modes_to_Hz=800.0, attachment_shapes=True
+)
 
 
 def tube(root="clamped", radius=0.3, bend=True, direction=(0.0, 0.0, 1.0)):
@@ -18,15 +27,37 @@ def tube(root="clamped", radius=0.3, bend=True, direction=(0.0, 0.0, 1.0)):
     end = SimpleNamespace(kind=root)
     segments = [SimpleNamespace(kind="straight", length_m=0.7)]
     if bend:
-        segments += [SimpleNamespace(kind="bend", radius_m=radius, angle_deg=180.0, toward=[1.0, 0.0, 0.0]), segments[0]]
-    section = SimpleNamespace(outer_diameter_m=0.02222, wall_thickness_m=0.00127, shear_coefficient=0.53)
+        segments += [
+            SimpleNamespace(kind="bend", radius_m=radius, angle_deg=180.0, toward=[1.0, 0.0, 0.0]),
+            segments[0],
+        ]
+    section = SimpleNamespace(
+        outer_diameter_m=0.02222, wall_thickness_m=0.00127, shear_coefficient=0.53
+    )
     structure = SimpleNamespace(
-        kind="path", theory="timoshenko", section=section,
-        material=SimpleNamespace(young_modulus_Pa=2.02e11, poisson_ratio=0.3, density_kg_per_m3=8330.0), start_m=[0.0, 0.0, 0.0],
-        start_direction=direction, segments=segments, start=end, end=end, mesh=SimpleNamespace(elements_per_span=10, elements_per_bend=20))
+        kind="path",
+        theory="timoshenko",
+        section=section,
+        material=SimpleNamespace(
+            young_modulus_Pa=2.02e11, poisson_ratio=0.3, density_kg_per_m3=8330.0
+        ),
+        start_m=[0.0, 0.0, 0.0],
+        start_direction=direction,
+        segments=segments,
+        start=end,
+        end=end,
+        mesh=SimpleNamespace(elements_per_span=10, elements_per_bend=20),
+    )
     at = 0.35 * np.array(direction) / np.linalg.norm(direction)
-    support = SimpleNamespace(name="left", at_m=at, height_m=0.03, points=5, stiffness_N_per_m=4.0e6, gap_factor=1.0,
-                              centre_offset_m=[0.0, 0.0])
+    support = SimpleNamespace(
+        name="left",
+        at_m=at,
+        height_m=0.03,
+        points=5,
+        stiffness_N_per_m=4.0e6,
+        gap_factor=1.0,
+        centre_offset_m=[0.0, 0.0],
+    )
     return build_structure(SimpleNamespace(structure=structure, supports=[support]))
 
 
@@ -48,7 +79,12 @@ def test_a_plane_tube_has_an_in_plane_and_an_out_of_plane_group():
 
 def test_a_straight_tube_also_parts_axial_motion_and_torsion():
     groups = groups_of(tube(bend=False))
-    assert [sorted(set((group.dofs % 6).tolist())) for group in groups] == [[0, 4], [1, 3], [2], [5]]
+    assert [sorted(set((group.dofs % 6).tolist())) for group in groups] == [
+        [0, 4],
+        [1, 3],
+        [2],
+        [5],
+    ]
     assert [len(group.contact) for group in groups] == [5, 5, 0, 0]
 
 
@@ -94,19 +130,34 @@ def test_contact_compliance_is_that_of_the_full_model(groups):
         omega, shapes = orthonormal_basis(group, basis_vectors(group, BASIS))
         moved = group.contact @ shapes
         assert np.allclose((moved / omega**2) @ moved.T, full, rtol=1e-9, atol=0)
-        omega, shapes = orthonormal_basis(group, basis_vectors(group, BASIS, ("free_modes", "constrained_modes")))
+        omega, shapes = orthonormal_basis(
+            group, basis_vectors(group, BASIS, ("free_modes", "constrained_modes"))
+        )
         moved = group.contact @ shapes
-        assert not np.allclose((moved / omega**2) @ moved.T, full, rtol=1e-5, atol=0)  # only attachment shapes make it exact
+        assert not np.allclose(
+            (moved / omega**2) @ moved.T, full, rtol=1e-5, atol=0
+        )  # only attachment shapes make it exact
 
 
 def test_dependent_vectors_add_nothing(groups):
     group = groups[0]
     vectors = basis_vectors(group, BASIS)
     omega, _ = orthonormal_basis(group, vectors)
-    again = {**vectors, "constrained_modes": np.hstack([vectors["constrained_modes"]] * 2), "attachment_shapes":
-             np.hstack([vectors["attachment_shapes"], vectors["attachment_shapes"] @ np.ones((5, 2)), vectors["free_modes"]])}
+    again = {
+        **vectors,
+        "constrained_modes": np.hstack([vectors["constrained_modes"]] * 2),
+        "attachment_shapes": np.hstack(
+            [
+                vectors["attachment_shapes"],
+                vectors["attachment_shapes"] @ np.ones((5, 2)),
+                vectors["free_modes"],
+            ]
+        ),
+    }
     repeated, _ = orthonormal_basis(group, again)
-    assert repeated == pytest.approx(omega, rel=1e-4)  # residual vectors are no modes: round-off of the static shapes moves them
+    assert repeated == pytest.approx(
+        omega, rel=1e-4
+    )  # residual vectors are no modes: round-off of the static shapes moves them
 
 
 def test_every_attachment_shape_counts(groups):
@@ -124,17 +175,27 @@ def test_a_free_tube_keeps_its_rigid_motion_and_its_static_flexibility():
         omega, shapes = orthonormal_basis(group, basis_vectors(group, BASIS))
         rigid += np.sum(omega == 0.0)
         assert np.allclose(shapes.T @ group.mass @ shapes, np.eye(len(omega)), rtol=0, atol=1e-7)
-        # held by springs at the contact points, the tube has the full model's frequencies: static shapes are still the right ones
+        # held by springs at the contact points, the tube has the full model's frequencies: static
+        # shapes are still the right ones
         stiff = 1.0e7
         moved = group.contact @ shapes
         reduced = linalg.eigvalsh(np.diag(omega**2) + stiff * moved.T @ moved)[:6]
-        full = linalg.eigh(group.stiffness + stiff * group.contact.T @ group.contact, group.mass, eigvals_only=True, subset_by_index=[0, 5])
-        assert reduced == pytest.approx(full, rel=1e-6, abs=0.1)  # rad²/s²: what is left rigid is round-off
+        full = linalg.eigh(
+            group.stiffness + stiff * group.contact.T @ group.contact,
+            group.mass,
+            eigvals_only=True,
+            subset_by_index=[0, 5],
+        )
+        assert reduced == pytest.approx(
+            full, rel=1e-6, abs=0.1
+        )  # rad²/s²: what is left rigid is round-off
     assert rigid == 6
 
 
 def test_frequencies_of_a_free_tube_do_not_contain_the_shift():
-    narrow = SimpleNamespace(free_modes_to_Hz=20.0, constrained_modes_to_Hz=0.0, attachment_shapes=True)
+    narrow = SimpleNamespace(
+        free_modes_to_Hz=20.0, constrained_modes_to_Hz=0.0, attachment_shapes=True
+    )
     for group in groups_of(tube(root="free")):
         omega, shapes = orthonormal_basis(group, basis_vectors(group, narrow))
         squares = np.einsum("dm,dm->m", shapes, group.stiffness @ shapes)
@@ -148,18 +209,28 @@ def test_a_clamped_tube_needs_no_shift(groups):
 
 def test_families_can_be_chosen_and_a_group_without_contact_has_free_modes_only(groups):
     assert list(basis_vectors(groups[0], BASIS, ("constrained_modes",))) == ["constrained_modes"]
-    no_shapes = SimpleNamespace(free_modes_to_Hz=2000.0, constrained_modes_to_Hz=800.0, attachment_shapes=False)
+    no_shapes = SimpleNamespace(
+        free_modes_to_Hz=2000.0, constrained_modes_to_Hz=800.0, attachment_shapes=False
+    )
     assert list(basis_vectors(groups[0], no_shapes)) == ["free_modes", "constrained_modes"]
     torsion = groups_of(tube(bend=False))[3]
-    wide = SimpleNamespace(free_modes_to_Hz=5000.0, constrained_modes_to_Hz=5000.0, attachment_shapes=True)
+    wide = SimpleNamespace(
+        free_modes_to_Hz=5000.0, constrained_modes_to_Hz=5000.0, attachment_shapes=True
+    )
     assert list(basis_vectors(torsion, wide)) == ["free_modes"]
 
 
 @pytest.mark.parametrize("theory", ["euler_bernoulli", "timoshenko"])
 def test_short_elements_do_not_lose_the_first_modes(study_config, theory):
-    """25 contact points in 30 mm: elements of 1.25 mm, highest frequency 1e6 times the first. The first modes stay those of other codes."""
+    """25 contact points in 30 mm: elements of 1.25 mm, highest frequency 1e6 times the first. The
+    first modes stay those of other codes.
+    """
     structure = study_config.structure.model_copy(update={"theory": theory})
     supports = tuple(support.model_copy(update={"points": 25}) for support in study_config.supports)
-    model = build_model(study_config.model_copy(update={"structure": structure, "supports": supports}))
-    expected = {"euler_bernoulli": [15.98, 29.02, 45.10], "timoshenko": [15.97, 28.96, 45.03]}[theory]
+    model = build_model(
+        study_config.model_copy(update={"structure": structure, "supports": supports})
+    )
+    expected = {"euler_bernoulli": [15.98, 29.02, 45.10], "timoshenko": [15.97, 28.96, 45.03]}[
+        theory
+    ]
     assert model.frequencies[:3] == pytest.approx(expected, rel=1.0e-3)

@@ -1,4 +1,6 @@
-"""Pairs by another law of one of their quantities: which they are, and where they are searched from."""
+"""Pairs by another law of one of their quantities: which they are, and where they are searched
+from.
+"""
 
 from types import SimpleNamespace
 
@@ -13,7 +15,9 @@ VALUES = {"excitation": {"point": "shaker", "direction": [0.0, -2.0, 0.0]}}
 
 
 def test_a_law_is_exchanged_for_another_of_its_quantity_alone():
-    assert [(pair.name, number) for pair, number in exchanged(PAIR, VALUES)] == [("contact_stiffness@all+foliate_obstacle@all", 0)]
+    assert [(pair.name, number) for pair, number in exchanged(PAIR, VALUES)] == [
+        ("contact_stiffness@all+foliate_obstacle@all", 0)
+    ]
     assert exchanged(candidate_named("gap@all+foliate_obstacle@all"), VALUES) == []
     assert exchanged(candidate_named("hertz@all+contact_stiffness@all"), VALUES) == []
 
@@ -21,13 +25,19 @@ def test_a_law_is_exchanged_for_another_of_its_quantity_alone():
 def test_a_spring_that_may_give_way_is_tried_as_one_that_never_does_where_the_catalogue_has_it():
     """A rod along the force; a rod is at the drive point alone, and along an axis."""
     spring = candidate_named("coulomb_friction@apex+saturation_stiffness@shaker")
-    assert [(pair.name, number) for pair, number in exchanged(spring, VALUES)] == [("coulomb_friction@apex+lateral_stinger@along_y", 1)]
-    assert exchanged(candidate_named("coulomb_friction@apex+saturation_stiffness@apex"), VALUES) == []
-    assert exchanged(spring, {"excitation": {"point": "shaker", "direction": [0.0, 1.0, 1.0]}}) == []
+    assert [(pair.name, number) for pair, number in exchanged(spring, VALUES)] == [
+        ("coulomb_friction@apex+lateral_stinger@along_y", 1)
+    ]
+    assert (
+        exchanged(candidate_named("coulomb_friction@apex+saturation_stiffness@apex"), VALUES) == []
+    )
+    assert (
+        exchanged(spring, {"excitation": {"point": "shaker", "direction": [0.0, 1.0, 1.0]}}) == []
+    )
 
 
 def test_it_is_searched_from_where_the_other_effect_is_at_every_value_of_its_own():
-    (pair, number), = exchanged(PAIR, VALUES)
+    ((pair, number),) = exchanged(PAIR, VALUES)
     points = starts(pair, number, SimpleNamespace(candidate=PAIR, unit=np.array([0.3, 0.7, 0.5])))
     np.testing.assert_allclose(points[:, 1:], np.tile([0.7, 0.5], (len(points), 1)))
     np.testing.assert_allclose(points[:, :1], pair.first.design())

@@ -7,23 +7,34 @@ from vibroimpact.discrepancy.suite_check import CHECKS, table
 
 def verdict(kind, *sets, factor=None):
     """The part of verdict.json that is looked at."""
-    rows = [] if factor is None else [{"id": "gap", "parameters": {"gap_factor": {"value": factor}}}]
-    return {"verdict": kind, "ambiguity_set": [list(row) for row in sets], "effects": [], "most_probable": rows}
+    rows = (
+        [] if factor is None else [{"id": "gap", "parameters": {"gap_factor": {"value": factor}}}]
+    )
+    return {
+        "verdict": kind,
+        "ambiguity_set": [list(row) for row in sets],
+        "effects": [],
+        "most_probable": rows,
+    }
 
 
-@pytest.mark.parametrize("name, said, right", [
-    ("nothing", verdict("none"), True),
-    ("nothing", verdict("unknown"), False),
-    ("nothing", verdict("named", ["gap"]), False),
-    ("common_gain", verdict("ambiguous", ["gap"], ["sensor_gain"]), True),
-    ("common_gain", verdict("named", ["gap"]), False),
-    ("force_gain", verdict("named", ["sensor_gain"]), True),
-    ("force_gain", verdict("ambiguous", ["gap"], ["sensor_gain"]), False),
-    ("contact_damping", verdict("ambiguous", ["hunt_crossley"], ["contact_damping"]), True),
-    ("contact_damping", verdict("named", ["dry_friction"]), False),
-    ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"], factor=0.63), True),
-    ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"], factor=1.6), False),
-    ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"]), False)])  # fmt: skip
+@pytest.mark.parametrize(
+    "name, said, right",
+    [
+        ("nothing", verdict("none"), True),
+        ("nothing", verdict("unknown"), False),
+        ("nothing", verdict("named", ["gap"]), False),
+        ("common_gain", verdict("ambiguous", ["gap"], ["sensor_gain"]), True),
+        ("common_gain", verdict("named", ["gap"]), False),
+        ("force_gain", verdict("named", ["sensor_gain"]), True),
+        ("force_gain", verdict("ambiguous", ["gap"], ["sensor_gain"]), False),
+        ("contact_damping", verdict("ambiguous", ["hunt_crossley"], ["contact_damping"]), True),
+        ("contact_damping", verdict("named", ["dry_friction"]), False),
+        ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"], factor=0.63), True),
+        ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"], factor=1.6), False),
+        ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"]), False),
+    ],
+)
 def test_a_verdict_is_right_or_told_why_not(name, said, right):
     (row,) = table({name: said})
     assert row["right"] == right and bool(row["faults"]) != right
@@ -33,10 +44,15 @@ def test_every_check_hides_what_the_generator_knows():
     from vibroimpact_truth.hidden import EFFECTS
     from vibroimpact_truth.measure import INSTRUMENTS
 
-    assert {effect for check in CHECKS.values() for effect, _ in check.hidden} <= {*EFFECTS, *INSTRUMENTS}
+    assert {effect for check in CHECKS.values() for effect, _ in check.hidden} <= {
+        *EFFECTS,
+        *INSTRUMENTS,
+    }
 
 
 def test_what_only_the_model_has_is_in_its_configuration(study_config):
     plain = study_config.model_dump(mode="json")
     assert CHECKS["nothing"].values(plain) == plain
-    assert {support["gap_factor"] for support in CHECKS["swapped"].values(plain)["supports"]} == {1.6}
+    assert {support["gap_factor"] for support in CHECKS["swapped"].values(plain)["supports"]} == {
+        1.6
+    }

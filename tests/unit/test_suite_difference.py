@@ -1,4 +1,6 @@
-"""Suites of other seeds or longer records: their names, their seeds, and how they are held against the plain one."""
+"""Suites of other seeds or longer records: their names, their seeds, and how they are held against
+the plain one.
+"""
 
 import json
 
@@ -13,9 +15,15 @@ FOUND = effect("dry_friction", "mu", 0.2, 0.16, 0.24)
 MOVED = effect("dry_friction", "mu", 0.22, 0.2, 0.24)
 
 
-@pytest.mark.parametrize(("seed", "seconds", "draw"), [(5, 20, 0), (5, 49, 0), (5, 20, 2), (3812913005, 49, 1)])
+@pytest.mark.parametrize(
+    ("seed", "seconds", "draw"), [(5, 20, 0), (5, 49, 0), (5, 20, 2), (3812913005, 49, 1)]
+)
 def test_a_suite_is_known_by_its_name(seed, seconds, draw):
-    assert suite_of(suite_name(seed, seconds, draw)) == {"seed": seed, "seconds": seconds, "draw": draw}
+    assert suite_of(suite_name(seed, seconds, draw)) == {
+        "seed": seed,
+        "seconds": seconds,
+        "draw": draw,
+    }
 
 
 def test_the_plain_suite_has_the_plain_name():
@@ -30,7 +38,13 @@ def test_draws_share_no_seed():
     seeds = []
     for draw in (0, 1, 2):
         Bench.draw = draw
-        seeds.append({seed for first in (0, 900, 20000) for _, _, seed in Workbench.runs(Bench, [0, 1], 16, first)})
+        seeds.append(
+            {
+                seed
+                for first in (0, 900, 20000)
+                for _, _, seed in Workbench.runs(Bench, [0, 1], 16, first)
+            }
+        )
     assert seeds[0] & set(range(16)) and not seeds[0] & seeds[1] and not seeds[1] & seeds[2]
 
 
@@ -41,18 +55,44 @@ def written(folder, verdicts):
         (folder / name).mkdir(parents=True)
         (folder / name / "verdict.json").write_text(json.dumps(verdict))
         (folder / "truth").mkdir(exist_ok=True)
-        (folder / "truth" / f"{name}.json").write_text(json.dumps(truth_of("strong", ("dry_friction", {"mu": 0.2}))))
+        (folder / "truth" / f"{name}.json").write_text(
+            json.dumps(truth_of("strong", ("dry_friction", {"mu": 0.2})))
+        )
     return folder
 
 
 def test_verdicts_are_held_against_each_other(tmp_path):
     friction, lobes = ["dry_friction"], ["foliate_obstacle"]
-    plain = written(tmp_path / "plain", [verdict_of("named", [friction], [FOUND]), verdict_of("ambiguous", [friction, lobes]), verdict_of("unknown"), verdict_of("named", [lobes])])
-    other = written(tmp_path / "other", [verdict_of("named", [friction], [MOVED]), verdict_of("named", [lobes]), verdict_of("unknown"), verdict_of("unknown")])
+    plain = written(
+        tmp_path / "plain",
+        [
+            verdict_of("named", [friction], [FOUND]),
+            verdict_of("ambiguous", [friction, lobes]),
+            verdict_of("unknown"),
+            verdict_of("named", [lobes]),
+        ],
+    )
+    other = written(
+        tmp_path / "other",
+        [
+            verdict_of("named", [friction], [MOVED]),
+            verdict_of("named", [lobes]),
+            verdict_of("unknown"),
+            verdict_of("unknown"),
+        ],
+    )
     rows = differences(plain, other, [f"campaign_{number:04d}" for number in range(4)])
-    assert [[row[quantity] for quantity in AGREE] for row in rows] == [[True, True, True, True], [False, False, True, False], [True, True, True, True],
-                                                                         [False, False, False, True]]  # fmt: skip
-    assert rows[0]["moved_in_widths"] == pytest.approx(0.25) and rows[0]["other_value"] == 0.22 and rows[1]["parameter"] == ""
+    assert [[row[quantity] for quantity in AGREE] for row in rows] == [
+        [True, True, True, True],
+        [False, False, True, False],
+        [True, True, True, True],
+        [False, False, False, True],
+    ]
+    assert (
+        rows[0]["moved_in_widths"] == pytest.approx(0.25)
+        and rows[0]["other_value"] == 0.22
+        and rows[1]["parameter"] == ""
+    )
     rate = {row["quantity"]: row for row in agreement(rows)}
     same = rate["same verdict"]
     assert same["rate"] == 0.5 and same["low"] < 0.5 < same["high"] and same["campaigns"] == 4

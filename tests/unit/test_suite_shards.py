@@ -1,4 +1,6 @@
-"""Shards of the suite: which campaigns each judges, and how what was judged in several places becomes one table."""
+"""Shards of the suite: which campaigns each judges, and how what was judged in several places
+becomes one table.
+"""
 
 import pytest
 
@@ -9,23 +11,43 @@ from vibroimpact.discrepancy.suite import rates, read, read_shards, read_table
 from vibroimpact.records import write_table
 
 FOUND = effect("dry_friction", "mu", 0.21, 0.16, 0.24)
-VERDICTS = [verdict_of("named", [["dry_friction"]], [FOUND]), verdict_of("ambiguous", [["dry_friction"], ["gap"]]), verdict_of("unknown", before_dB=None), verdict_of("none")]
+VERDICTS = [
+    verdict_of("named", [["dry_friction"]], [FOUND]),
+    verdict_of("ambiguous", [["dry_friction"], ["gap"]]),
+    verdict_of("unknown", before_dB=None),
+    verdict_of("none"),
+]
 
 
 @pytest.fixture
 def shards(tmp_path):
-    """The folder of a suite with four campaigns, and another place's campaigns.csv of the last two."""
-    folder, elsewhere = written(tmp_path / "suite_5", VERDICTS), written(tmp_path / "elsewhere" / "suite_5", VERDICTS)
+    """The folder of a suite with four campaigns, and another place's campaigns.csv of the last
+    two.
+    """
+    folder = written(tmp_path / "suite_5", VERDICTS)
+    elsewhere = written(tmp_path / "elsewhere" / "suite_5", VERDICTS)
     write_table(read(elsewhere)[2:], tmp_path / "campaigns.csv")
     return folder, tmp_path / "campaigns.csv"
 
 
 def test_shards_add_up():
-    assert sorted([*shard_of(11, "0/3"), *shard_of(11, "1/3"), *shard_of("11", "2/3")]) == list(range(11))
+    assert sorted([*shard_of(11, "0/3"), *shard_of(11, "1/3"), *shard_of("11", "2/3")]) == list(
+        range(11)
+    )
 
 
-@pytest.mark.parametrize(("count", "shard", "named"), [("many", "0/1", "count = many"), ("0", "0/1", "count = 0"), ("-3", "0/1", "count = -3"), ("9", "3/3", "shard = 3/3"),
-                                                       ("9", "1", "shard = 1"), ("9", "0/0", "shard = 0/0"), ("9", "a/b", "shard = a/b")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("count", "shard", "named"),
+    [
+        ("many", "0/1", "count = many"),
+        ("0", "0/1", "count = 0"),
+        ("-3", "0/1", "count = -3"),
+        ("9", "3/3", "shard = 3/3"),
+        ("9", "1", "shard = 1"),
+        ("9", "0/0", "shard = 0/0"),
+        ("9", "a/b", "shard = a/b"),
+    ],
+)
 def test_no_shard_is_refused_by_a_sentence(count, shard, named):
     with pytest.raises(ValueError, match=f"^{named}: give"):
         shard_of(count, shard)
@@ -38,16 +60,25 @@ def test_a_table_is_read_as_it_was_written(shards):
 
 def test_what_was_judged_elsewhere_is_known_and_counts_once(shards):
     folder, file = shards
-    assert numbers_judged(folder) == [0, 1, 2, 3] and numbers_added([file], "suite_5") == {2, 3} and numbers_added([], "suite_5") == set()
+    assert (
+        numbers_judged(folder) == [0, 1, 2, 3]
+        and numbers_added([file], "suite_5") == {2, 3}
+        and numbers_added([], "suite_5") == set()
+    )
     whole = read_shards(folder, [])
     assert repr(read_shards(folder, [file])) == repr(whole)
     for number in (2, 3):
         (folder / f"campaign_{number:04d}" / "verdict.json").unlink()
-    assert numbers_judged(folder) == [0, 1] and repr(rates(read_shards(folder, [file]))) == repr(rates(whole))
+    assert numbers_judged(folder) == [0, 1] and repr(rates(read_shards(folder, [file]))) == repr(
+        rates(whole)
+    )
 
 
 def test_the_table_of_another_suite_is_refused(shards, tmp_path):
-    with pytest.raises(ValueError, match=r"campaigns.csv holds campaigns of suite_5: give a campaigns.csv of suite_6"):
+    with pytest.raises(
+        ValueError,
+        match=r"campaigns.csv holds campaigns of suite_5: give a campaigns.csv of suite_6",
+    ):
         numbers_added([shards[1]], "suite_6")
     with pytest.raises(ValueError, match="nothing.csv is not there"):
         numbers_added([tmp_path / "nothing.csv"], "suite_5")

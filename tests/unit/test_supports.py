@@ -5,29 +5,48 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.centreline import build_centreline
-from vibroimpact.supports import contact_arc_lengths, place_contact_points
+from vibroimpact.contact.supports import contact_arc_lengths, place_contact_points
+from vibroimpact.geometry.centreline import build_centreline
 
 LINE = build_centreline(SimpleNamespace(kind="u_tube", leg_length_m=0.7, bend_radius_m=0.3))
 
 
 def support(**changes):
     """Return a support of the stand-in tube, with some keys changed."""
-    keys = {"name": "left", "at_m": [-0.3, 0.0, 0.35], "height_m": 0.03, "points": 5, "stiffness_N_per_m": 4.0e6, "gap_factor": 1.0,
-            "centre_offset_m": [0.0, 0.0]}
+    keys = {
+        "name": "left",
+        "at_m": [-0.3, 0.0, 0.35],
+        "height_m": 0.03,
+        "points": 5,
+        "stiffness_N_per_m": 4.0e6,
+        "gap_factor": 1.0,
+        "centre_offset_m": [0.0, 0.0],
+    }
     return SimpleNamespace(**{**keys, **changes})
 
 
 def test_points_are_evenly_spaced_with_both_edges():
-    assert contact_arc_lengths(LINE, support()) == pytest.approx([0.335, 0.3425, 0.35, 0.3575, 0.365])
+    assert contact_arc_lengths(LINE, support()) == pytest.approx(
+        [0.335, 0.3425, 0.35, 0.3575, 0.365]
+    )
     assert contact_arc_lengths(LINE, support(points=1)) == pytest.approx([0.35])
 
 
 def test_a_number_is_the_total_and_a_list_is_per_point():
-    contact = place_contact_points(LINE, [
-        support(centre_offset_m=(1e-5, -2e-5)),
-        support(name="right", at_m=[0.3, 0, 0.35], points=2, stiffness_N_per_m=(1.0e6, 3.0e6), gap_factor=(1.0, 0.5),
-                centre_offset_m=((1e-5, 0.0), (0.0, 2e-5)))])
+    contact = place_contact_points(
+        LINE,
+        [
+            support(centre_offset_m=(1e-5, -2e-5)),
+            support(
+                name="right",
+                at_m=[0.3, 0, 0.35],
+                points=2,
+                stiffness_N_per_m=(1.0e6, 3.0e6),
+                gap_factor=(1.0, 0.5),
+                centre_offset_m=((1e-5, 0.0), (0.0, 2e-5)),
+            ),
+        ],
+    )
     assert contact.stiffness.tolist() == [8.0e5] * 5 + [1.0e6, 3.0e6]
     assert contact.weight.tolist() == [0.2] * 5 + [0.25, 0.75]
     assert contact.gap_factor.tolist() == [1.0] * 6 + [0.5]
@@ -37,22 +56,40 @@ def test_a_number_is_the_total_and_a_list_is_per_point():
 
 def test_positions_and_directions_on_the_right_leg():
     contact = place_contact_points(LINE, [support(at_m=[0.3, 0, 0.35])])
-    assert np.allclose(contact.position, [[0.3, 0.0, z] for z in (0.365, 0.3575, 0.35, 0.3425, 0.335)], rtol=0, atol=1e-12)
+    assert np.allclose(
+        contact.position,
+        [[0.3, 0.0, z] for z in (0.365, 0.3575, 0.35, 0.3425, 0.335)],
+        rtol=0,
+        atol=1e-12,
+    )
     assert contact.directions.tolist() == [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]] * 5
 
 
 def test_no_support_gives_no_contact_points():
     contact = place_contact_points(LINE, [])
-    assert contact.position.shape == (0, 3) and contact.directions.shape == (0, 2, 3) and contact.centre_offset.shape == (0, 2)
+    assert (
+        contact.position.shape == (0, 3)
+        and contact.directions.shape == (0, 2, 3)
+        and contact.centre_offset.shape == (0, 2)
+    )
 
 
-@pytest.mark.parametrize("changes, message", [
-    ({"at_m": [-0.3, 0.02, 0.35]}, "support left at .* is 0.0200 m off the tube"),
-    ({"at_m": [-0.3, 0.0, 0.01]}, "support left reaches from arc length -0.0050"),
-    ({"stiffness_N_per_m": [1.0e6, 1.0e6]}, "support left: stiffness_N_per_m has 2 values for 5 points"),
-    ({"gap_factor": [1.0] * 4}, "support left: gap_factor has 4 values for 5 points"),
-    ({"centre_offset_m": [[0.0, 0.0]] * 3}, "support left: centre_offset_m has 3 values for 5 points"),
-])
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"at_m": [-0.3, 0.02, 0.35]}, "support left at .* is 0.0200 m off the tube"),
+        ({"at_m": [-0.3, 0.0, 0.01]}, "support left reaches from arc length -0.0050"),
+        (
+            {"stiffness_N_per_m": [1.0e6, 1.0e6]},
+            "support left: stiffness_N_per_m has 2 values for 5 points",
+        ),
+        ({"gap_factor": [1.0] * 4}, "support left: gap_factor has 4 values for 5 points"),
+        (
+            {"centre_offset_m": [[0.0, 0.0]] * 3},
+            "support left: centre_offset_m has 3 values for 5 points",
+        ),
+    ],
+)
 def test_mistakes_are_named(changes, message):
     with pytest.raises(ValueError, match=message):
         place_contact_points(LINE, [support(**changes)])

@@ -13,9 +13,13 @@ def test_a_linear_record_tells_by_the_modes_that_it_shows():
 
 
 def test_a_record_that_something_bends_leaves_linear_effects_to_simulation():
-    """A preload beside nine times the damping: the damping was no candidate, and {offset, square-law drag} was told."""
+    """A preload beside nine times the damping: the damping was no candidate, and {offset,
+    square-law drag} was told.
+    """
     assert telling_modes(BENT, SHOWN) is None
-    assert telling_modes(BENT, SHOWN, quick=True) == SHOWN  # where it must be quick, the three that come nearest are simulated
+    assert (
+        telling_modes(BENT, SHOWN, quick=True) == SHOWN
+    )  # where it must be quick, the three that come nearest are simulated
 
 
 def test_a_record_without_modes_tells_nothing():

@@ -10,28 +10,58 @@ from vibroimpact.discrepancy.prepared import Prepared, taken_for_linear
 PAIR = "added_mass@apex+modal_damping@structure"
 
 
-@pytest.mark.parametrize(("adopted", "candidate", "expected"), [
-    (None, "gap@all", True), (None, "gap@all+hertz@all", True),
-    ("added_mass@apex", "gap@all", True), ("added_mass@apex", "gap@all+hertz@all", False),
-    (PAIR, "gap@all", False), (PAIR, "gap@all+hertz@all", False),
-    (PAIR, "coulomb_friction@apex@alone", True), (PAIR, "coulomb_friction@apex@alone+hertz@all", True)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("adopted", "candidate", "expected"),
+    [
+        (None, "gap@all", True),
+        (None, "gap@all+hertz@all", True),
+        ("added_mass@apex", "gap@all", True),
+        ("added_mass@apex", "gap@all+hertz@all", False),
+        (PAIR, "gap@all", False),
+        (PAIR, "gap@all+hertz@all", False),
+        (PAIR, "coulomb_friction@apex@alone", True),
+        (PAIR, "coulomb_friction@apex@alone+hertz@all", True),
+    ],
+)
 def test_room_beside_or_in_place_of_what_the_lowest_record_told(adopted, candidate, expected):
     prepared = Prepared([], adopted=None if adopted is None else {"name": adopted})
     assert prepared.room(candidate_named(candidate)) is expected
 
 
-@pytest.mark.parametrize(("adopted", "in_place", "expected"), [
-    (None, [], ["coulomb_friction@apex"]), ("added_mass@apex", [], ["coulomb_friction@apex"]),
-    ("added_mass@apex", ["coulomb_friction@apex"], ["coulomb_friction@apex", "coulomb_friction@apex@alone"]),
-    (PAIR, ["coulomb_friction@apex"], ["coulomb_friction@apex@alone"]), (PAIR, [], [])])  # fmt: skip
+@pytest.mark.parametrize(
+    ("adopted", "in_place", "expected"),
+    [
+        (None, [], ["coulomb_friction@apex"]),
+        ("added_mass@apex", [], ["coulomb_friction@apex"]),
+        (
+            "added_mass@apex",
+            ["coulomb_friction@apex"],
+            ["coulomb_friction@apex", "coulomb_friction@apex@alone"],
+        ),
+        (PAIR, ["coulomb_friction@apex"], ["coulomb_friction@apex@alone"]),
+        (PAIR, [], []),
+    ],
+)
 def test_what_is_simulated_of_a_candidate(adopted, in_place, expected):
-    """What there is no room for is not simulated, and what can not have been taken for a linear effect not in its place."""
-    prepared = Prepared([], adopted=None if adopted is None else {"name": adopted}, in_place=in_place)
-    assert [placed.name for placed in prepared.beside_or_in_place(candidate_named("coulomb_friction@apex"))] == expected
+    """What there is no room for is not simulated, and what can not have been taken for a linear
+    effect not in its place.
+    """
+    prepared = Prepared(
+        [], adopted=None if adopted is None else {"name": adopted}, in_place=in_place
+    )
+    assert [
+        placed.name
+        for placed in prepared.beside_or_in_place(candidate_named("coulomb_friction@apex"))
+    ] == expected
 
 
 def test_no_place_is_ruled_out_where_the_record_shows_no_linear_modes_with_what_is_adopted():
-    candidates = [candidate_named(name) for name in ("coulomb_friction@apex", "gap@all", "clearance@left_leg")]
+    candidates = [
+        candidate_named(name) for name in ("coulomb_friction@apex", "gap@all", "clearance@left_leg")
+    ]
     touching = SimpleNamespace(linear_stage=False, measured_fit=None)
     prepared = Prepared([], adopted={"name": "added_mass@apex", "gain": 100.0})
-    assert taken_for_linear(touching, None, prepared, candidates) == ["coulomb_friction@apex", "clearance@left_leg"]
+    assert taken_for_linear(touching, None, prepared, candidates) == [
+        "coulomb_friction@apex",
+        "clearance@left_leg",
+    ]

@@ -1,15 +1,30 @@
-"""The page of the validation: yes and no where something holds or fails, numbers where there are numbers."""
+"""The page of the validation: yes and no where something holds or fails, numbers where there are
+numbers.
+"""
 
 import numpy as np
 import pytest
 
-from vibroimpact.validation.page import validation_page
+from vibroimpact.reports.validation_page import validation_page
 
-ROW = {"case": "R1", "quantity": "slide", "reference": 1.0, "ours": 0, "error": 1.0, "tolerance": 2.0}
+ROW = {
+    "case": "R1",
+    "quantity": "slide",
+    "reference": 1.0,
+    "ours": 0,
+    "error": 1.0,
+    "tolerance": 2.0,
+}
 
 
-@pytest.mark.parametrize(("holds", "word"), [(True, "yes"), ("True", "yes"), (np.True_, "yes"), (False, "no"), ("False", "no")])
+@pytest.mark.parametrize(
+    ("holds", "word"),
+    [(True, "yes"), ("True", "yes"), (np.True_, "yes"), (False, "no"), ("False", "no")],
+)
 def test_one_and_nought_are_numbers_and_what_holds_is_told_in_words(tmp_path, holds, word):
     page = validation_page([ROW | {"pass": holds}], [], [], tmp_path)
-    assert '<td class="number">1</td><td class="number">0</td><td class="number">1</td><td class="number">2</td>' in page
+    assert (
+        '<td class="number">1</td><td class="number">0</td><td class="number">1</td><td'
+        ' class="number">2</td>' in page
+    )
     assert (">yes</td>" in page, ">no</td>" in page) == (word == "yes", word == "no")

@@ -6,9 +6,20 @@ from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.windows import compared_s, screened_s
 
 
-@pytest.mark.parametrize(("records", "duration", "asked", "expected"), [(4, 49.0, None, 24.0), (8, 49.0, None, 24.0), (9, 49.0, None, 12.0), (40, 49.0, None, 12.0),
-                                                                        (4, 20.0, None, 20.0), (4, 8.0, None, 8.0), (4, 49.0, 40.0, 40.0), (4, 20.0, 49.0, 20.0)])  # fmt: skip
-def test_a_batch_of_records_is_compared_over_24_seconds_and_no_record_over_less_than_what_is_screened(records, duration, asked, expected):
+@pytest.mark.parametrize(
+    ("records", "duration", "asked", "expected"),
+    [
+        (4, 49.0, None, 24.0),
+        (8, 49.0, None, 24.0),
+        (9, 49.0, None, 12.0),
+        (40, 49.0, None, 12.0),
+        (4, 20.0, None, 20.0),
+        (4, 8.0, None, 8.0),
+        (4, 49.0, 40.0, 40.0),
+        (4, 20.0, 49.0, 20.0),
+    ],
+)
+def test_the_length_compared_follows_the_batch_and_the_request(records, duration, asked, expected):
     compared = compared_s(records, duration, asked)
     assert compared == expected
     assert screened_s(compared) == min(expected, priors.SCREENED_S)

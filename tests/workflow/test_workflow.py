@@ -1,6 +1,8 @@
-"""The workflow as a plan: what runs, what reruns after a change, what is said when the configuration is wrong.
+"""The workflow as a plan: what runs, what reruns after a change, what is said when the
+configuration is wrong.
 
-The scripts are replaced by ones that import the same files and write empty outputs, so that a whole study takes seconds.
+The scripts are replaced by ones that import the same files and write empty outputs, so that a whole
+study takes seconds.
 """
 
 import os
@@ -25,11 +27,20 @@ for path in snakemake.output:
     Path(path).write_text(snakemake.rule)
 """
 FIGURES = {"figures_model", "figures_response", "figures_identification", "figures_checks"}
-AFTER_SPECTRA = {"identify", "consistency", "figures_response", "figures_identification", "figures_checks", "all"}
+AFTER_SPECTRA = {
+    "identify",
+    "consistency",
+    "figures_response",
+    "figures_identification",
+    "figures_checks",
+    "all",
+}
 
 
 class Study:
-    """A copy of the workflow in a folder of its own, with a study of two loads, one gap and two seeds."""
+    """A copy of the workflow in a folder of its own, with a study of two loads, one gap and two
+    seeds.
+    """
 
     def __init__(self, folder):
         self.folder = folder
@@ -39,8 +50,14 @@ class Study:
         shutil.copy(ROOT / "Snakefile", folder)
         (folder / "profiles").symlink_to(Path("workflow", "profiles"))
         for script in (folder / "workflow" / "scripts").glob("*.py"):
-            imports = [line for line in script.read_text().splitlines() if re.match(r"(from|import) .*vibroimpact", line)]
-            script.write_text(STUB.format(imports="\n".join(f"    {line}" for line in ["import os", *imports])))
+            imports = [
+                line
+                for line in script.read_text().splitlines()
+                if re.match(r"(from|import) .*vibroimpact", line)
+            ]
+            script.write_text(
+                STUB.format(imports="\n".join(f"    {line}" for line in ["import os", *imports]))
+            )
         self.values = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
         self.values["grid"] = {"load_rms_N": [0.5, 4.0], "gap_m": [1e-4], "seeds": 2}
         self.results = folder / "results" / "smoke"
@@ -50,19 +67,30 @@ class Study:
         (self.folder / "mine.yaml").write_text(yaml.safe_dump(values or self.values))
         clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         command = [sys.executable, "-m", "snakemake", *arguments, "--configfile", "mine.yaml"]
-        return subprocess.run(command, cwd=self.folder, env=clean | environment, capture_output=True, text=True)
+        return subprocess.run(
+            command, cwd=self.folder, env=clean | environment, capture_output=True, text=True
+        )
 
     def plan(self, *arguments, values=None):
-        """{rule: number of jobs} that a run would do; {} when nothing is to be done. The rules identify_from_... count as one."""
+        """{rule: number of jobs} that a run would do; {} when nothing is to be done. The rules
+        identify_from_... count as one.
+        """
         run = self.snakemake("--dry-run", *arguments, values=values)
         assert run.returncode == 0, run.stdout + run.stderr
         counts = re.findall(r"^([\w.]+) +(\d+)$", run.stdout + run.stderr, flags=re.M)
-        counts = [(rule.split("_from_")[0], int(count)) for rule, count in dict(counts).items() if rule != "total"]
+        counts = [
+            (rule.split("_from_")[0], int(count))
+            for rule, count in dict(counts).items()
+            if rule != "total"
+        ]
         return {rule: sum(count for other, count in counts if other == rule) for rule, _ in counts}
 
     def changed(self, **sections):
         """The configuration with keys of some sections replaced."""
-        return {**self.values, **{name: {**self.values[name], **keys} for name, keys in sections.items()}}
+        return {
+            **self.values,
+            **{name: {**self.values[name], **keys} for name, keys in sections.items()},
+        }
 
     def plan_after_edit(self, name):
         """The rules that would run after an edit of one library file, which is then undone."""
@@ -101,13 +129,22 @@ def test_an_interrupted_study_continues_where_it_stopped(study):
     assert study.stopped.returncode != 0
     assert "stopped on purpose" in study.stopped.stderr
     done = {"basis", "simulate", "spectra", "figures_model", "figures_response"}
-    assert set(study.plan_when_stopped) == {"identify", "consistency", "figures_identification", "figures_checks", "all"} - done
+    assert (
+        set(study.plan_when_stopped)
+        == {"identify", "consistency", "figures_identification", "figures_checks", "all"} - done
+    )
     assert study.plan_when_stopped["identify"] == 2
     assert study.finished.returncode == 0, study.finished.stderr
 
 
 def test_a_complete_study_has_tables_and_figures_and_nothing_left_to_do(study):
-    for name in ("consistency.csv", "consistency_summary.csv", "consistency.nc", "basis_quality.csv", "figures/figure_01_layout.png"):
+    for name in (
+        "consistency.csv",
+        "consistency_summary.csv",
+        "consistency.nc",
+        "basis_quality.csv",
+        "figures/figure_01_layout.png",
+    ):
         assert (study.results / name).is_file()
     assert len(list((study.results / "records").glob("load_*_gap_0.0001_seed_*.nc"))) == 4
     assert study.plan() == {}
@@ -119,11 +156,17 @@ def test_progress_tells_load_and_number_of_cases(study):
     assert "Identification at 4 N RMS: 2 of 4 cases" in told
 
 
-@pytest.mark.parametrize(("file", "expected"), [
-    ("spectra.py", {"spectra"} | AFTER_SPECTRA),
-    ("reduction.py", {"basis", "simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA | FIGURES),
-    ("config_checks.py", set()),
-])
+@pytest.mark.parametrize(
+    ("file", "expected"),
+    [
+        ("spectra.py", {"spectra"} | AFTER_SPECTRA),
+        (
+            "reduction.py",
+            {"basis", "simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA | FIGURES,
+        ),
+        ("config_checks.py", set()),
+    ],
+)
 def test_an_edited_file_reruns_the_stages_that_import_it_and_what_follows(study, file, expected):
     assert study.plan_after_edit(file) == expected
 
@@ -139,25 +182,43 @@ def test_an_added_gap_or_load_of_a_study_without_series_simulates_only_what_is_n
     assert study.snakemake("-j2", values=values).returncode == 0
     assert study.plan(values=values) == {}
     plan = study.plan(values={**values, "grid": {**values["grid"], "load_rms_N": [0.5, 3.5, 4.0]}})
-    assert plan["simulate_to_spectra"] == plan["identify"] == 1 and not {"basis", "simulate", "spectra"} & set(plan)
+    assert plan["simulate_to_spectra"] == plan["identify"] == 1 and not {
+        "basis",
+        "simulate",
+        "spectra",
+    } & set(plan)
 
 
 def test_a_changed_key_reruns_the_stages_that_use_it(study):
-    assert set(study.plan(values=study.changed(spectra={"overlap": 0.5}))) == {"spectra"} | AFTER_SPECTRA
-    assert set(study.plan("--config", "seed=7")) == {"simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA
+    assert (
+        set(study.plan(values=study.changed(spectra={"overlap": 0.5})))
+        == {"spectra"} | AFTER_SPECTRA
+    )
+    assert (
+        set(study.plan("--config", "seed=7"))
+        == {"simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA
+    )
 
 
 def test_the_timing_is_made_on_request_from_all_jobs(study):
     assert study.plan("timing") == {"timing": 1}
     run = study.snakemake("-j2", "timing")
     assert run.returncode == 0, run.stderr
-    assert (study.results / "timing.csv").is_file() and (study.results / "figures" / "timing.png").is_file()
+    assert (study.results / "timing.csv").is_file() and (
+        study.results / "figures" / "timing.png"
+    ).is_file()
     assert study.plan() == {}
 
 
 def test_an_edited_figure_reruns_its_figures_and_an_edited_method_no_simulation(study):
     assert study.plan_after_edit("figures/shapes.py") == {"figures_identification", "all"}
-    assert study.plan_after_edit("identify/lscf.py") == {"identify", "consistency", "figures_identification", "figures_checks", "all"}
+    assert study.plan_after_edit("identify/lscf.py") == {
+        "identify",
+        "consistency",
+        "figures_identification",
+        "figures_checks",
+        "all",
+    }
 
 
 def test_time_series_are_written_only_where_they_are_kept(study):
@@ -172,7 +233,9 @@ def test_time_series_are_written_only_where_they_are_kept(study):
 
 
 def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
-    run = study.snakemake("--dry-run", values=study.changed(spectra={"overlp": 0.5}, record={"duration_s": 1.0}))
+    run = study.snakemake(
+        "--dry-run", values=study.changed(spectra={"overlp": 0.5}, record={"duration_s": 1.0})
+    )
     told = run.stdout + run.stderr
     assert run.returncode == 1
     assert "mine.yaml: unknown key 'overlp' in spectra: did you mean 'overlap'?" in told
@@ -180,8 +243,13 @@ def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
     assert "Traceback" not in told and "Building DAG" not in told
 
 
-@pytest.mark.parametrize(("structure", "file", "jobs"), [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)])
-def test_a_measured_structure_is_planned_candidate_by_candidate(study, tmp_path, structure, file, jobs):
+@pytest.mark.parametrize(
+    ("structure", "file", "jobs"),
+    [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)],
+)
+def test_a_measured_structure_is_planned_candidate_by_candidate(
+    study, tmp_path, structure, file, jobs
+):
     (tmp_path / file).touch()
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data={tmp_path}")
     assert run.returncode == 0, run.stdout + run.stderr
@@ -192,39 +260,93 @@ def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
     (tmp_path / "bench.nc").touch()
     (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [5, 60]}")
     for model in ("identified", tmp_path / "own.yaml"):
-        run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", f"model={model}")
+        run = study.snakemake(
+            "--dry-run",
+            "discrepancy",
+            "--config",
+            f"campaign={tmp_path}/bench.nc",
+            f"model={model}",
+        )
         told = run.stdout + run.stderr
         assert run.returncode == 0, told
-        assert {"completion_prepare", "completion_outcome", "completion_report"} <= set(re.findall(r"^(\w+) +1$", told, flags=re.M)) and "discrepancy_prepare" not in told
+        assert {"completion_prepare", "completion_outcome", "completion_report"} <= set(
+            re.findall(r"^(\w+) +1$", told, flags=re.M)
+        ) and "discrepancy_prepare" not in told
 
 
 def test_a_wrong_structure_file_is_told_before_any_plan(study, tmp_path):
     (tmp_path / "bench.nc").touch()
     (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [60, 5]}")
-    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", f"model={tmp_path}/own.yaml")
-    assert run.returncode == 1 and "structure.band_Hz = [60, 5] must be two frequencies" in run.stdout + run.stderr
+    run = study.snakemake(
+        "--dry-run",
+        "discrepancy",
+        "--config",
+        f"campaign={tmp_path}/bench.nc",
+        f"model={tmp_path}/own.yaml",
+    )
+    assert (
+        run.returncode == 1
+        and "structure.band_Hz = [60, 5] must be two frequencies" in run.stdout + run.stderr
+    )
 
 
 def test_a_quick_run_is_one_job_and_a_full_one_a_job_per_candidate(study, tmp_path):
     (tmp_path / "bench.nc").touch()
     told = {}
     for quick in ("yes", "no"):
-        run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", f"quick={quick}")
+        run = study.snakemake(
+            "--dry-run",
+            "discrepancy",
+            "--config",
+            f"campaign={tmp_path}/bench.nc",
+            f"quick={quick}",
+        )
         told[quick] = dict(re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M))
     assert told["yes"]["discrepancy_quick"] == "1" and "discrepancy_candidate" not in told["yes"]
-    assert int(told["no"]["discrepancy_null"]) > 1 and "discrepancy_quick" not in told["no"]  # candidates follow from the lowest record
-    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc", "model=identified", "quick=yes")
-    assert run.returncode == 1 and "quick = 'yes'" in run.stdout + run.stderr and "leave it out" in run.stdout + run.stderr
+    assert (
+        int(told["no"]["discrepancy_null"]) > 1 and "discrepancy_quick" not in told["no"]
+    )  # candidates follow from the lowest record
+    run = study.snakemake(
+        "--dry-run",
+        "discrepancy",
+        "--config",
+        f"campaign={tmp_path}/bench.nc",
+        "model=identified",
+        "quick=yes",
+    )
+    assert (
+        run.returncode == 1
+        and "quick = 'yes'" in run.stdout + run.stderr
+        and "leave it out" in run.stdout + run.stderr
+    )
 
 
 def test_a_suite_judges_its_shard_without_what_was_judged_elsewhere(study, tmp_path):
-    asked = ["--dry-run", "suite", "--config", "suite_seed=5", "count=9", "shard=1/3"]  # campaigns 1, 4 and 7
+    asked = [
+        "--dry-run",
+        "suite",
+        "--config",
+        "suite_seed=5",
+        "count=9",
+        "shard=1/3",
+    ]  # campaigns 1, 4 and 7
     (tmp_path / "campaigns.csv").write_text("suite,campaign\nsuite_5,campaign_0004\n")
     for more, judged in ((), "3"), ((f"add={tmp_path}/campaigns.csv",), "2"):
         run = study.snakemake(*asked, *more)
-        assert dict(re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M))["suite_campaign"] == judged
-    run = study.snakemake("--dry-run", "suite", "--config", "suite_seed=6", f"add={tmp_path}/campaigns.csv")
-    assert run.returncode == 1 and "campaigns.csv holds campaigns of suite_5: give a campaigns.csv of suite_6" in run.stdout + run.stderr
+        assert (
+            dict(re.findall(r"^(\w+) +(\d+)$", run.stdout + run.stderr, flags=re.M))[
+                "suite_campaign"
+            ]
+            == judged
+        )
+    run = study.snakemake(
+        "--dry-run", "suite", "--config", "suite_seed=6", f"add={tmp_path}/campaigns.csv"
+    )
+    assert (
+        run.returncode == 1
+        and "campaigns.csv holds campaigns of suite_5: give a campaigns.csv of suite_6"
+        in run.stdout + run.stderr
+    )
 
 
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
@@ -232,7 +354,9 @@ def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, struct
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")
     told = run.stdout + run.stderr
     assert run.returncode == 1
-    assert f"{structure}_data = 'nowhere' holds no file" in told and "nonlinearbenchmark.org" in told
+    assert (
+        f"{structure}_data = 'nowhere' holds no file" in told and "nonlinearbenchmark.org" in told
+    )
 
 
 def test_lint_has_no_advice_but_on_conda_and_containers(study):

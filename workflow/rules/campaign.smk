@@ -1,16 +1,13 @@
 # A stand-in for the measured campaign of figure 5, where overlay.campaign names no file.
 
 
-rule synthetic_campaign:
+rule _synthetic_campaign:
     input:
         library=library("synthetic_campaign"),
         model=f"{RESULTS}/model.nc",
         force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
     output:
         campaign=f"{RESULTS}/synthetic_campaign.nc",
-    params:
-        config=settings("synthetic_campaign"),
-        loads=nearest_loads(STUDY.grid, STUDY.overlay.load_rms_N),
     log:
         f"{RESULTS}/logs/synthetic_campaign.log",
     benchmark:
@@ -19,6 +16,9 @@ rule synthetic_campaign:
     resources:
         mem_mb=2000,
         runtime=20,
+    params:
+        config=settings("synthetic_campaign"),
+        loads=nearest_loads(STUDY.grid, STUDY.overlay.load_rms_N),
     message:
         "Synthetic campaign to lay over the simulation"
     script:

@@ -8,33 +8,89 @@ SOURCE = os.path.relpath(Path(workflow.basedir, "src"))
 SCRIPTS = os.path.relpath(Path(workflow.basedir, "workflow", "scripts"))
 sys.path.insert(0, SOURCE)
 # Jobs inherit these: the library needs no installation, and -j jobs of one thread each do not crowd one another out.
-os.environ.update(PYTHONPATH=os.path.abspath(SOURCE), OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
+os.environ.update(
+    PYTHONPATH=os.path.abspath(SOURCE),
+    OMP_NUM_THREADS="1",
+    OPENBLAS_NUM_THREADS="1",
+    MKL_NUM_THREADS="1",
+    NUMBA_NUM_THREADS="1",
+)
 
-from vibroimpact.cases import all_cases, ids_of_load, load_values, loads_by_half_decade, nearest_loads, value_text
+from vibroimpact.study.cases import (
+    all_cases,
+    ids_of_load,
+    load_values,
+    loads_by_half_decade,
+    nearest_loads,
+    value_text,
+)
 from vibroimpact.completion.store import read_values
 from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.completion.study import STUDIES, study_of
-from vibroimpact.config import ConfigError, check_config, load_config, read_yaml
+from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.discrepancy.dag import (
-    NULL_PARTS, SUITE_NAME, SUITE_S, finalist_names, frozen_seed, numbers_added, numbers_judged, pair_names, screened_files, screened_names, shard_of,
+    NULL_PARTS,
+    SUITE_NAME,
+    SUITE_S,
+    finalist_names,
+    frozen_seed,
+    numbers_added,
+    numbers_judged,
+    pair_names,
+    screened_files,
+    screened_names,
+    shard_of,
     suite_name,
 )
 from vibroimpact.discrepancy.suite_check import CHECKS
 from vibroimpact.provenance import imported_files
-from vibroimpact.stages import stage_params
+from vibroimpact.config.stage_keys import stage_params
 
 FIGURES = {
-    "model": ("figure_01_layout", "figure_02_free_modes", "figure_03_contact_law", "figure_04_first_frequency", "basis_quality"),
-    "response": ("figure_05_overlay", "figure_06_levels", "figure_07_overlay_of_loads", "figure_08_load_and_stiffness", "in_plane_share"),
+    "model": (
+        "figure_01_layout",
+        "figure_02_free_modes",
+        "figure_03_contact_law",
+        "figure_04_first_frequency",
+        "basis_quality",
+    ),
+    "response": (
+        "figure_05_overlay",
+        "figure_06_levels",
+        "figure_07_overlay_of_loads",
+        "figure_08_load_and_stiffness",
+        "in_plane_share",
+    ),
     "identification": (
-        "figure_09_poles", "figure_09_stabilisation", "figure_10_shapes", "figure_11_singular_values", "figure_12_broadband",
+        "figure_09_poles",
+        "figure_09_stabilisation",
+        "figure_10_shapes",
+        "figure_11_singular_values",
+        "figure_12_broadband",
     ),
     "checks": ("figure_13_equivalent_support", "collapse", "energy_balance", "contact_statistics"),
 }
 
 
 # What a run is asked to look at; no key of the study.
-REQUEST = {name: str(config.pop(name)) for name in ("import", "campaign", "model", "quick", "bank", "suite_seed", "count", "shard", "add", "seconds", "compared_s", "draw") if name in config}
+REQUEST = {
+    name: str(config.pop(name))
+    for name in (
+        "import",
+        "campaign",
+        "model",
+        "quick",
+        "bank",
+        "suite_seed",
+        "count",
+        "shard",
+        "add",
+        "seconds",
+        "compared_s",
+        "draw",
+    )
+    if name in config
+}
 
 
 def number_asked(name):
@@ -44,7 +100,9 @@ def number_asked(name):
     except ValueError:
         value = -1
     if value is not None and not value > 0:
-        sys.exit(f"{name} = '{REQUEST[name]}': give a positive number, as in --config {name}={1 if name == 'draw' else 49}")
+        sys.exit(
+            f"{name} = '{REQUEST[name]}': give a positive number, as in --config {name}={1 if name == 'draw' else 49}"
+        )
     return value
 
 
@@ -57,9 +115,12 @@ QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
 
 def requested(name, example):
     """The path that --config name=PATH gives, as an input; a sentence where it is not given or not there."""
+
     def path(wildcards):
         if not os.path.exists(REQUEST.get(name, "")):
-            sys.exit(f"{name} = '{REQUEST.get(name, '')}' is not there: give it as in --config {name}={example}")
+            sys.exit(
+                f"{name} = '{REQUEST.get(name, '')}' is not there: give it as in --config {name}={example}"
+            )
         return REQUEST[name]
 
     return path
@@ -95,7 +156,9 @@ def own_structure():
 STUDY = checked_config()
 OWN = own_structure()
 if OWN is not None and QUICK:
-    sys.exit(f"quick = '{REQUEST['quick']}': a structure that is identified from its campaign has no quick mode: leave it out, or narrow band_Hz and candidates")
+    sys.exit(
+        f"quick = '{REQUEST['quick']}': a structure that is identified from its campaign has no quick mode: leave it out, or narrow band_Hz and candidates"
+    )
 MODEL = checked_model()
 RESULTS = f"results/{STUDY.study}"
 CASES = [case.id for case in all_cases(STUDY.grid)]
@@ -120,7 +183,11 @@ def files_of_load(folder, suffix="nc"):
 
 def files_of_loads(folder, loads, suffix="nc"):
     """The files of the cases of some loads."""
-    return [f"{RESULTS}/{folder}/{case}.{suffix}" for load in loads for case in ids_of_load(STUDY.grid, load)]
+    return [
+        f"{RESULTS}/{folder}/{case}.{suffix}"
+        for load in loads
+        for case in ids_of_load(STUDY.grid, load)
+    ]
 
 
 def files_of_study(folder, suffix="nc"):
@@ -135,7 +202,11 @@ def series_of_load():
 
 def figure_files(group):
     """The files of a group of figures."""
-    return [f"{RESULTS}/figures/{name}.{suffix}" for name in FIGURES[group] for suffix in ("png", "pdf", "csv", "txt")]
+    return [
+        f"{RESULTS}/figures/{name}.{suffix}"
+        for name in FIGURES[group]
+        for suffix in ("png", "pdf", "csv", "txt")
+    ]
 
 
 def jobs_of_study():
@@ -154,8 +225,18 @@ def jobs_of_study():
 
 COMPLETION_FIGURES = ("frf_overlay", "prediction", "mounting", "where", "restoring_force")
 MEASURED = {
-    "f16": ("f16_data", STUDY.f16_data, "F16Data_FullMSine_Level*.mat", "the F-16 ground vibration test (Noel and Schoukens, 2017)"),
-    "silverbox": ("silverbox_data", STUDY.silverbox_data, "SNJP_?m_full_FNSI_*.mat", "the Silverbox records (Noel and Schoukens, 2017)"),
+    "f16": (
+        "f16_data",
+        STUDY.f16_data,
+        "F16Data_FullMSine_Level*.mat",
+        "the F-16 ground vibration test (Noel and Schoukens, 2017)",
+    ),
+    "silverbox": (
+        "silverbox_data",
+        STUDY.silverbox_data,
+        "SNJP_?m_full_FNSI_*.mat",
+        "the Silverbox records (Noel and Schoukens, 2017)",
+    ),
 }
 
 
@@ -170,7 +251,9 @@ def files_of_structure(structure):
     found = sorted(Path(folder).glob(pattern))
     if not found:
         shown = pattern.replace("*", "<N>").replace("?", "u")
-        sys.exit(f"{key} = '{folder}' holds no file {shown}: download {what} from nonlinearbenchmark.org and give its folder: --config {key}=FOLDER")
+        sys.exit(
+            f"{key} = '{folder}' holds no file {shown}: download {what} from nonlinearbenchmark.org and give its folder: --config {key}=FOLDER"
+        )
     return [str(file) for file in found]
 
 
@@ -183,20 +266,25 @@ def study_of_structure(structure):
     """The Study of a structure; that of a user's campaign once it is prepared, None where it is refused."""
     if structure in STUDIES:
         return study_of(structure)
-    prepared = read_values(checkpoints.completion_prepare.get().output.study)
+    prepared = read_values(checkpoints._completion_prepare.get().output.study)
     return None if prepared["refused"] else study_of(structure, prepared)
 
 
 # What is completed: the structures that are built in, and the campaign that is looked at where its own modes are asked for.
 STRUCTURES = [*STUDIES, *([re.escape(LOOKED_AT)] if OWN is not None else [])]
 if len(set(STRUCTURES)) < len(STRUCTURES):
-    sys.exit(f"campaign = '{REQUEST['campaign']}': results/{STRUCTURES[-1]} belongs to the built-in structure of that name: rename the file")
+    sys.exit(
+        f"campaign = '{REQUEST['campaign']}': results/{STRUCTURES[-1]} belongs to the built-in structure of that name: rename the file"
+    )
 
 
 def law_files(structure, kind):
     """The files of a structure's "candidates", or of its "additions" beside the best of them."""
     study = study_of_structure(structure)
-    return [f"results/{structure}/{kind}/{name}.json" for name in (getattr(study, kind) if study else ())]
+    return [
+        f"results/{structure}/{kind}/{name}.json"
+        for name in (getattr(study, kind) if study else ())
+    ]
 
 
 def candidate_files(wildcards):
@@ -211,30 +299,40 @@ def addition_files(wildcards):
 
 def completion_figure_files(structure):
     """The figures of a completion; structure may be the wildcard in braces."""
-    return [f"results/{structure}/figures/{name}.{suffix}" for name in COMPLETION_FIGURES for suffix in ("png", "pdf", "csv", "txt")]
+    return [
+        f"results/{structure}/figures/{name}.{suffix}"
+        for name in COMPLETION_FIGURES
+        for suffix in ("png", "pdf", "csv", "txt")
+    ]
 
 
 def completion_files(structure):
     """What a completion of a measured structure holds."""
     tables = ("campaign.nc", "mounting.csv", "prediction.csv", "verdict.json", "model_updated.yaml")
-    return [*(f"results/{structure}/{name}" for name in tables), *completion_figure_files(structure)]
+    return [
+        *(f"results/{structure}/{name}" for name in tables),
+        *completion_figure_files(structure),
+    ]
 
 
 def path_files(wildcards):
     """The candidates that the lowest record left to be screened."""
-    names = screened_names(checkpoints.discrepancy_prepare.get().output.prepared)
+    names = screened_names(checkpoints._discrepancy_prepare.get().output.prepared)
     return [str(file) for file in screened_files(names, DISCREPANCY, BANK)]
 
 
 def finalist_files(wildcards):
     """The finalists that the screening named."""
-    names = finalist_names(checkpoints.discrepancy_screening.get().output.screening)
+    names = finalist_names(checkpoints._discrepancy_screening.get().output.screening)
     return [f"{DISCREPANCY}/finalists/{name}.npz" for name in names]
 
 
 def pair_files(wildcards):
     """The pairs that the finalists left to be tried."""
-    return [f"{DISCREPANCY}/pairs/{name}.npz" for name in pair_names(checkpoints.discrepancy_pairs.get().output.pairs)]
+    return [
+        f"{DISCREPANCY}/pairs/{name}.npz"
+        for name in pair_names(checkpoints._discrepancy_pairs.get().output.pairs)
+    ]
 
 
 def targets():
@@ -246,7 +344,15 @@ def targets():
     if STUDY.identification is None:
         return [f"{RESULTS}/statistics.csv", *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
-    tables = [f"{RESULTS}/{name}" for name in ("consistency.csv", "consistency_summary.csv", "consistency_collapse.csv", "consistency.nc")]
+    tables = [
+        f"{RESULTS}/{name}"
+        for name in (
+            "consistency.csv",
+            "consistency_summary.csv",
+            "consistency_collapse.csv",
+            "consistency.nc",
+        )
+    ]
     return [*tables, *figures, *series]
 
 
@@ -261,7 +367,11 @@ def suite_campaigns(suite, added):
     count = REQUEST.get("count", "12")
     try:
         known = numbers_added(added, Path(suite).name)
-        numbers = numbers_judged(suite) if count == "judged" else shard_of(count, REQUEST.get("shard", "0/1"))
+        numbers = (
+            numbers_judged(suite)
+            if count == "judged"
+            else shard_of(count, REQUEST.get("shard", "0/1"))
+        )
     except ValueError as problem:
         sys.exit(str(problem))
     return [number for number in numbers if number not in known]
@@ -269,10 +379,13 @@ def suite_campaigns(suite, added):
 
 def plain_verdicts(seed, suite, campaigns):
     """The verdicts of the plain suite that another one of its seed is held against, as an input; a sentence where the other is the plain one."""
+
     def paths(wildcards):
         plain = f"results/{suite_name(seed)}"
         if suite == plain:
-            sys.exit("suite_difference compares with the plain suite: say what is other, as in --config seconds=49 or draw=1")
+            sys.exit(
+                "suite_difference compares with the plain suite: say what is other, as in --config seconds=49 or draw=1"
+            )
         return [f"{plain}/campaign_{number:04d}/verdict.json" for number in campaigns]
 
     return paths

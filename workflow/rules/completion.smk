@@ -1,14 +1,12 @@
 # Measured structures (f16, silverbox): records by their lines, linear models, a job per candidate effect, verdict, prediction, figures.
 
 
-rule completion_records:
+rule _completion_records:
     input:
         library=library("completion_records"),
         records=measured_files,
     output:
         campaign="results/{structure}/campaign.nc",
-    params:
-        config=settings("completion_records"),
     log:
         "results/{structure}/logs/completion_records.log",
     benchmark:
@@ -17,21 +15,21 @@ rule completion_records:
     resources:
         mem_mb=1500,
         runtime=30,
+    params:
+        config=settings("completion_records"),
     message:
         "Records of {wildcards.structure} as a campaign"
     script:
         "../scripts/completion_records.py"
 
 
-rule completion_linear:
+rule _completion_linear:
     input:
         library=library("completion_linear"),
         campaign="results/{structure}/campaign.nc",
     output:
         linear="results/{structure}/linear.json",
         mounting="results/{structure}/mounting.csv",
-    params:
-        config=settings("completion"),
     log:
         "results/{structure}/logs/completion_linear.log",
     benchmark:
@@ -40,13 +38,15 @@ rule completion_linear:
     resources:
         mem_mb=1500,
         runtime=30,
+    params:
+        config=settings("completion"),
     message:
         "Linear models of {wildcards.structure}, level by level"
     script:
         "../scripts/completion_linear.py"
 
 
-rule completion_candidate:
+rule _completion_candidate:
     input:
         library=library("completion_candidate"),
         campaign="results/{structure}/campaign.nc",
@@ -54,8 +54,6 @@ rule completion_candidate:
         study=own_study_file,
     output:
         candidate="results/{structure}/candidates/{law}.json",
-    params:
-        config=settings("completion"),
     log:
         "results/{structure}/logs/candidate_{law}.log",
     benchmark:
@@ -64,13 +62,15 @@ rule completion_candidate:
     resources:
         mem_mb=1500,
         runtime=30,
+    params:
+        config=settings("completion"),
     message:
         "{wildcards.structure}: {wildcards.law}"
     script:
         "../scripts/completion_candidate.py"
 
 
-rule completion_addition:
+rule _completion_addition:
     input:
         library=library("completion_addition"),
         campaign="results/{structure}/campaign.nc",
@@ -79,8 +79,6 @@ rule completion_addition:
         study=own_study_file,
     output:
         candidate="results/{structure}/additions/{law}.json",
-    params:
-        config=settings("completion"),
     log:
         "results/{structure}/logs/addition_{law}.log",
     benchmark:
@@ -89,13 +87,15 @@ rule completion_addition:
     resources:
         mem_mb=1500,
         runtime=30,
+    params:
+        config=settings("completion"),
     message:
         "{wildcards.structure}: {wildcards.law} as second effect"
     script:
         "../scripts/completion_addition.py"
 
 
-rule completion_verdict:
+rule _completion_verdict:
     input:
         library=library("completion_verdict"),
         campaign="results/{structure}/campaign.nc",
@@ -107,8 +107,6 @@ rule completion_verdict:
         prediction="results/{structure}/prediction.csv",
         completed="results/{structure}/completed.json",
         model="results/{structure}/model_updated.yaml",
-    params:
-        config=settings("completion"),
     log:
         "results/{structure}/logs/completion_verdict.log",
     benchmark:
@@ -117,13 +115,15 @@ rule completion_verdict:
     resources:
         mem_mb=1500,
         runtime=30,
+    params:
+        config=settings("completion"),
     message:
         "{wildcards.structure}: verdict and prediction of every level"
     script:
         "../scripts/completion_verdict.py"
 
 
-rule completion_figures:
+rule _completion_figures:
     input:
         library=library("completion_figures"),
         campaign="results/{structure}/campaign.nc",
@@ -134,8 +134,6 @@ rule completion_figures:
         completed="results/{structure}/completed.json",
     output:
         figures=completion_figure_files("{structure}"),
-    params:
-        config=settings("completion"),
     log:
         "results/{structure}/logs/completion_figures.log",
     benchmark:
@@ -144,6 +142,8 @@ rule completion_figures:
     resources:
         mem_mb=1500,
         runtime=30,
+    params:
+        config=settings("completion"),
     message:
         "{wildcards.structure}: figures"
     script:

@@ -4,13 +4,13 @@ from dataclasses import asdict
 
 if OWN is not None:
 
-    ruleorder: completion_prepare > completion_records
-    ruleorder: completion_prepare > completion_linear
-    ruleorder: completion_outcome > completion_verdict
-    ruleorder: completion_outcome > discrepancy_verdict
-    ruleorder: completion_report > discrepancy_report
+    ruleorder: _completion_prepare > _completion_records
+    ruleorder: _completion_prepare > _completion_linear
+    ruleorder: _completion_outcome > _completion_verdict
+    ruleorder: _completion_outcome > _discrepancy_verdict
+    ruleorder: _completion_report > _discrepancy_report
 
-    checkpoint completion_prepare:
+    checkpoint _completion_prepare:
         input:
             library=library("completion_prepare"),
             campaign=requested("campaign", "FILE"),
@@ -19,8 +19,6 @@ if OWN is not None:
             study=f"results/{LOOKED_AT}/study.json",
             linear=f"results/{LOOKED_AT}/linear.json",
             mounting=f"results/{LOOKED_AT}/mounting.csv",
-        params:
-            structure=asdict(OWN),
         log:
             f"results/{LOOKED_AT}/logs/completion_prepare.log",
         benchmark:
@@ -29,12 +27,14 @@ if OWN is not None:
         resources:
             mem_mb=2000,
             runtime=30,
+        params:
+            structure=asdict(OWN),
         message:
             f"{LOOKED_AT}: records, linear models, places"
         script:
             "../scripts/completion_prepare.py"
 
-    rule completion_outcome:
+    rule _completion_outcome:
         input:
             library=library("completion_outcome"),
             campaign=f"results/{LOOKED_AT}/campaign.nc",
@@ -47,8 +47,6 @@ if OWN is not None:
             prediction=f"results/{LOOKED_AT}/prediction.csv",
             completed=f"results/{LOOKED_AT}/completed.json",
             model=f"results/{LOOKED_AT}/model_updated.yaml",
-        params:
-            structure=asdict(OWN),
         log:
             f"results/{LOOKED_AT}/logs/completion_outcome.log",
         benchmark:
@@ -57,15 +55,17 @@ if OWN is not None:
         resources:
             mem_mb=1500,
             runtime=30,
+        params:
+            structure=asdict(OWN),
         message:
             f"{LOOKED_AT}: verdict and prediction of every level"
         script:
             "../scripts/completion_outcome.py"
 
-    rule completion_report:
+    rule _completion_report:
         input:
             library=library("completion_report"),
-            template=f"{SOURCE}/vibroimpact/discrepancy_page.html",
+            template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
             campaign=f"results/{LOOKED_AT}/campaign.nc",
             study=f"results/{LOOKED_AT}/study.json",
             linear=f"results/{LOOKED_AT}/linear.json",
@@ -76,8 +76,6 @@ if OWN is not None:
         output:
             page=f"results/{LOOKED_AT}/report.html",
             figures=directory(f"results/{LOOKED_AT}/figures"),
-        params:
-            name=LOOKED_AT,
         log:
             f"results/{LOOKED_AT}/logs/completion_report.log",
         benchmark:
@@ -86,6 +84,8 @@ if OWN is not None:
         resources:
             mem_mb=1500,
             runtime=10,
+        params:
+            name=LOOKED_AT,
         message:
             f"{LOOKED_AT}: results/{LOOKED_AT}/report.html"
         script:

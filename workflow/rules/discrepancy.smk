@@ -12,16 +12,12 @@ wildcard_constraints:
     pair=r"[a-z_]+@[A-Za-z0-9_.-]+(@alone)?(\+[a-z_]+@[A-Za-z0-9_.-]+)?",
 
 
-checkpoint discrepancy_prepare:
+checkpoint _discrepancy_prepare:
     input:
         library=library("discrepancy_prepare"),
         campaign=requested("campaign", "FILE"),
     output:
         prepared=f"{DISCREPANCY}/prepared.json",
-    params:
-        config=MODEL.model_dump(mode="json"),
-        compared_s=COMPARED_S,
-        draw=DRAW,
     log:
         f"{DISCREPANCY}/logs/prepare.log",
     benchmark:
@@ -30,21 +26,23 @@ checkpoint discrepancy_prepare:
     resources:
         mem_mb=3000,
         runtime=20,
+    params:
+        config=MODEL.model_dump(mode="json"),
+        compared_s=COMPARED_S,
+        draw=DRAW,
     message:
         "Checks and linear stage of the campaign"
     script:
         "../scripts/discrepancy_prepare.py"
 
 
-rule discrepancy_null:
+rule _discrepancy_null:
     input:
         library=library("discrepancy_null"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
         null=f"{DISCREPANCY}/null/{{part}}.npz",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/null_{{part}}.log",
     benchmark:
@@ -53,21 +51,21 @@ rule discrepancy_null:
     resources:
         mem_mb=3000,
         runtime=60,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Null: seeds of the bare model, part {wildcards.part}"
     script:
         "../scripts/discrepancy_null.py"
 
 
-rule discrepancy_candidate:
+rule _discrepancy_candidate:
     input:
         library=library("discrepancy_candidate"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
         path=f"{DISCREPANCY}/paths/{{candidate}}.npz",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/candidate_{{candidate}}.log",
     benchmark:
@@ -76,13 +74,15 @@ rule discrepancy_candidate:
     resources:
         mem_mb=3000,
         runtime=60,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Candidate {wildcards.candidate}: simulated at its first parameters"
     script:
         "../scripts/discrepancy_candidate.py"
 
 
-checkpoint discrepancy_screening:
+checkpoint _discrepancy_screening:
     input:
         library=library("discrepancy_screening"),
         campaign=requested("campaign", "FILE"),
@@ -92,8 +92,6 @@ checkpoint discrepancy_screening:
         bank_null=BANK_NULLS,
     output:
         screening=f"{DISCREPANCY}/screening.json",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/screening.log",
     benchmark:
@@ -102,13 +100,15 @@ checkpoint discrepancy_screening:
     resources:
         mem_mb=3000,
         runtime=30,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Screening of all candidates"
     script:
         "../scripts/discrepancy_screening.py"
 
 
-rule discrepancy_finalist:
+rule _discrepancy_finalist:
     input:
         library=library("discrepancy_finalist"),
         campaign=requested("campaign", "FILE"),
@@ -119,8 +119,6 @@ rule discrepancy_finalist:
         screening=f"{DISCREPANCY}/screening.json",
     output:
         finalist=f"{DISCREPANCY}/finalists/{{candidate}}.npz",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/finalist_{{candidate}}.log",
     benchmark:
@@ -129,13 +127,15 @@ rule discrepancy_finalist:
     resources:
         mem_mb=3000,
         runtime=60,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Finalist {wildcards.candidate}: refined by direct simulation"
     script:
         "../scripts/discrepancy_finalist.py"
 
 
-checkpoint discrepancy_pairs:
+checkpoint _discrepancy_pairs:
     input:
         library=library("discrepancy_pairs"),
         campaign=requested("campaign", "FILE"),
@@ -147,8 +147,6 @@ checkpoint discrepancy_pairs:
         finalists=finalist_files,
     output:
         pairs=f"{DISCREPANCY}/pairs.json",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/pairs.log",
     benchmark:
@@ -157,13 +155,15 @@ checkpoint discrepancy_pairs:
     resources:
         mem_mb=3000,
         runtime=30,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Second effect: which pairs to simulate"
     script:
         "../scripts/discrepancy_pairs.py"
 
 
-rule discrepancy_pair:
+rule _discrepancy_pair:
     input:
         library=library("discrepancy_pair"),
         campaign=requested("campaign", "FILE"),
@@ -174,8 +174,6 @@ rule discrepancy_pair:
         pairs=f"{DISCREPANCY}/pairs.json",
     output:
         pair=f"{DISCREPANCY}/pairs/{{pair}}.npz",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/pair_{{pair}}.log",
     benchmark:
@@ -184,13 +182,15 @@ rule discrepancy_pair:
     resources:
         mem_mb=3000,
         runtime=60,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Pair {wildcards.pair}: refined by direct simulation"
     script:
         "../scripts/discrepancy_pair.py"
 
 
-rule discrepancy_verdict:
+rule _discrepancy_verdict:
     input:
         library=library("discrepancy_verdict"),
         campaign=requested("campaign", "FILE"),
@@ -208,8 +208,6 @@ rule discrepancy_verdict:
         map_after=f"{DISCREPANCY}/map_after.nc",
         ranking=f"{DISCREPANCY}/ranking.csv",
         model=f"{DISCREPANCY}/model_updated.yaml",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/verdict.log",
     benchmark:
@@ -218,6 +216,8 @@ rule discrepancy_verdict:
     resources:
         mem_mb=3000,
         runtime=60,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Verdict, verified on fresh seeds"
     script:

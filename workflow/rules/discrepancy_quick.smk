@@ -1,7 +1,7 @@
 # The same in a hurry: `snakemake -j2 discrepancy --config campaign=FILE quick=yes`. One job: starting one per candidate would take as long as the candidates.
 
 
-rule discrepancy_quick:
+rule _discrepancy_quick:
     input:
         library=library("discrepancy_quick"),
         campaign=requested("campaign", "FILE"),
@@ -12,8 +12,6 @@ rule discrepancy_quick:
         map_after=f"{DISCREPANCY}/map_after.nc",
         ranking=f"{DISCREPANCY}/ranking.csv",
         model=f"{DISCREPANCY}/model_updated.yaml",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{DISCREPANCY}/logs/quick.log",
     benchmark:
@@ -22,6 +20,8 @@ rule discrepancy_quick:
     resources:
         mem_mb=6000,
         runtime=20,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Quick look for what is missing: short records, fewer parameters, no second effect"
     script:

@@ -1,16 +1,20 @@
 # The figures and the report page of a discrepancy run. `snakemake -j2 discrepancy_report --config campaign=FILE` once it has its verdict.
 
-DISCREPANCY_FIGURES = ("discrepancy_map", "discrepancy_psd", "discrepancy_ranking", "discrepancy_profiles", "discrepancy_levels")
+DISCREPANCY_FIGURES = (
+    "discrepancy_map",
+    "discrepancy_psd",
+    "discrepancy_ranking",
+    "discrepancy_profiles",
+    "discrepancy_levels",
+)
 
 
 # A full run after a quick one has the same products: by its mode it does not take those for its own.
-rule discrepancy_mode:
+rule _discrepancy_mode:
     input:
         library=library("discrepancy_mode"),
     output:
         mode=f"{DISCREPANCY}/mode.txt",
-    params:
-        mode="quick" if QUICK else "full",
     log:
         f"{DISCREPANCY}/logs/mode.log",
     benchmark:
@@ -19,26 +23,29 @@ rule discrepancy_mode:
     resources:
         mem_mb=500,
         runtime=1,
+    params:
+        mode="quick" if QUICK else "full",
     message:
         "Mode of the discrepancy run: {params.mode}"
     script:
         "../scripts/discrepancy_mode.py"
 
 
-rule discrepancy_report:
+rule _discrepancy_report:
     input:
         library=library("discrepancy_report"),
-        template=f"{SOURCE}/vibroimpact/discrepancy_page.html",
+        template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
         verdict=f"{DISCREPANCY}/verdict.json",
         map=f"{DISCREPANCY}/map.nc",
         map_after=f"{DISCREPANCY}/map_after.nc",
         ranking=f"{DISCREPANCY}/ranking.csv",
     output:
         page=f"{DISCREPANCY}/report.html",
-        figures=[f"{DISCREPANCY}/figures/{name}.{suffix}" for name in DISCREPANCY_FIGURES for suffix in ("png", "pdf", "csv", "txt")],
-    params:
-        name=LOOKED_AT,
-        quick=QUICK,
+        figures=[
+            f"{DISCREPANCY}/figures/{name}.{suffix}"
+            for name in DISCREPANCY_FIGURES
+            for suffix in ("png", "pdf", "csv", "txt")
+        ],
     log:
         f"{DISCREPANCY}/logs/discrepancy_report.log",
     benchmark:
@@ -47,6 +54,9 @@ rule discrepancy_report:
     resources:
         mem_mb=2000,
         runtime=10,
+    params:
+        name=LOOKED_AT,
+        quick=QUICK,
     message:
         f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"
     script:

@@ -8,8 +8,6 @@ rule f16:
         records=lambda wildcards: files_of_structure("f16"),
     output:
         poles="results/f16/poles.csv",
-    params:
-        config=settings("f16"),
     log:
         "results/f16/logs/f16.log",
     benchmark:
@@ -18,6 +16,8 @@ rule f16:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("f16"),
     message:
         "Pole and shape of the F-16 near 7.3 Hz, by peak and by LSCF"
     script:

@@ -1,14 +1,12 @@
 # Every figure as PNG and PDF, its data as CSV, its caption as text; common.smk names them.
 
 
-rule figures_model:
+rule _figures_model:
     input:
         library=library("figures_model"),
         quality=f"{RESULTS}/basis_quality.csv",
     output:
         figures=figure_files("model"),
-    params:
-        config=settings("figures_model"),
     log:
         f"{RESULTS}/logs/figures_model.log",
     benchmark:
@@ -17,13 +15,15 @@ rule figures_model:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("figures_model"),
     message:
         "Figures: layout, modes, contact law, first frequency, reduced model"
     script:
         "../scripts/figures_model.py"
 
 
-rule figures_response:
+rule _figures_response:
     input:
         library=library("figures_response"),
         model=f"{RESULTS}/model.nc",
@@ -31,8 +31,6 @@ rule figures_response:
         spectra=files_of_study("spectra"),
     output:
         figures=figure_files("response"),
-    params:
-        config=settings("figures_response"),
     log:
         f"{RESULTS}/logs/figures_response.log",
     benchmark:
@@ -41,13 +39,15 @@ rule figures_response:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("figures_response"),
     message:
         "Figures: campaign over simulation, responses against load, in-plane share"
     script:
         "../scripts/figures_response.py"
 
 
-rule figures_identification:
+rule _figures_identification:
     input:
         library=library("figures_identification"),
         model=f"{RESULTS}/model.nc",
@@ -56,8 +56,6 @@ rule figures_identification:
         table=f"{RESULTS}/consistency.csv",
     output:
         figures=figure_files("identification"),
-    params:
-        config=settings("figures_identification"),
     log:
         f"{RESULTS}/logs/figures_identification.log",
     benchmark:
@@ -66,13 +64,15 @@ rule figures_identification:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("figures_identification"),
     message:
         "Figures: poles, stabilisation, shapes, singular values, broadband"
     script:
         "../scripts/figures_identification.py"
 
 
-rule figures_checks:
+rule _figures_checks:
     input:
         library=library("figures_checks"),
         model=f"{RESULTS}/model.nc",
@@ -80,8 +80,6 @@ rule figures_checks:
         table=f"{RESULTS}/consistency.csv",
     output:
         figures=figure_files("checks"),
-    params:
-        config=settings("figures_checks"),
     log:
         f"{RESULTS}/logs/figures_checks.log",
     benchmark:
@@ -90,6 +88,8 @@ rule figures_checks:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("figures_checks"),
     message:
         "Figures: equivalent support, collapse, energy balance, contact statistics"
     script:

@@ -1,10 +1,10 @@
 # Equivalent stiffness and damping per case by every method, then the table that compares the methods. One identification for the loads
-# of a half decade, as rules identify_from_0.316 and so on: starting and preparing the linear tube takes longer than the cases of one load.
+# of a half decade, as rules _identify_from_0.316 and so on: starting and preparing the linear tube takes longer than the cases of one load.
 for START, LOADS in loads_by_half_decade(STUDY.grid).items():
 
-    rule identify:
+    rule _identify:
         name:
-            f"identify_{START}"
+            f"_identify_{START}"
         input:
             library=library("identify"),
             model=f"{RESULTS}/model.nc",
@@ -13,24 +13,24 @@ for START, LOADS in loads_by_half_decade(STUDY.grid).items():
         output:
             curves=files_of_loads("estimates", LOADS),
             tables=files_of_loads("estimates", LOADS, "csv"),
-        params:
-            config=settings("identify"),
         log:
             f"{RESULTS}/logs/identify_{START}.log",
         benchmark:
             f"{RESULTS}/benchmarks/identify_{START}.tsv"
-        threads: 1
         priority: 1  # spread over the simulations, not after them
+        threads: 1
         resources:
             mem_mb=500,
             runtime=30,
+        params:
+            config=settings("identify"),
         message:
             f"Identification at {' to '.join(dict.fromkeys((LOADS[0], LOADS[-1])))} N RMS: {len(LOADS) * CASES_PER_LOAD} of {len(CASES)} cases"
         script:
             "../scripts/identify.py"
 
 
-rule consistency:
+rule _consistency:
     input:
         library=library("consistency"),
         tables=files_of_study("estimates", "csv"),
@@ -39,8 +39,6 @@ rule consistency:
         summary=f"{RESULTS}/consistency_summary.csv",
         collapse=f"{RESULTS}/consistency_collapse.csv",
         dataset=f"{RESULTS}/consistency.nc",
-    params:
-        config=settings("consistency"),
     log:
         f"{RESULTS}/logs/consistency.log",
     benchmark:
@@ -49,6 +47,8 @@ rule consistency:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("consistency"),
     message:
         f"Consistency of the methods over {len(CASES)} cases"
     script:

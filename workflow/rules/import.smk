@@ -7,15 +7,15 @@ rule import_campaign:
     input:
         library=library("import_campaign"),
         folder=requested("import", "FOLDER"),
-        files=lambda wildcards: sorted(str(file) for file in Path(REQUEST["import"]).iterdir() if file.is_file()),
+        files=lambda wildcards: sorted(
+            str(file) for file in Path(REQUEST["import"]).iterdir() if file.is_file()
+        ),
     output:
         campaign=f"results/{IMPORTED}/{IMPORTED}.nc",
         table=f"results/{IMPORTED}/import.csv",
         text=f"results/{IMPORTED}/import.txt",
         checks=f"results/{IMPORTED}/checks.csv",
         figure=[f"results/{IMPORTED}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
-    params:
-        folder=REQUEST.get("import"),
     log:
         f"results/{IMPORTED}/logs/import_campaign.log",
     benchmark:
@@ -24,6 +24,8 @@ rule import_campaign:
     resources:
         mem_mb=4000,
         runtime=20,
+    params:
+        folder=REQUEST.get("import"),
     message:
         f"Campaign of the folder {IMPORTED}: results/{IMPORTED}/import.txt says what was found"
     script:
@@ -37,9 +39,9 @@ rule quicklook:
     output:
         checks=f"results/{LOOKED_AT}/quicklook_checks.csv",
         text=f"results/{LOOKED_AT}/quicklook_checks.txt",
-        figure=[f"results/{LOOKED_AT}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
-    params:
-        campaign=REQUEST.get("campaign"),
+        figure=[
+            f"results/{LOOKED_AT}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")
+        ],
     log:
         f"results/{LOOKED_AT}/logs/quicklook.log",
     benchmark:
@@ -48,6 +50,8 @@ rule quicklook:
     resources:
         mem_mb=4000,
         runtime=10,
+    params:
+        campaign=REQUEST.get("campaign"),
     message:
         f"Quick look at {LOOKED_AT}: results/{LOOKED_AT}/quicklook.png"
     script:

@@ -1,14 +1,12 @@
 # Structure -> reduced model and its quality report.
 
 
-rule basis:
+rule _basis:
     input:
         library=library("basis"),
     output:
         model=f"{RESULTS}/model.nc",
         quality=f"{RESULTS}/basis_quality.csv",
-    params:
-        config=settings("basis"),
     log:
         f"{RESULTS}/logs/basis.log",
     benchmark:
@@ -17,6 +15,8 @@ rule basis:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("basis"),
     message:
         "Reduced model of the structure, and its quality against the full model"
     script:

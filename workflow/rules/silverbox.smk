@@ -9,8 +9,6 @@ rule silverbox:
         completed="results/silverbox/completed.json",
     output:
         table="results/silverbox/published.csv",
-    params:
-        config=settings("silverbox"),
     log:
         "results/silverbox/logs/silverbox.log",
     benchmark:
@@ -19,6 +17,8 @@ rule silverbox:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("silverbox"),
     message:
         "Coefficients of the Silverbox beside the published ones"
     script:

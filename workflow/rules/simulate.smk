@@ -3,16 +3,16 @@
 # identification there are no spectra.
 if KEPT or STUDY.identification is None:
 
-    ruleorder: simulate > simulate_to_spectra
-    ruleorder: spectra > simulate_to_spectra
+    ruleorder: _simulate > _simulate_to_spectra
+    ruleorder: _spectra > _simulate_to_spectra
 
 else:
 
-    ruleorder: simulate_to_spectra > spectra
-    ruleorder: simulate_to_spectra > simulate
+    ruleorder: _simulate_to_spectra > _spectra
+    ruleorder: _simulate_to_spectra > _simulate
 
 
-rule simulate:
+rule _simulate:
     input:
         library=library("simulate"),
         model=f"{RESULTS}/model.nc",
@@ -20,8 +20,6 @@ rule simulate:
     output:
         records=files_of_load("records"),
         series=series_of_load(),
-    params:
-        config=settings("simulate"),
     log:
         f"{RESULTS}/logs/simulate_load_{{load}}.log",
     benchmark:
@@ -30,13 +28,15 @@ rule simulate:
     resources:
         mem_mb=500,
         runtime=60,
+    params:
+        config=settings("simulate"),
     message:
         f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
     script:
         "../scripts/simulate.py"
 
 
-rule simulate_to_spectra:
+rule _simulate_to_spectra:
     input:
         library=library("simulate_to_spectra"),
         model=f"{RESULTS}/model.nc",
@@ -44,8 +44,6 @@ rule simulate_to_spectra:
     output:
         records=files_of_load("records"),
         spectra=files_of_load("spectra"),
-    params:
-        config=settings("simulate_to_spectra"),
     log:
         f"{RESULTS}/logs/simulate_load_{{load}}.log",
     benchmark:
@@ -54,20 +52,20 @@ rule simulate_to_spectra:
     resources:
         mem_mb=500,
         runtime=60,
+    params:
+        config=settings("simulate_to_spectra"),
     message:
         f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
     script:
         "../scripts/simulate_to_spectra.py"
 
 
-rule spectra:
+rule _spectra:
     input:
         library=library("spectra"),
         series=files_of_load("timeseries"),
     output:
         spectra=files_of_load("spectra"),
-    params:
-        config=settings("spectra"),
     log:
         f"{RESULTS}/logs/spectra_load_{{load}}.log",
     benchmark:
@@ -76,20 +74,20 @@ rule spectra:
     resources:
         mem_mb=1000,
         runtime=20,
+    params:
+        config=settings("spectra"),
     message:
         f"Spectra at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
     script:
         "../scripts/spectra.py"
 
 
-rule statistics:
+rule _statistics:
     input:
         library=library("statistics"),
         records=files_of_study("records"),
     output:
         table=f"{RESULTS}/statistics.csv",
-    params:
-        config=settings("statistics"),
     log:
         f"{RESULTS}/logs/statistics.log",
     benchmark:
@@ -98,6 +96,8 @@ rule statistics:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("statistics"),
     message:
         "Contact, wear and stress statistics of every case, as one table"
     script:

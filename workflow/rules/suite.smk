@@ -2,11 +2,18 @@
 # the frozen thresholds. seconds=49 makes the same campaigns longer, draw=1 simulates with other seeds; `suite_difference` holds such a suite against the plain one.
 # count=judged: the page of what has a verdict so far; add=FILE,FILE: campaigns.csv of shards judged elsewhere, which are not judged again.
 
-SUITE_SEED = int(REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")))
+SUITE_SEED = int(
+    REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py"))
+)
 SUITE = f"results/{suite_name(SUITE_SEED, int(number_asked('seconds') or SUITE_S), DRAW)}"
 SUITE_ADDED = [file for file in REQUEST.get("add", "").split(",") if file]
 SUITE_CAMPAIGNS = suite_campaigns(SUITE, SUITE_ADDED)
-SUITE_FIGURES = ("suite_rates", "suite_confusion", "suite_strength", "suite_parameters")  # in the order of the page
+SUITE_FIGURES = (
+    "suite_rates",
+    "suite_confusion",
+    "suite_strength",
+    "suite_parameters",
+)  # in the order of the page
 
 
 wildcard_constraints:
@@ -14,14 +21,12 @@ wildcard_constraints:
     number=r"[0-9]{4}",
 
 
-rule suite_bank:
+rule _suite_bank:
     input:
         library=library("suite_bank"),
     output:
         campaign="results/{suite}/bank/bank.nc",
         done="results/{suite}/bank/verdict.json",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         "results/{suite}/logs/bank.log",
     benchmark:
@@ -30,21 +35,21 @@ rule suite_bank:
     resources:
         mem_mb=6000,
         runtime=120,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Candidates simulated on a campaign with nothing hidden, for all campaigns of {wildcards.suite}"
     script:
         "../scripts/suite_bank.py"
 
 
-rule suite_campaign:
+rule _suite_campaign:
     input:
         library=library("suite_campaign"),
         bank="results/{suite}/bank/verdict.json",
     output:
         verdict="results/{suite}/campaign_{number}/verdict.json",
         truth="results/{suite}/truth/campaign_{number}.json",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         "results/{suite}/logs/campaign_{number}.log",
     benchmark:
@@ -53,6 +58,8 @@ rule suite_campaign:
     resources:
         mem_mb=3000,
         runtime=60,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Campaign {wildcards.number} of {wildcards.suite}"
     script:
@@ -62,7 +69,7 @@ rule suite_campaign:
 rule suite:
     input:
         library=library("suite"),
-        template=f"{SOURCE}/vibroimpact/suite_page.html",
+        template=f"{SOURCE}/vibroimpact/reports/suite_page.html",
         added=SUITE_ADDED,
         verdicts=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
     output:
@@ -70,11 +77,12 @@ rule suite:
         campaigns=f"{SUITE}/campaigns.csv",
         confusion=f"{SUITE}/confusion.csv",
         detection=f"{SUITE}/detection.csv",
-        figures=[f"{SUITE}/figures/{name}.{suffix}" for name in SUITE_FIGURES for suffix in ("png", "pdf", "csv", "txt")],
+        figures=[
+            f"{SUITE}/figures/{name}.{suffix}"
+            for name in SUITE_FIGURES
+            for suffix in ("png", "pdf", "csv", "txt")
+        ],
         page=f"{SUITE}/report.html",
-    params:
-        campaigns=len(SUITE_CAMPAIGNS),
-        seed=SUITE_SEED,
     log:
         f"{SUITE}/logs/suite.log",
     benchmark:
@@ -83,6 +91,9 @@ rule suite:
     resources:
         mem_mb=2000,
         runtime=10,
+    params:
+        campaigns=len(SUITE_CAMPAIGNS),
+        seed=SUITE_SEED,
     message:
         f"Suite of seed {SUITE_SEED}: {SUITE}/report.html"
     script:
@@ -97,8 +108,6 @@ rule suite_difference:
     output:
         campaigns=f"{SUITE}/difference.csv",
         rates=f"{SUITE}/difference_rates.csv",
-    params:
-        campaigns=[f"campaign_{number:04d}" for number in SUITE_CAMPAIGNS],
     log:
         f"{SUITE}/logs/suite_difference.log",
     benchmark:
@@ -107,6 +116,8 @@ rule suite_difference:
     resources:
         mem_mb=500,
         runtime=5,
+    params:
+        campaigns=[f"campaign_{number:04d}" for number in SUITE_CAMPAIGNS],
     message:
         f"Verdicts of {SUITE} against those of the plain one: {SUITE}/difference.csv"
     script:

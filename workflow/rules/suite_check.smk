@@ -3,13 +3,11 @@
 SUITE_CHECK = "results/suite_check"
 
 
-rule suite_check_campaign:
+rule _suite_check_campaign:
     input:
         library=library("suite_check_campaign"),
     output:
         verdict=f"{SUITE_CHECK}/{{check}}/verdict.json",
-    params:
-        config=MODEL.model_dump(mode="json"),
     log:
         f"{SUITE_CHECK}/logs/{{check}}.log",
     benchmark:
@@ -18,6 +16,8 @@ rule suite_check_campaign:
     resources:
         mem_mb=3000,
         runtime=20,
+    params:
+        config=MODEL.model_dump(mode="json"),
     message:
         "Quick verdict of a sealed campaign: {wildcards.check}"
     script:
@@ -30,8 +30,6 @@ rule suite_check:
         verdicts=[f"{SUITE_CHECK}/{name}/verdict.json" for name in CHECKS],
     output:
         table=f"{SUITE_CHECK}/table.csv",
-    params:
-        checks=list(CHECKS),
     log:
         f"{SUITE_CHECK}/logs/suite_check.log",
     benchmark:
@@ -40,6 +38,8 @@ rule suite_check:
     resources:
         mem_mb=500,
         runtime=1,
+    params:
+        checks=list(CHECKS),
     message:
         f"Check of quick verdicts: {SUITE_CHECK}/table.csv"
     script:

@@ -8,9 +8,6 @@ rule timing:
     output:
         table=f"{RESULTS}/timing.csv",
         figures=[f"{RESULTS}/figures/timing.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
-    params:
-        config=settings("timing"),
-        logs=[f"{RESULTS}/logs/{job}.log" for job in jobs_of_study()],
     log:
         f"{RESULTS}/logs/timing.log",
     benchmark:
@@ -19,6 +16,9 @@ rule timing:
     resources:
         mem_mb=500,
         runtime=10,
+    params:
+        config=settings("timing"),
+        logs=[f"{RESULTS}/logs/{job}.log" for job in jobs_of_study()],
     message:
         f"Timing of the study: {RESULTS}/timing.csv"
     script:

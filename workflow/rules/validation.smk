@@ -4,9 +4,19 @@ REFERENCE_GROUPS = ("frequencies", "impacts", "r11_stops_10", "r11_stops_100")
 PREDICTION_CASES = ("left_out", "gaps", "second_tube")
 
 
-CLAIM_FIGURES = [f"{VALIDATION}/figures/validation_claims_{name}.{suffix}" for name in ("peak", "shape") for suffix in ("png", "pdf", "csv", "txt")]
-PREDICTION_FIGURES = [f"{VALIDATION}/figures/validation_{name}.{suffix}" for name in ("prediction", "prediction_gain") for suffix in ("png", "pdf", "csv", "txt")]
-JUDGES_FIGURE = [f"{VALIDATION}/figures/validation_judges.{suffix}" for suffix in ("png", "pdf", "csv", "txt")]
+CLAIM_FIGURES = [
+    f"{VALIDATION}/figures/validation_claims_{name}.{suffix}"
+    for name in ("peak", "shape")
+    for suffix in ("png", "pdf", "csv", "txt")
+]
+PREDICTION_FIGURES = [
+    f"{VALIDATION}/figures/validation_{name}.{suffix}"
+    for name in ("prediction", "prediction_gain")
+    for suffix in ("png", "pdf", "csv", "txt")
+]
+JUDGES_FIGURE = [
+    f"{VALIDATION}/figures/validation_judges.{suffix}" for suffix in ("png", "pdf", "csv", "txt")
+]
 CONVERGENCE_PICTURES = [file for files in CONVERGENCE_FIGURE_FILES.values() for file in files]
 PAGE_CHECKS = [
     *(f"{VALIDATION}/checks_{group}.csv" for group in REFERENCE_GROUPS),
@@ -20,15 +30,13 @@ wildcard_constraints:
     cases="|".join(PREDICTION_CASES),
 
 
-rule validation_reference:
+rule _validation_reference:
     input:
         library=library("validation_reference"),
         configs=[str(path) for path in sorted(Path("config/reference").glob("*.yaml"))],
     output:
         checks=f"{VALIDATION}/checks_{{group}}.csv",
         rows=f"{VALIDATION}/order_{{group}}.csv",
-    params:
-        config=settings("validation"),
     log:
         f"{VALIDATION}/logs/reference_{{group}}.log",
     benchmark:
@@ -37,18 +45,24 @@ rule validation_reference:
     resources:
         mem_mb=2000,
         runtime=30,
+    params:
+        config=settings("validation"),
     message:
         "Reference cases: {wildcards.group}"
     script:
         "../scripts/validation_reference.py"
 
 
-rule validation_claims:
+rule _validation_claims:
     input:
         library=library("validation_claims"),
         model=f"{RESULTS}/model.nc",
         quality=f"{RESULTS}/basis_quality.csv",
-        tables=[f"{RESULTS}/consistency.csv", f"{RESULTS}/consistency_summary.csv", f"{RESULTS}/consistency_collapse.csv"],
+        tables=[
+            f"{RESULTS}/consistency.csv",
+            f"{RESULTS}/consistency_summary.csv",
+            f"{RESULTS}/consistency_collapse.csv",
+        ],
         records=files_of_study("records"),
         spectra=files_of_study("spectra"),
         curves=files_of_study("estimates"),
@@ -57,8 +71,6 @@ rule validation_claims:
     output:
         table=f"{VALIDATION}/claims.csv",
         figures=CLAIM_FIGURES,
-    params:
-        config=settings("validation"),
     log:
         f"{VALIDATION}/logs/claims.log",
     benchmark:
@@ -67,13 +79,15 @@ rule validation_claims:
     resources:
         mem_mb=3000,
         runtime=20,
+    params:
+        config=settings("validation"),
     message:
         "The paper's claims, measured"
     script:
         "../scripts/validation_claims.py"
 
 
-rule validation_prediction_cases:
+rule _validation_prediction_cases:
     input:
         library=library("validation_prediction_cases"),
         model=f"{RESULTS}/model.nc",
@@ -83,8 +97,6 @@ rule validation_prediction_cases:
         second="config/validation/second_tube.yaml",
     output:
         table=f"{VALIDATION}/prediction_{{cases}}.csv",
-    params:
-        config=settings("validation"),
     log:
         f"{VALIDATION}/logs/prediction_{{cases}}.log",
     benchmark:
@@ -93,13 +105,15 @@ rule validation_prediction_cases:
     resources:
         mem_mb=3000,
         runtime=30,
+    params:
+        config=settings("validation"),
     message:
         "Equivalent linear tube against the non-linear one: {wildcards.cases}"
     script:
         "../scripts/validation_prediction_cases.py"
 
 
-rule validation_prediction:
+rule _validation_prediction:
     input:
         library=library("validation_prediction"),
         tables=[f"{VALIDATION}/prediction_{cases}.csv" for cases in PREDICTION_CASES],
@@ -107,8 +121,6 @@ rule validation_prediction:
         table=f"{VALIDATION}/prediction.csv",
         summary=f"{VALIDATION}/prediction_summary.csv",
         figures=PREDICTION_FIGURES,
-    params:
-        config=settings("statistics"),
     log:
         f"{VALIDATION}/logs/prediction.log",
     benchmark:
@@ -117,6 +129,8 @@ rule validation_prediction:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("statistics"),
     message:
         "When the equivalent linear model may be used"
     script:
@@ -134,9 +148,10 @@ rule validation:
     output:
         table=f"{VALIDATION}/validation.csv",
         page=f"{VALIDATION}/index.html",
-        figures=[f"{VALIDATION}/figures/validation_reference.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
-    params:
-        config=settings("statistics"),
+        figures=[
+            f"{VALIDATION}/figures/validation_reference.{suffix}"
+            for suffix in ("png", "pdf", "csv", "txt")
+        ],
     log:
         f"{VALIDATION}/logs/validation.log",
     benchmark:
@@ -145,6 +160,8 @@ rule validation:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("statistics"),
     message:
         f"Validation: every comparison in one table, and the page {VALIDATION}/index.html"
     script:

@@ -14,11 +14,18 @@ CONVERGENCE_AXES = ("step", "step_exact", "modes", "modes_alone")
 
 # A topic's tables, its checks last; its figures, their data and captions.
 CONVERGENCE_TABLES = {
-    topic: [*(f"results/validation/convergence_{name}.csv" for name in names), f"results/validation/checks_convergence_{topic}.csv"]
+    topic: [
+        *(f"results/validation/convergence_{name}.csv" for name in names),
+        f"results/validation/checks_convergence_{topic}.csv",
+    ]
     for topic, names in CONVERGENCE.items()
 }
 CONVERGENCE_FIGURE_FILES = {
-    topic: [f"results/validation/figures/validation_convergence_{name}.{suffix}" for name in names for suffix in ("png", "pdf", "csv", "txt")]
+    topic: [
+        f"results/validation/figures/validation_convergence_{name}.{suffix}"
+        for name in names
+        for suffix in ("png", "pdf", "csv", "txt")
+    ]
     for topic, names in CONVERGENCE_FIGURES.items()
 }
 
@@ -27,14 +34,12 @@ wildcard_constraints:
     axis="|".join(CONVERGENCE_AXES),
 
 
-rule validation_convergence_frequencies:
+rule _validation_convergence_frequencies:
     input:
         library=library("validation_convergence_frequencies"),
     output:
         tables=CONVERGENCE_TABLES["frequencies"],
         figures=CONVERGENCE_FIGURE_FILES["frequencies"],
-    params:
-        config=settings("validation"),
     log:
         "results/validation/logs/convergence_frequencies.log",
     benchmark:
@@ -43,19 +48,19 @@ rule validation_convergence_frequencies:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("validation"),
     message:
         "Convergence of frequencies with mesh and contact points"
     script:
         "../scripts/validation_convergence_frequencies.py"
 
 
-rule validation_convergence_runs:
+rule _validation_convergence_runs:
     input:
         library=library("validation_convergence_runs"),
     output:
         table="results/validation/convergence_runs_{axis}.csv",
-    params:
-        config=settings("validation"),
     log:
         "results/validation/logs/convergence_runs_{axis}.log",
     benchmark:
@@ -64,21 +69,21 @@ rule validation_convergence_runs:
     resources:
         mem_mb=2000,
         runtime=30,
+    params:
+        config=settings("validation"),
     message:
         "Impacting runs along the axis {wildcards.axis}"
     script:
         "../scripts/validation_convergence_runs.py"
 
 
-rule validation_convergence_statistics:
+rule _validation_convergence_statistics:
     input:
         library=library("validation_convergence_statistics"),
         runs=expand("results/validation/convergence_runs_{axis}.csv", axis=CONVERGENCE_AXES),
     output:
         tables=CONVERGENCE_TABLES["statistics"],
         figures=CONVERGENCE_FIGURE_FILES["statistics"],
-    params:
-        config=settings("validation"),
     log:
         "results/validation/logs/convergence_statistics.log",
     benchmark:
@@ -87,20 +92,20 @@ rule validation_convergence_statistics:
     resources:
         mem_mb=1000,
         runtime=10,
+    params:
+        config=settings("validation"),
     message:
         "Convergence of linear modes, energy and response statistics with step and modes"
     script:
         "../scripts/validation_convergence_statistics.py"
 
 
-rule validation_convergence_spectra:
+rule _validation_convergence_spectra:
     input:
         library=library("validation_convergence_spectra"),
     output:
         tables=CONVERGENCE_TABLES["spectra"],
         figures=CONVERGENCE_FIGURE_FILES["spectra"],
-    params:
-        config=settings("validation"),
     log:
         "results/validation/logs/convergence_spectra.log",
     benchmark:
@@ -109,6 +114,8 @@ rule validation_convergence_spectra:
     resources:
         mem_mb=2500,
         runtime=20,
+    params:
+        config=settings("validation"),
     message:
         "Effective averages and leakage of spectra, scatter over seeds with impacts"
     script:

@@ -1,14 +1,15 @@
 # Third-party codes as judges; those that are not installed are named in judges_present.txt. `make judges` installs the Python ones.
-rule validation_judges:
+rule _validation_judges:
     input:
         library=library("validation_judges"),
     output:
         checks="results/validation/checks_judges.csv",
         oval_bend="results/validation/oval_bend.csv",
         presence="results/validation/judges_present.txt",
-        figures=[f"results/validation/figures/validation_judges.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
-    params:
-        config=settings("validation"),
+        figures=[
+            f"results/validation/figures/validation_judges.{suffix}"
+            for suffix in ("png", "pdf", "csv", "txt")
+        ],
     log:
         "results/validation/logs/judges.log",
     benchmark:
@@ -17,6 +18,8 @@ rule validation_judges:
     resources:
         mem_mb=2000,
         runtime=10,
+    params:
+        config=settings("validation"),
     message:
         "Third-party codes judge frequencies, impacts, poles and spectra"
     script:

@@ -1,14 +1,14 @@
 """Build and write the reduced model and its quality report."""
 
-import sys
-
+from vibroimpact.config.stage_settings import Settings
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
-from vibroimpact.records import write_model, write_table
-from vibroimpact.reduction import build_model, quality_report
-from vibroimpact.settings import Settings
+from vibroimpact.records import write_table
+from vibroimpact.reduction.model_file import write_model
+from vibroimpact.reduction.reduced_model import build_model, quality_report
 from vibroimpact.stopwatch import Stopwatch
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 config = Settings(snakemake.params.config)
 model = build_model(config)
 print(f"{model.modes} modes")

@@ -1,14 +1,18 @@
 """One candidate of a completion, fitted and tried."""
 
-import sys
-
-from vibroimpact.campaign import read_campaign
+from vibroimpact.campaign.file import read_campaign
 from vibroimpact.completion.candidate import run_candidate
 from vibroimpact.completion.store import read_values, write_values
 from vibroimpact.completion.study import study_of
+from vibroimpact.job_log import redirect_output
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 campaign = read_campaign(snakemake.input.campaign)
-study = study_of(snakemake.wildcards.structure, read_values(snakemake.input.study) if snakemake.input.study else None)
+study = study_of(
+    snakemake.wildcards.structure,
+    read_values(snakemake.input.study) if snakemake.input.study else None,
+)
 linear = read_values(snakemake.input.linear)
-write_values(run_candidate(campaign, study, linear, snakemake.wildcards.law), snakemake.output.candidate)
+write_values(
+    run_candidate(campaign, study, linear, snakemake.wildcards.law), snakemake.output.candidate
+)

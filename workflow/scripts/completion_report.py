@@ -1,16 +1,25 @@
 """The figures and the report page of a user's completion."""
 
-import sys
-
 from vibroimpact.completion.store import read_kept, read_values
 from vibroimpact.completion.study import study_of
-from vibroimpact.discrepancy_page import NOISE, discrepancy_page
-from vibroimpact.figures.completion import saved_sheets
+from vibroimpact.figures.discrepancy.completion import saved_sheets
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_table, write_text
+from vibroimpact.reports.discrepancy_page import NOISE, discrepancy_page
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 files = snakemake.input
-prepared, linear, completed, verdict = (read_values(path) for path in (files.study, files.linear, files.completed, files.verdict))
+prepared, linear, completed, verdict = (
+    read_values(path) for path in (files.study, files.linear, files.completed, files.verdict)
+)
 tables = read_table(files.mounting), read_table(files.prediction)
-shown = saved_sheets(snakemake.output.figures, read_kept(files.campaign), study_of("", prepared), linear, completed, verdict, *tables)
+shown = saved_sheets(
+    snakemake.output.figures,
+    read_kept(files.campaign),
+    study_of("", prepared),
+    linear,
+    completed,
+    verdict,
+    *tables,
+)
 write_text(discrepancy_page(snakemake.params.name, verdict, shown, NOISE), snakemake.output.page)

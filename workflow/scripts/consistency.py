@@ -1,19 +1,27 @@
 """Gather the estimates of all cases into the consistency tables."""
 
-import sys
-
-from vibroimpact.consistency import COLLAPSE_COLUMNS, collapse_rows, consistency_dataset, consistency_rows, summary_rows
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_table, write_record, write_table
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.method_agreement import (
+    COLLAPSE_COLUMNS,
+    collapse_rows,
+    consistency_dataset,
+    consistency_rows,
+    summary_rows,
+)
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 rows = consistency_rows([read_table(path) for path in snakemake.input.tables])
 summary = summary_rows(rows)
 write_table(rows, snakemake.output.table)
 write_table(summary, snakemake.output.summary)
 write_table(collapse_rows(summary), snakemake.output.collapse, COLLAPSE_COLUMNS)
 dataset = consistency_dataset(rows, summary)
-write_record(dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), snakemake.output.dataset)
+write_record(
+    dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)),
+    snakemake.output.dataset,
+)
 print(f"{len(rows)} estimates")
 print(Stopwatch().line())

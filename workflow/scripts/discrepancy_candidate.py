@@ -1,13 +1,12 @@
 """Simulate a candidate at its first parameters."""
 
-import sys
-
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.jobs import candidate_path
 from vibroimpact.discrepancy.run import Run
 from vibroimpact.discrepancy.store import save_empty
+from vibroimpact.job_log import redirect_output
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 run = Run.opened(snakemake)
 if run.refused:
     save_empty(snakemake.output.path)

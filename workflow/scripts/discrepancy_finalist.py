@@ -1,9 +1,13 @@
 """Refine a finalist by direct simulation."""
 
-import sys
-
 from vibroimpact.discrepancy.jobs import finalist, read_json
 from vibroimpact.discrepancy.run import Run
+from vibroimpact.job_log import redirect_output
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-finalist(Run.opened(snakemake), snakemake.wildcards.candidate, read_json(snakemake.input.screening), snakemake.output.finalist)
+redirect_output(snakemake.log[0])
+finalist(
+    Run.opened(snakemake),
+    snakemake.wildcards.candidate,
+    read_json(snakemake.input.screening),
+    snakemake.output.finalist,
+)

@@ -1,8 +1,7 @@
 """Write down whether a discrepancy run is a quick or a full one."""
 
-import sys
-
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_text
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 write_text(f"{snakemake.params.mode}\n", snakemake.output.mode)

@@ -2,19 +2,29 @@
 
 import os
 import shutil
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}  # before numpy: the processes are forked here, one per core
+os.environ |= {
+    f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")
+}  # before numpy: the processes are forked here, one per core
 
 from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.whole import run_campaign
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 source = origin(snakemake.params.config, snakemake.input.library)
 with TemporaryDirectory(dir=Path(snakemake.output.verdict).parent) as work:
-    run_campaign(snakemake.params.config, snakemake.input.campaign, work, source, longest_s=QUICK_S, quick=True, workers=snakemake.threads)
+    run_campaign(
+        snakemake.params.config,
+        snakemake.input.campaign,
+        work,
+        source,
+        longest_s=QUICK_S,
+        quick=True,
+        workers=snakemake.threads,
+    )
     for made in snakemake.output:
         shutil.move(Path(work, Path(made).name), made)

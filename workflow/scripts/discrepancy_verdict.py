@@ -1,13 +1,12 @@
 """Decide, verify on fresh seeds, and write verdict, maps, ranking and the completed model."""
 
-import sys
-
 from vibroimpact.discrepancy.conclusion import conclude
 from vibroimpact.discrepancy.jobs import read_json
 from vibroimpact.discrepancy.run import Run
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 run = Run.opened(snakemake)
 source = origin(snakemake.params.config, snakemake.input.library)
 files = [*snakemake.input.finalists, *snakemake.input.pairs]

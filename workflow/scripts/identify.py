@@ -1,20 +1,37 @@
 """Write the estimates of all cases of some loads, and the curves behind them."""
 
-import sys
-
+from vibroimpact.config.stage_settings import Settings
 from vibroimpact.identify.case import RECORD_READ, SPECTRA_READ, identify_case
 from vibroimpact.identify.estimate import table_rows
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
-from vibroimpact.records import read_model, read_record, write_record, write_table
-from vibroimpact.settings import Settings
+from vibroimpact.records import read_record, write_record, write_table
+from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-config, model, stopwatch = Settings(snakemake.params.config), read_model(snakemake.input.model), Stopwatch()
-for record, spectra, table, curves in zip(snakemake.input.records, snakemake.input.spectra, snakemake.output.tables, snakemake.output.curves, strict=True):
+redirect_output(snakemake.log[0])
+config = Settings(snakemake.params.config)
+model = read_model(snakemake.input.model)
+stopwatch = Stopwatch()
+for record, spectra, table, curves in zip(
+    snakemake.input.records,
+    snakemake.input.spectra,
+    snakemake.output.tables,
+    snakemake.output.curves,
+    strict=True,
+):
     record, spectra = read_record(record, RECORD_READ), read_record(spectra, SPECTRA_READ)
-    estimates, shown = stopwatch.time("identification", identify_case, config, model, record, spectra)
+    estimates, shown = stopwatch.time(
+        "identification", identify_case, config, model, record, spectra
+    )
     write_table(table_rows(estimates, record.attrs), table)
-    write_record(shown.assign_attrs(record.attrs | origin(snakemake.params.config, snakemake.input.library)), curves)
-    print(record.attrs["case"], *(f"{item.method}: {item.k:.3g} N/m {item.quality} {item.note}" for item in estimates), sep="\n  ")
+    write_record(
+        shown.assign_attrs(record.attrs | origin(snakemake.params.config, snakemake.input.library)),
+        curves,
+    )
+    print(
+        record.attrs["case"],
+        *(f"{item.method}: {item.k:.3g} N/m {item.quality} {item.note}" for item in estimates),
+        sep="\n  ",
+    )
 print(stopwatch.line())

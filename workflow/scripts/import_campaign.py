@@ -3,13 +3,14 @@
 import sys
 from pathlib import Path
 
-from vibroimpact.campaign import write_campaign
-from vibroimpact.figures.quicklook import quicklook
-from vibroimpact.importing.assemble import import_folder
-from vibroimpact.importing.report import write_report
-from vibroimpact.importing.signals import ImportProblem
+from vibroimpact.campaign.file import write_campaign
+from vibroimpact.campaign.importing.assemble import import_folder
+from vibroimpact.campaign.importing.report import write_report
+from vibroimpact.campaign.importing.signals import ImportProblem
+from vibroimpact.figures.discrepancy.quicklook import quicklook
+from vibroimpact.job_log import redirect_output
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 try:
     campaign, rows = import_folder(snakemake.params.folder)
 except ImportProblem as problem:

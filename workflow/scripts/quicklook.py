@@ -3,12 +3,13 @@
 import sys
 from pathlib import Path
 
-from vibroimpact.campaign_checks import COLUMNS, check_file
-from vibroimpact.figures.quicklook import quicklook
-from vibroimpact.importing.report import checks_text
+from vibroimpact.campaign.checks.file_checks import COLUMNS, check_file
+from vibroimpact.campaign.importing.report import checks_text
+from vibroimpact.figures.discrepancy.quicklook import quicklook
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table, write_text
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 campaign, checks = check_file(snakemake.input.campaign)
 print(checks_text(checks)) if campaign is not None else sys.exit(checks_text(checks))
 write_table(checks, snakemake.output.checks, COLUMNS)

@@ -1,19 +1,26 @@
-"""Simulate all cases of one load and write their records and spectra; their time series are never written."""
+"""Simulate all cases of one load and write their records and spectra; their time series are never
+written.
+"""
 
-import sys
-
-from vibroimpact.cases import cases_of_load
+from vibroimpact.config.stage_settings import Settings
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
-from vibroimpact.records import read_model, write_record
-from vibroimpact.settings import Settings
-from vibroimpact.simulate import simulate_cases
-from vibroimpact.spectra_files import spectra_files
+from vibroimpact.records import write_record
+from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.cases import cases_of_load
+from vibroimpact.study.simulation import simulate_cases
+from vibroimpact.study.spectra_files import spectra_files
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
-cases, source, stopwatch = cases_of_load(config.grid, float(snakemake.wildcards.load)), origin(snakemake.params.config, snakemake.input.library), Stopwatch()
-records, spectra = dict(zip(cases, snakemake.output.records)), dict(zip(cases, snakemake.output.spectra))
-for case, record in simulate_cases(config, model, cases, spectra_files(config, model, spectra, source, stopwatch), stopwatch):
+cases = cases_of_load(config.grid, float(snakemake.wildcards.load))
+source = origin(snakemake.params.config, snakemake.input.library)
+stopwatch = Stopwatch()
+records = dict(zip(cases, snakemake.output.records, strict=True))
+spectra = dict(zip(cases, snakemake.output.spectra, strict=True))
+for case, record in simulate_cases(
+    config, model, cases, spectra_files(config, model, spectra, source, stopwatch), stopwatch
+):
     write_record(record.assign_attrs(record.attrs | source), records[case])
 print(stopwatch.line())

@@ -1,18 +1,19 @@
 """Write the spectra of all cases of one load."""
 
-import sys
-
+from vibroimpact.config.stage_settings import Settings
+from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_record, write_record
-from vibroimpact.settings import Settings
-from vibroimpact.spectra_of_case import case_spectra
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_spectra import case_spectra
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 config, stopwatch = Settings(snakemake.params.config), Stopwatch()
 for series, path in zip(snakemake.input.series, snakemake.output.spectra, strict=True):
     record = read_record(series)
     spectra = stopwatch.time("spectra", case_spectra, config, record)
-    write_record(spectra.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), path)
+    write_record(
+        spectra.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), path
+    )
     print(f"{path} written")
 print(stopwatch.line())

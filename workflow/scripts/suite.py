@@ -1,20 +1,34 @@
 """Hold the suite's verdicts against their truths: tables, figures and the page."""
 
-import sys
 from pathlib import Path
 
 from vibroimpact.discrepancy.detection import detection
 from vibroimpact.discrepancy.suite import confusion, rates, read_shards
-from vibroimpact.figures.suite import suite_figures
+from vibroimpact.figures.suite.sheets import suite_figures
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table, write_text
-from vibroimpact.suite_page import suite_page
+from vibroimpact.reports.suite_page import suite_page
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 rows = read_shards(Path(snakemake.output.page).parent, snakemake.input.added)
-tables = {"campaigns": rows, "rates": rates(rows), "confusion": confusion(rows), "detection": detection(rows)}
+tables = {
+    "campaigns": rows,
+    "rates": rates(rows),
+    "confusion": confusion(rows),
+    "detection": detection(rows),
+}
 for name, table in tables.items():
     write_table(table, snakemake.output[name])
 for sheet in suite_figures(rows, tables["rates"], tables["confusion"]):
     sheet.save(Path(snakemake.output.page).parent / "figures")
-write_text(suite_page(snakemake.params.seed, rows, tables["rates"], tables["detection"], [file for file in snakemake.output.figures if file.endswith(".png")]), snakemake.output.page)
+write_text(
+    suite_page(
+        snakemake.params.seed,
+        rows,
+        tables["rates"],
+        tables["detection"],
+        [file for file in snakemake.output.figures if file.endswith(".png")],
+    ),
+    snakemake.output.page,
+)
 print(f"{len(rows)} campaigns judged: {snakemake.output.page}")

@@ -1,17 +1,41 @@
-"""Simulate all candidates on a campaign with nothing hidden: the bank that the suite's campaigns share."""
+"""Simulate all candidates on a campaign with nothing hidden: the bank that the suite's campaigns
+share.
+"""
 
 import pickle
-import sys
 from pathlib import Path
 
 from vibroimpact.discrepancy.dag import suite_of
 from vibroimpact.discrepancy.whole import run_campaign
+from vibroimpact.job_log import redirect_output
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 folder, tables = Path(snakemake.output.done).parent, {}
 suite = suite_of(snakemake.wildcards.suite)
-make_campaign(Plan((0, 0), (), "null", levels=LEVELS, duration=float(suite["seconds"]), gain_scatter=0.0, frequency_scatter=0.0, damping_scatter=0.0),
-              snakemake.output.campaign, folder / "truth.json", False)  # fmt: skip
-run_campaign(snakemake.params.config, snakemake.output.campaign, folder, {}, tables=tables, for_all=True, draw=suite["draw"], workers=snakemake.threads)
+make_campaign(
+    Plan(
+        (0, 0),
+        (),
+        "null",
+        levels=LEVELS,
+        duration=float(suite["seconds"]),
+        gain_scatter=0.0,
+        frequency_scatter=0.0,
+        damping_scatter=0.0,
+    ),
+    snakemake.output.campaign,
+    folder / "truth.json",
+    False,
+)
+run_campaign(
+    snakemake.params.config,
+    snakemake.output.campaign,
+    folder,
+    {},
+    tables=tables,
+    for_all=True,
+    draw=suite["draw"],
+    workers=snakemake.threads,
+)
 (folder / "tables.pickle").write_bytes(pickle.dumps(tables))

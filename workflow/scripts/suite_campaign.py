@@ -1,18 +1,25 @@
 """Make a sealed campaign of the suite, run it, and keep its verdict and its truth."""
 
 import pickle
-import sys
 from pathlib import Path
 
 from vibroimpact.discrepancy.dag import suite_of
 from vibroimpact.discrepancy.suite_run import left_out, run_sealed
+from vibroimpact.job_log import redirect_output
 from vibroimpact_truth.campaign import LEVELS, make_campaign
 from vibroimpact_truth.draw import drawn
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 number, bank = int(snakemake.wildcards.number), Path(snakemake.input.bank).parent
 suite = suite_of(snakemake.wildcards.suite)
 plan = drawn(suite["seed"], number + 1, levels=LEVELS, duration=float(suite["seconds"]))[number]
 folder = Path(snakemake.output.verdict).parent
 make_campaign(plan, folder / "campaign.nc", snakemake.output.truth, twin=False)
-run_sealed(snakemake.params.config, folder, bank, pickle.loads((bank / "tables.pickle").read_bytes()), left_out(plan.effects, plan.arm), suite["draw"])
+run_sealed(
+    snakemake.params.config,
+    folder,
+    bank,
+    pickle.loads((bank / "tables.pickle").read_bytes()),
+    left_out(plan.effects, plan.arm),
+    suite["draw"],
+)

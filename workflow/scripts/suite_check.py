@@ -1,17 +1,27 @@
-"""Hold the quick verdicts of the sealed campaigns against what they must say; fail with what they say instead."""
+"""Hold the quick verdicts of the sealed campaigns against what they must say; fail with what they
+say instead.
+"""
 
 import json
-import sys
 from pathlib import Path
 
 from vibroimpact.discrepancy.suite_check import table
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-rows = table({name: json.loads(Path(file).read_text(encoding="utf-8")) for name, file in zip(snakemake.params.checks, snakemake.input.verdicts, strict=True)})
+redirect_output(snakemake.log[0])
+rows = table(
+    {
+        name: json.loads(Path(file).read_text(encoding="utf-8"))
+        for name, file in zip(snakemake.params.checks, snakemake.input.verdicts, strict=True)
+    }
+)
 for row in rows:
     print(row["check"], "right" if row["right"] else f"WRONG: {row['faults']}", flush=True)
 wrong = [row for row in rows if not row["right"]]
 if wrong:
-    raise SystemExit(f"{len(wrong)} of {len(rows)} quick verdicts are wrong: " + "; ".join(f"{row['check']}: {row['faults']}" for row in wrong))
+    raise SystemExit(
+        f"{len(wrong)} of {len(rows)} quick verdicts are wrong: "
+        + "; ".join(f"{row['check']}: {row['faults']}" for row in wrong)
+    )
 write_table(rows, snakemake.output.table)

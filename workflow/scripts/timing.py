@@ -1,14 +1,14 @@
 """Sum the benchmark files and logs of a study into a table and a figure."""
 
-import sys
 from pathlib import Path
 
-from vibroimpact.figures.timing import timing
+from vibroimpact.config.stage_settings import Settings
+from vibroimpact.figures.study.timing import timing
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
-from vibroimpact.settings import Settings
-from vibroimpact.timing import study_timing
+from vibroimpact.study.timing import study_timing
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 rows = study_timing(snakemake.input.benchmarks, snakemake.params.logs)
 write_table(rows, snakemake.output.table)
 for sheet in timing(Settings(snakemake.params.config), rows):

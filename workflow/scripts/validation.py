@@ -1,18 +1,21 @@
 """All comparisons in one table, the reference figures, and the page."""
 
-import sys
 from pathlib import Path
 
-from vibroimpact.figures.validation_reference import reference
+from vibroimpact.figures.validation.reference import reference
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_table, write_table, write_text
-from vibroimpact.validation.page import page_tables, validation_page
+from vibroimpact.reports.validation_page import page_tables, validation_page
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 checks = [row for path in snakemake.input.checks for row in read_table(path)]
 write_table(checks, snakemake.output.table)
 folder = Path(snakemake.output.page).parent
 reference(checks, read_table(snakemake.input.order)).save(folder / "figures")
-figures = [*sorted(Path(path) for path in snakemake.input.figures if path.endswith(".png")), *map(Path, snakemake.output.figures[:1])]
+figures = [
+    *sorted(Path(path) for path in snakemake.input.figures if path.endswith(".png")),
+    *map(Path, snakemake.output.figures[:1]),
+]
 tables = page_tables(read_table(snakemake.input.claims), read_table(snakemake.input.prediction))
 write_text(validation_page(checks, tables, figures, folder), snakemake.output.page)
 print(f"{len(checks)} comparisons")

@@ -1,12 +1,13 @@
 """Response statistics of impacting runs along one axis."""
 
-import sys
-
-from vibroimpact.config import check_config
+from vibroimpact.config.reading import check_config
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
-from vibroimpact.validation.convergence_runs import run_rows
+from vibroimpact.validation.convergence.runs import run_rows
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-rows = run_rows(check_config(snakemake.params.config, "the study's configuration"), snakemake.wildcards.axis)
+redirect_output(snakemake.log[0])
+rows = run_rows(
+    check_config(snakemake.params.config, "the study's configuration"), snakemake.wildcards.axis
+)
 write_table(rows, snakemake.output.table)
 print(f"{len(rows)} runs along {snakemake.wildcards.axis}")

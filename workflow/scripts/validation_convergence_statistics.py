@@ -1,18 +1,35 @@
-"""Linear modes, energy balance and response statistics against step and modes: rows, checks, figures."""
+"""Linear modes, energy balance and response statistics against step and modes: rows, checks,
+figures.
+"""
 
-import sys
 from pathlib import Path
 
-from vibroimpact.config import check_config
-from vibroimpact.figures import validation_convergence_runs as figures
+from vibroimpact.config.reading import check_config
+from vibroimpact.figures.validation import convergence_runs as figures
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_table, write_table
-from vibroimpact.validation import convergence_period, convergence_statistics
+from vibroimpact.validation.convergence import (
+    period as convergence_period,
+)
+from vibroimpact.validation.convergence import (
+    statistics as convergence_statistics,
+)
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-periods = convergence_period.period_rows(check_config(snakemake.params.config, "the study's configuration"))
-table = convergence_statistics.statistics_rows([row for path in snakemake.input.runs for row in read_table(path)])
-checks = convergence_period.period_checks(periods) + convergence_statistics.statistics_checks(table) + convergence_statistics.energy_checks(table)
-for rows, path in zip((periods, table, [check.row() for check in checks]), snakemake.output.tables, strict=True):
+redirect_output(snakemake.log[0])
+periods = convergence_period.period_rows(
+    check_config(snakemake.params.config, "the study's configuration")
+)
+table = convergence_statistics.statistics_rows(
+    [row for path in snakemake.input.runs for row in read_table(path)]
+)
+checks = (
+    convergence_period.period_checks(periods)
+    + convergence_statistics.statistics_checks(table)
+    + convergence_statistics.energy_checks(table)
+)
+for rows, path in zip(
+    (periods, table, [check.row() for check in checks]), snakemake.output.tables, strict=True
+):
     write_table(rows, path)
 for sheet in figures.step(periods, table) + figures.both_axes(table):
     sheet.save(Path(snakemake.output.figures[0]).parent)

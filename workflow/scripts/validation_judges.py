@@ -1,15 +1,17 @@
-"""What third-party codes say of the tube, its impacts, poles and spectra: Checks of those installed, and which were absent."""
+"""What third-party codes say of the tube, its impacts, poles and spectra: Checks of those
+installed, and which were absent.
+"""
 
-import sys
 from pathlib import Path
 
-from vibroimpact.config import check_config
-from vibroimpact.figures.validation_judges import judged_impacts
+from vibroimpact.config.reading import check_config
+from vibroimpact.figures.validation.judges import judged_impacts
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table, write_text
-from vibroimpact.validation.judges import all_verdicts
-from vibroimpact.validation.judges_modes import oval_bend_rows
+from vibroimpact.validation.judges.modes import oval_bend_rows
+from vibroimpact.validation.judges.table import all_verdicts
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 config = check_config(snakemake.params.config, "the study's configuration")
 verdicts = all_verdicts(config)
 write_table([check.row() for check in verdicts.checks], snakemake.output.checks)

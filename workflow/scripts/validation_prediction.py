@@ -1,13 +1,13 @@
 """The table that tells when the equivalent linear model may be used, and its figures."""
 
-import sys
 from pathlib import Path
 
-from vibroimpact.figures.validation_prediction import prediction
+from vibroimpact.figures.validation.prediction import prediction
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_table, write_table
-from vibroimpact.validation.prediction import summary_rows
+from vibroimpact.validation.prediction.table import summary_rows
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 rows = [row for path in snakemake.input.tables for row in read_table(path)]
 write_table(rows, snakemake.output.table)
 write_table(summary_rows(rows), snakemake.output.summary)

@@ -1,16 +1,20 @@
-"""A group of reference cases through the public interface: frequencies, impacts, or random motion between stops."""
+"""A group of reference cases through the public interface: frequencies, impacts, or random motion
+between stops.
+"""
 
-import sys
 from pathlib import Path
 
-from vibroimpact.config import check_config
+from vibroimpact.config.reading import check_config
+from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
 from vibroimpact.validation.check import COLUMNS
-from vibroimpact.validation.reference_runs import ORDER_COLUMNS, reference_group
+from vibroimpact.validation.reference.runs import ORDER_COLUMNS, reference_group
 
-sys.stderr = sys.stdout = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+redirect_output(snakemake.log[0])
 study = check_config(snakemake.params.config, "the study's configuration")
-checks, rows = reference_group(snakemake.wildcards.group, study, Path(snakemake.input.configs[0]).parent)
+checks, rows = reference_group(
+    snakemake.wildcards.group, study, Path(snakemake.input.configs[0]).parent
+)
 write_table([check.row() for check in checks], snakemake.output.checks, COLUMNS)
 write_table(rows, snakemake.output.rows, ORDER_COLUMNS)
 print(f"{sum(check.passed for check in checks)} of {len(checks)} within tolerance")

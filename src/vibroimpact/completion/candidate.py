@@ -1,17 +1,19 @@
-"""One candidate: a law at a place, alone or beside another, fitted to some levels of a campaign and tried on the others."""
+"""One candidate: a law at a place, alone or beside another, fitted to some levels of a campaign and
+tried on the others.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.completion.family import fit_family
-from vibroimpact.completion.levels import levels_of, naming_split
-from vibroimpact.completion.linear_models import base_of, linear_errors
-from vibroimpact.completion.local_laws import LAWS, Scales
-from vibroimpact.completion.naming import leading
-from vibroimpact.completion.store import modes_of, trial_of, trial_values
-from vibroimpact.completion.study import row_of
-from vibroimpact.completion.trial import Fit, Records, Term, Trial, with_offsets
+from .family import fit_family
+from .levels import levels_of, naming_split
+from .linear_models import base_of, linear_errors
+from .local_laws import LAWS, Scales
+from .naming import leading
+from .store import modes_of, trial_of, trial_values
+from .study import row_of
+from .trial import Fit, Records, Term, Trial, with_offsets
 
 PASSES = 9
 FREE_STARTS = 6  # drawn participations of a place that no channel shows
@@ -19,42 +21,75 @@ SEED = 2012
 
 
 def run_candidate(campaign, study, linear, name, first=None, told=print):
-    """Return the values of a candidate "law.place", or of an addition to `first` (values of another candidate): its trial, scores, passes.
+    """Return the values of a candidate "law.place", or of an addition to `first` (values of another
+    candidate): its trial, scores, passes.
 
-    errors: (level, channel) relative errors of the levels it was fitted to and tried on, by level name.
+    errors: (level, channel) relative errors of the levels it was fitted to and tried on, by level
+    name.
     """
     levels, names, _ = levels_of(campaign)
     fitted, tried = naming_split(levels)
     records = Records(tuple(fitted), study.band_Hz, study.mean, study.emphasis)
     law, place = name.split(".")
     if first is None:
-        start = _alone(modes_of(linear["base"]), modes_of(linear["joint"]), records, law, place, row_of(study, place, names))
+        start = _alone(
+            modes_of(linear["base"]),
+            modes_of(linear["joint"]),
+            records,
+            law,
+            place,
+            row_of(study, place, names),
+        )
     else:
         start = _added(trial_of(first["trial"]), records, law, place, row_of(study, place, names))
     if start is None:
         told("no start value of this law leaves the motion bounded: the candidate is out")
         return _without_fit(base_of(linear), name, first, [*fitted], [*tried], names, law)
-    trial, minimum = Fit(start, records).run(PASSES, told=lambda done, cost: told(f"pass {done}: {cost:.5g}"))
+    trial, minimum = Fit(start, records).run(
+        PASSES, told=lambda done, cost: told(f"pass {done}: {cost:.5g}")
+    )
     both = Records((*fitted, *tried), study.band_Hz, study.mean)
     trial = with_offsets(trial, both)
     predicted = both.predict(trial, 3)
-    errors = both.errors(predicted) if predicted else np.full((len(both.levels), len(names)), np.nan)
-    return {"name": f"{first['name']}+{name}" if first else name, "ids": sorted({LAWS[term.law].id for term in trial.terms}),
-            "places": [term.place for term in trial.terms], "trial": trial_values(trial), "cost": minimum.cost, "passes": minimum.passes,
-            "errors": dict(zip([level.name for level in both.levels], errors.tolist(), strict=True)),
-            "fitted": [level.name for level in fitted], "tried": [level.name for level in tried]}  # fmt: skip
+    errors = (
+        both.errors(predicted) if predicted else np.full((len(both.levels), len(names)), np.nan)
+    )
+    return {
+        "name": f"{first['name']}+{name}" if first else name,
+        "ids": sorted({LAWS[term.law].id for term in trial.terms}),
+        "places": [term.place for term in trial.terms],
+        "trial": trial_values(trial),
+        "cost": minimum.cost,
+        "passes": minimum.passes,
+        "errors": dict(zip([level.name for level in both.levels], errors.tolist(), strict=True)),
+        "fitted": [level.name for level in fitted],
+        "tried": [level.name for level in tried],
+    }
 
 
 def _without_fit(modes, name, first, fitted, tried, names, law):
-    """The values of a candidate that has no bounded motion: the linear model, and errors that are not finite."""
+    """The values of a candidate that has no bounded motion: the linear model, and errors that are
+    not finite.
+    """
     ids = sorted({LAWS[law].id, *(first["ids"] if first else ())})
     errors = {level.name: [np.nan] * len(names) for level in (*fitted, *tried)}
-    return {"name": f"{first['name']}+{name}" if first else name, "ids": ids, "places": [], "trial": trial_values(Trial(modes)), "cost": np.nan, "passes": 0,
-            "errors": errors, "fitted": [level.name for level in fitted], "tried": [level.name for level in tried]}  # fmt: skip
+    return {
+        "name": f"{first['name']}+{name}" if first else name,
+        "ids": ids,
+        "places": [],
+        "trial": trial_values(Trial(modes)),
+        "cost": np.nan,
+        "passes": 0,
+        "errors": errors,
+        "fitted": [level.name for level in fitted],
+        "tried": [level.name for level in tried],
+    }
 
 
 def run_addition(campaign, study, linear, name, singles):
-    """Return the values of "law.place" beside the best of `singles` by the levels they were tried on."""
+    """Return the values of "law.place" beside the best of `singles` by the levels they were tried
+    on.
+    """
     levels, _, _ = levels_of(campaign)
     base = modes_of(linear["base"])
     reference = {level.name: linear_errors(base, level, study.band_Hz) for level in levels}
@@ -62,30 +97,61 @@ def run_addition(campaign, study, linear, name, singles):
 
 
 def _alone(base, joint, records, law, place, row):
-    """The start of a law by itself: the best of its start values on the modes of the lowest level, of the family, or of all levels."""
+    """The start of a law by itself: the best of its start values on the modes of the lowest level,
+    of the family, or of all levels.
+    """
     family = fit_family(base, row, records.levels, records.band_Hz)
-    motion = [_rms_motion(family, index, level, records) for index, level in enumerate(records.levels)]
-    strength = min(float(np.max(np.abs(family.k + 1j * _middle(records) * family.c))), _softest(family.modes, np.array(row)))
+    motion = [
+        _rms_motion(family, index, level, records) for index, level in enumerate(records.levels)
+    ]
+    strength = min(
+        float(np.max(np.abs(family.k + 1j * _middle(records) * family.c))),
+        _softest(family.modes, np.array(row)),
+    )
     scales = Scales(strength, min(motion), max(motion), _middle(records))
-    trials = [Trial(modes, (Term(law, place, row, values),)) for modes in (base, family.modes, joint) for values in LAWS[law].starts(scales)]
+    trials = [
+        Trial(modes, (Term(law, place, row, values),))
+        for modes in (base, family.modes, joint)
+        for values in LAWS[law].starts(scales)
+    ]
     return _best(trials, records)
 
 
 def _added(first, records, law, place, row):
-    """The start of a second law beside a fitted first one; at a place that no channel shows participations are drawn."""
+    """The start of a second law beside a fitted first one; at a place that no channel shows
+    participations are drawn.
+    """
     if row is not None:
-        motion = [_rms_of(first.modes, level, records, first.modes.shapes @ np.array(row)) for level in records.levels]
+        motion = [
+            _rms_of(first.modes, level, records, first.modes.shapes @ np.array(row))
+            for level in records.levels
+        ]
         strength = _strength(first.modes, first.modes.shapes @ np.array(row))
         scales = Scales(strength, min(motion), max(motion), _middle(records))
-        return _best([replace(first, terms=(*first.terms, Term(law, place, row, values))) for values in LAWS[law].starts(scales)], records)
+        return _best(
+            [
+                replace(first, terms=(*first.terms, Term(law, place, row, values)))
+                for values in LAWS[law].starts(scales)
+            ],
+            records,
+        )
     drawn, trials = np.random.default_rng(SEED), []
     spread = np.where(first.modes.residual, 0.0, 1.0)
     for _ in range(FREE_STARTS):
-        # A participation proportional to the frequency makes the same relative change of every frequency, of either sign.
-        along = spread * drawn.choice([-1.0, 1.0], spread.size) * first.modes.omega / np.median(first.modes.omega)
+        # A participation proportional to the frequency makes the same relative change of every
+        # frequency, of either sign.
+        along = (
+            spread
+            * drawn.choice([-1.0, 1.0], spread.size)
+            * first.modes.omega
+            / np.median(first.modes.omega)
+        )
         motion = [_rms_of(first.modes, level, records, along) for level in records.levels]
         scales = Scales(_strength(first.modes, along), min(motion), max(motion), _middle(records))
-        trials += [replace(first, terms=(*first.terms, Term(law, place, None, values, along))) for values in LAWS[law].starts(scales)[:2]]
+        trials += [
+            replace(first, terms=(*first.terms, Term(law, place, None, values, along)))
+            for values in LAWS[law].starts(scales)[:2]
+        ]
     return _best(trials, records)
 
 
@@ -99,19 +165,34 @@ def _best(trials, records):
 
 
 def _softest(modes, row):
-    """A quarter of the stiffness in N/m that, taken away along a relative displacement, would leave the structure without any there."""
+    """A quarter of the stiffness in N/m that, taken away along a relative displacement, would leave
+    the structure without any there.
+    """
     return float(0.25 / np.sum((modes.shapes @ row) ** 2 / modes.omega**2))
 
 
 def _strength(modes, along):
-    """Stiffness in N/m that would change the frequency of the mode with most of this motion by 1 %."""
+    """Stiffness in N/m that would change the frequency of the mode with most of this motion by 1
+    %.
+    """
     own = ~modes.residual & (along != 0.0)
     return float(np.min(0.02 * modes.omega[own] ** 2 / along[own] ** 2))
 
 
 def _rms_motion(family, index, level, records):
     lines = level.excited(records.band_Hz)
-    return float(np.sqrt(2.0 * np.sum(np.abs(family.motion(level.frequency[lines], family.k[index], family.c[index]) * level.force[lines]) ** 2)))
+    return float(
+        np.sqrt(
+            2.0
+            * np.sum(
+                np.abs(
+                    family.motion(level.frequency[lines], family.k[index], family.c[index])
+                    * level.force[lines]
+                )
+                ** 2
+            )
+        )
+    )
 
 
 def _rms_of(modes, level, records, along):
@@ -122,7 +203,9 @@ def _rms_of(modes, level, records, along):
 
 
 def _middle(records):
-    """Angular frequency of the middle of the response, rad/s: where half of its power lies below, over all channels of the last level."""
+    """Angular frequency of the middle of the response, rad/s: where half of its power lies below,
+    over all channels of the last level.
+    """
     level = records.levels[-1]
     lines = np.flatnonzero(level.excited(records.band_Hz))
     power = np.cumsum(np.sum(np.abs(level.response[:, lines]) ** 2, axis=0))

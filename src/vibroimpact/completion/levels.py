@@ -1,8 +1,11 @@
-"""A campaign's records as levels by their lines, and which of them are fitted, tried and kept back."""
+"""A campaign's records as levels by their lines, and which of them are fitted, tried and kept
+back.
+"""
 
-from vibroimpact.campaign import channel_factor, force_signal, valid_count
-from vibroimpact.completion.long_records import long_record_lines
-from vibroimpact.multisine import level_lines
+from vibroimpact.campaign.file import channel_factor, force_signal, valid_count
+from vibroimpact.spectra.periodic_lines import level_lines
+
+from .long_records import long_record_lines
 
 SETTLED = 2  # the attribute whole_records of records whose transient was taken away
 SAME_LOAD = 1.05  # records within this factor repeat one level
@@ -10,41 +13,66 @@ FEWEST_FITTED = 3  # fewer fitted levels than this leave none to try a name on
 
 
 def levels_of(campaign):
-    """Return ([LevelLines], channel names, kinds) of a campaign in ascending load, in SI or, where a channel is generic, its own units.
+    """Return ([LevelLines], channel names, kinds) of a campaign in ascending load, in SI or, where
+    a channel is generic, its own units.
 
-    Records are taken as without period where the attribute whole_records says so (long_records). Raises multisine.PeriodError for any
-    other record without period.
+    Records are taken as without period where the attribute whole_records says so (long_records).
+    Raises multisine.PeriodError for any other record without period.
     """
-    names, kinds = ([str(value) for value in campaign[f"channel_{key}"].values] for key in ("name", "kind"))
+    names, kinds = (
+        [str(value) for value in campaign[f"channel_{key}"].values] for key in ("name", "kind")
+    )
     factors = [channel_factor(campaign, channel) for channel in range(len(names))]
     levels = []
     for record in range(campaign.sizes["record"]):
         count = valid_count(campaign, record)
-        response = campaign["response"].values[record, :, :count].astype(float) * [[factor] for factor in factors]
-        told = (str(campaign["record_name"].values[record]), str(campaign["split"].values[record]), force_signal(campaign, record)[:count], response,
-                campaign.attrs["sampling_frequency"])  # fmt: skip
+        response = campaign["response"].values[record, :, :count].astype(float) * [
+            [factor] for factor in factors
+        ]
+        told = (
+            str(campaign["record_name"].values[record]),
+            str(campaign["split"].values[record]),
+            force_signal(campaign, record)[:count],
+            response,
+            campaign.attrs["sampling_frequency"],
+        )
         if campaign.attrs.get("whole_records", 0):
-            levels.append(long_record_lines(*told, settled=campaign.attrs["whole_records"] == SETTLED))
+            levels.append(
+                long_record_lines(*told, settled=campaign.attrs["whole_records"] == SETTLED)
+            )
         else:
-            levels.append(level_lines(*told, int(campaign.attrs["period_samples"]), int(campaign.attrs["transient_periods"])))
+            levels.append(
+                level_lines(
+                    *told,
+                    int(campaign.attrs["period_samples"]),
+                    int(campaign.attrs["transient_periods"]),
+                )
+            )
     return sorted(levels, key=lambda level: level.load_rms), names, kinds
 
 
 def naming_split(levels):
-    """Return (fitted, tried): the levels that candidates are fitted to, and those that their names are tried on.
+    """Return (fitted, tried): the levels that candidates are fitted to, and those that their names
+    are tried on.
 
-    Held-out levels are tried where there are any. Otherwise the fitted level below the highest one is set aside for the name, with all
-    records of its load, and is fitted once the name stands. Raises ValueError when there are too few.
+    Held-out levels are tried where there are any. Otherwise the fitted level below the highest one
+    is set aside for the name, with all records of its load, and is fitted once the name stands.
+    Raises ValueError when there are too few.
     """
     fitted = [level for level in levels if level.split == "fit"]
     held = [level for level in levels if level.split != "fit"]
     if len(fitted) < 2:
-        raise ValueError(f"{len(fitted)} levels are to be fitted: two are the least, of different load")
+        raise ValueError(
+            f"{len(fitted)} levels are to be fitted: two are the least, of different load"
+        )
     if held:
         return fitted, held
     loads = _distinct([level.load_rms for level in fitted])
     if len(loads) < FEWEST_FITTED:
-        raise ValueError("two levels to fit and none held out: a name could only be tried on what it was fitted to; record a third level")
+        raise ValueError(
+            "two levels to fit and none held out: a name could only be tried on what it was fitted"
+            " to; record a third level"
+        )
     tried = [level for level in fitted if loads[-2] <= level.load_rms < loads[-1]]
     return [level for level in fitted if level not in tried], tried
 

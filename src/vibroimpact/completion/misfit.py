@@ -1,4 +1,6 @@
-"""Where a model and periodic records disagree: band by band in dB, and which part of the error lies where."""
+"""Where a model and periodic records disagree: band by band in dB, and which part of the error lies
+where.
+"""
 
 import numpy as np
 
@@ -10,14 +12,18 @@ SHARE = 0.8  # of the squared error of a record that its region holds
 
 
 def band_edges(band_Hz, bands=BANDS):
-    """Return (band + 1,) Hz, evenly spaced in logarithm; a band that begins at 0 begins at a hundredth of its end."""
+    """Return (band + 1,) Hz, evenly spaced in logarithm; a band that begins at 0 begins at a
+    hundredth of its end.
+    """
     return np.geomspace(max(band_Hz[0], 0.01 * band_Hz[1]), band_Hz[1], bands + 1)
 
 
 def disagreement(records, predicted):
-    """Return (D, floor): (level, channel, band) 10 log10 of measured over predicted band power in dB, and its standard deviation by noise.
+    """Return (D, floor): (level, channel, band) 10 log10 of measured over predicted band power in
+    dB, and its standard deviation by noise.
 
-    records: trial.Records; predicted: their lines, as Records.predict gives them. NaN where a band holds no line.
+    records: trial.Records; predicted: their lines, as Records.predict gives them. NaN where a band
+    holds no line.
     """
     edges = band_edges(records.band_Hz)
     shape = (len(records.levels), len(records.levels[0].response), BANDS)
@@ -31,8 +37,12 @@ def disagreement(records, predicted):
             inside = (band == number) & kept_lines
             if inside.any():
                 power = np.sum(np.abs(measured[:, inside]) ** 2, axis=1)
-                difference[index, :, number] = 10.0 * np.log10(power / np.sum(np.abs(lines[:, inside]) ** 2, axis=1))
-                spread = np.sqrt(2.0 * np.sum(np.abs(measured[:, inside]) ** 2 * noise[:, inside] ** 2, axis=1))
+                difference[index, :, number] = 10.0 * np.log10(
+                    power / np.sum(np.abs(lines[:, inside]) ** 2, axis=1)
+                )
+                spread = np.sqrt(
+                    2.0 * np.sum(np.abs(measured[:, inside]) ** 2 * noise[:, inside] ** 2, axis=1)
+                )
                 floor[index, :, number] = DB_PER_RELATIVE * spread / power
     return difference, floor
 
@@ -43,21 +53,26 @@ def log_spectral_distance(difference):
 
 
 def misfit_summary(before, after, floor):
-    """Return {before_dB, after_dB, floor_dB, closed_fraction} from disagreements (level, channel, band); see shared contract.
+    """Return {before_dB, after_dB, floor_dB, closed_fraction} from disagreements (level, channel,
+    band); see shared contract.
 
     closed_fraction is None where the excess before is below half the floor.
     """
     low = float(np.sqrt(np.nanmean(floor**2)))
     first, last = log_spectral_distance(before), log_spectral_distance(after)
     excess = [np.sqrt(max(0.0, value**2 - low**2)) for value in (first, last)]
-    closed = None if excess[0] < 0.5 * low or excess[0] == 0.0 else float(1.0 - excess[1] / excess[0])
+    closed = (
+        None if excess[0] < 0.5 * low or excess[0] == 0.0 else float(1.0 - excess[1] / excess[0])
+    )
     return {"before_dB": first, "after_dB": last, "floor_dB": low, "closed_fraction": closed}
 
 
 def regions(records, predicted, names):
-    """Return a list of regions of disagreement, the largest share of error first, as the verdict holds them.
+    """Return a list of regions of disagreement, the largest share of error first, as the verdict
+    holds them.
 
-    Each record and channel gives the narrowest stretch of lines that holds most of its squared error; D and z are those of the stretch.
+    Each record and channel gives the narrowest stretch of lines that holds most of its squared
+    error; D and z are those of the stretch.
     """
     found = []
     for level, lines in zip(records.levels, predicted, strict=True):
@@ -70,17 +85,37 @@ def regions(records, predicted, names):
             power = np.sum(np.abs(level.response[channel, kept][part]) ** 2)
             noise = np.nan_to_num(level.noise[channel, kept][part])
             depth = 10.0 * np.log10(power / np.sum(np.abs(lines[channel, part]) ** 2))
-            spread = DB_PER_RELATIVE * np.sqrt(2.0 * np.sum(np.abs(level.response[channel, kept][part]) ** 2 * noise**2)) / power
+            spread = (
+                DB_PER_RELATIVE
+                * np.sqrt(2.0 * np.sum(np.abs(level.response[channel, kept][part]) ** 2 * noise**2))
+                / power
+            )
             z = depth / np.hypot(spread, CALIBRATION_DB)
             if abs(z) >= STRONG_Z and abs(depth) >= STRONG_DB:
-                relative = float(np.sqrt(np.sum(missed) / np.sum(np.abs(level.response[channel, kept]) ** 2)))
-                found.append({"band_Hz": [float(level.frequency[kept[first]]), float(level.frequency[kept[last]])], "load_rms_N": level.load_rms,
-                              "gap_m": None, "channel": name, "discrepancy_dB": float(depth), "z": float(z), "relative_error": relative})  # fmt: skip
+                relative = float(
+                    np.sqrt(np.sum(missed) / np.sum(np.abs(level.response[channel, kept]) ** 2))
+                )
+                found.append(
+                    {
+                        "band_Hz": [
+                            float(level.frequency[kept[first]]),
+                            float(level.frequency[kept[last]]),
+                        ],
+                        "load_rms_N": level.load_rms,
+                        "gap_m": None,
+                        "channel": name,
+                        "discrepancy_dB": float(depth),
+                        "z": float(z),
+                        "relative_error": relative,
+                    }
+                )
     return sorted(found, key=lambda region: -region["relative_error"])
 
 
 def _narrowest(values, share):
-    """(first, last) index of the shortest stretch of values (line,) that holds a share of their sum."""
+    """(first, last) index of the shortest stretch of values (line,) that holds a share of their
+    sum.
+    """
     total = np.concatenate([[0.0], np.cumsum(values)])
     wanted, best = share * total[-1], (0, values.size - 1)
     for first in range(values.size):

@@ -1,22 +1,26 @@
-"""What a user's completion leaves: the verdict by the contract, whatever came of it, with the prediction and a model that runs."""
+"""What a user's completion leaves: the verdict by the contract, whatever came of it, with the
+prediction and a model that runs.
+"""
 
 import numpy as np
 
-from vibroimpact.completion.conclude import conclude
-from vibroimpact.completion.levels import levels_of
-from vibroimpact.completion.linear_models import linear_errors
-from vibroimpact.completion.misfit import regions
-from vibroimpact.completion.store import modes_of, trial_values, write_values
-from vibroimpact.completion.trial import Records, Trial
-from vibroimpact.completion.updated_model import write_configuration
-from vibroimpact.multisine import PeriodError
 from vibroimpact.records import write_table, write_text
+from vibroimpact.spectra.periodic_lines import PeriodError
+
+from .conclude import conclude
+from .levels import levels_of
+from .linear_models import linear_errors
+from .misfit import regions
+from .store import modes_of, trial_values, write_values
+from .trial import Records, Trial
+from .updated_model import write_configuration
 
 PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "error_completed")
 
 
 def outcome(campaign, study, prepared, linear, singles, additions, provenance, told=print):
-    """Return (verdict, rows of prediction.csv, completed or None) of a user's campaign; prepared: values of prepare.prepared.
+    """Return (verdict, rows of prediction.csv, completed or None) of a user's campaign; prepared:
+    values of prepare.prepared.
 
     completed is None where no linear model stands either.
     """
@@ -26,41 +30,95 @@ def outcome(campaign, study, prepared, linear, singles, additions, provenance, t
         verdict, rows, completed = conclude(campaign, study, linear, singles, additions, told)
     except ValueError as error:
         return _refused(campaign, study, prepared, linear, str(error), provenance)
-    return {**verdict, "checks": [*prepared["checks"], *verdict["checks"]], "provenance": provenance}, rows, completed
+    return (
+        {**verdict, "checks": [*prepared["checks"], *verdict["checks"]], "provenance": provenance},
+        rows,
+        completed,
+    )
 
 
 def write_outcome(told, campaign, study, files):
-    """Write an outcome: files has the paths verdict, prediction, completed and model. Without a linear model the last two say so."""
+    """Write an outcome: files has the paths verdict, prediction, completed and model. Without a
+    linear model the last two say so.
+    """
     verdict, rows, completed = told
     write_table(rows, files.prediction, PREDICTION)
     write_values(completed or {}, files.completed)
     if completed:
         write_configuration(completed, campaign, study, files.model)
     else:
-        write_text("# There is no model: the campaign could not be tested, see verdict.json.\n", files.model)
+        write_text(
+            "# There is no model: the campaign could not be tested, see verdict.json.\n",
+            files.model,
+        )
     write_values(verdict, files.verdict)
 
 
 def _refused(campaign, study, prepared, linear, sentence, provenance):
-    """The outcome not_testable: where a linear model stands, with the map of what it misses and its prediction, level by level."""
+    """The outcome not_testable: where a linear model stands, with the map of what it misses and its
+    prediction, level by level.
+    """
     checks = list(prepared["checks"])
     if sentence not in " ".join(row["message"] for row in checks if row["level"] == "refuse"):
-        checks.append({"check": "linear model", "level": "refuse", "record": None, "channel": None, "message": sentence})
-    verdict = {"verdict": "not_testable", "effects": [], "ambiguity_set": [], "ranking": [], "next_measurement": None, "broken_invariances": [], "regions": [],
-               "misfit": {"fit": None, "holdout": None}, "p_global_before": None, "p_global_after": None, "checks": checks, "seconds": 0.0, "simulations": 0,
-               "provenance": provenance}  # fmt: skip
+        checks.append(
+            {
+                "check": "linear model",
+                "level": "refuse",
+                "record": None,
+                "channel": None,
+                "message": sentence,
+            }
+        )
+    verdict = {
+        "verdict": "not_testable",
+        "effects": [],
+        "ambiguity_set": [],
+        "ranking": [],
+        "next_measurement": None,
+        "broken_invariances": [],
+        "regions": [],
+        "misfit": {"fit": None, "holdout": None},
+        "p_global_before": None,
+        "p_global_after": None,
+        "checks": checks,
+        "seconds": 0.0,
+        "simulations": 0,
+        "provenance": provenance,
+    }
     if not linear:
         return verdict, _nothing(campaign), None
     levels, names, _ = levels_of(campaign)
     base, records = modes_of(linear["base"]), Records(tuple(levels), study.band_Hz)
-    before = [base.frf(level.frequency[records.kept(level)]) * level.force[records.kept(level)] for level in levels]
+    before = [
+        base.frf(level.frequency[records.kept(level)]) * level.force[records.kept(level)]
+        for level in levels
+    ]
     verdict["regions"] = regions(records, before, names)
     rows = []
     for level in levels:
-        first, again = linear_errors(base, level, study.band_Hz), linear_errors(modes_of(linear["refitted"][level.name]), level, study.band_Hz)
-        rows += [{"level": level.name, "split": level.split, "channel": name, "error_linear": float(first[index]), "error_refitted": float(again[index]),
-                  "error_completed": np.nan} for index, name in enumerate(names)]  # fmt: skip
-    return verdict, rows, {"chosen": "the linear model alone", "trial": trial_values(Trial(base)), "scores": {}, "ids": {}}
+        first = linear_errors(base, level, study.band_Hz)
+        again = linear_errors(modes_of(linear["refitted"][level.name]), level, study.band_Hz)
+        rows += [
+            {
+                "level": level.name,
+                "split": level.split,
+                "channel": name,
+                "error_linear": float(first[index]),
+                "error_refitted": float(again[index]),
+                "error_completed": np.nan,
+            }
+            for index, name in enumerate(names)
+        ]
+    return (
+        verdict,
+        rows,
+        {
+            "chosen": "the linear model alone",
+            "trial": trial_values(Trial(base)),
+            "scores": {},
+            "ids": {},
+        },
+    )
 
 
 def _nothing(campaign):
@@ -71,5 +129,15 @@ def _nothing(campaign):
         levels, names, _ = levels_of(campaign)
     except (PeriodError, ValueError):
         return []
-    return [{"level": level.name, "split": level.split, "channel": name, "error_linear": np.nan, "error_refitted": np.nan, "error_completed": np.nan}
-            for level in levels for name in names]  # fmt: skip
+    return [
+        {
+            "level": level.name,
+            "split": level.split,
+            "channel": name,
+            "error_linear": np.nan,
+            "error_refitted": np.nan,
+            "error_completed": np.nan,
+        }
+        for level in levels
+        for name in names
+    ]

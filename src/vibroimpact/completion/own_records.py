@@ -1,16 +1,25 @@
-"""A user's campaign as the records of a completion: what its checks leave usable, one force, whole periods or the last stretch of a long record."""
+"""A user's campaign as the records of a completion: what its checks leave usable, one force, whole
+periods or the last stretch of a long record.
+"""
 
 import numpy as np
 
-from vibroimpact.campaign import ALONG, NEAR_M, valid_count
-from vibroimpact.campaign_checks import check_file, usable_signals
-from vibroimpact.campaign_signals import excited_band, measured_signals
-from vibroimpact.completion.long_records import mean_coherences, quick_length
+from vibroimpact.campaign.checks.file_checks import check_file, usable_signals
+from vibroimpact.campaign.file import ALONG, NEAR_M, valid_count
+from vibroimpact.campaign.signals import excited_band, measured_signals
+
+from .long_records import mean_coherences, quick_length
 
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
-CYCLES, LOW_CYCLES = 1000, 60  # of the end and of the beginning of the excited band that are kept of a record without period, the longer of them
+# of the end and of the beginning of the excited band that are kept of a record without period, the
+# longer of them
+CYCLES = 1000
+LOW_CYCLES = 60
 COHERENT = 0.7  # mean coherence below which a record without period earns a warning
-SETTLED, UNSEEN = 2.0, 0.005  # times the usual difference to the last period, and of the response: a leading period with more holds the transient
+# times the usual difference to the last period, and of the response: a leading period with more
+# holds the transient
+SETTLED = 2.0
+UNSEEN = 0.005
 
 
 class Unusable(ValueError):
@@ -18,11 +27,12 @@ class Unusable(ValueError):
 
 
 def own_records(path):
-    """Return (campaign Dataset with what is usable, rows of checks, measured signals) of a campaign file of any state.
+    """Return (campaign Dataset with what is usable, rows of checks, measured signals) of a campaign
+    file of any state.
 
-    Channels that are unusable in some record, contact forces, and records without a usable force are left out. Attributes of the Dataset:
-    period_samples (0: records without period, cut to their last stretch), transient_periods. Raises Unusable; its argument `rows` are the
-    checks.
+    Channels that are unusable in some record, contact forces, and records without a usable force
+    are left out. Attributes of the Dataset: period_samples (0: records without period, cut to their
+    last stretch), transient_periods. Raises Unusable; its argument `rows` are the checks.
     """
     campaign, rows = check_file(path)
     refusals = [row["message"] for row in rows if row["level"] == "refuse"]
@@ -33,23 +43,44 @@ def own_records(path):
     force &= response.any(axis=1)
     shown = response[force].all(axis=0) & (np.array(kinds) != "contact_force")
     for channel in np.flatnonzero(~shown):
-        why = "a contact force is no motion" if kinds[channel] == "contact_force" else "it can not be used in every record"
+        why = (
+            "a contact force is no motion"
+            if kinds[channel] == "contact_force"
+            else "it can not be used in every record"
+        )
         name = str(campaign["channel_name"].values[channel])
         rows.append(_row("channels", "warn", f"{name} is left out of the completion: {why}.", name))
     if not shown.any():
-        raise Unusable("No channel is usable in every record: repair or leave out the records that the checks name.", rows)
+        raise Unusable(
+            "No channel is usable in every record: repair or leave out the records that the checks"
+            " name.",
+            rows,
+        )
     force &= _one_gap(campaign, force, rows)
     kept = _named_apart(campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown)))
     measured = measured_signals(kept)
     _one_force(measured, rows)
     if measured.period_samples:
-        transient = max(int(kept.attrs.get("transient_periods", 0)), *(unsettled_periods(signals, measured.period_samples) for signals in measured.response))
-        return kept.assign_attrs(period_samples=measured.period_samples, transient_periods=transient), rows, measured
+        transient = max(
+            int(kept.attrs.get("transient_periods", 0)),
+            *(unsettled_periods(signals, measured.period_samples) for signals in measured.response),
+        )
+        return (
+            kept.assign_attrs(period_samples=measured.period_samples, transient_periods=transient),
+            rows,
+            measured,
+        )
     band = excited_band(measured)
     if band is None:
         raise Unusable("The records are too short to tell which lines the force excites.", rows)
     _coherent(measured, band, rows)
-    return _last_stretch(kept, int(max(CYCLES / band[1], LOW_CYCLES / band[0]) * measured.rate)).assign_attrs(period_samples=0, transient_periods=0, whole_records=1), rows, measured
+    return (
+        _last_stretch(
+            kept, int(max(CYCLES / band[1], LOW_CYCLES / band[0]) * measured.rate)
+        ).assign_attrs(period_samples=0, transient_periods=0, whole_records=1),
+        rows,
+        measured,
+    )
 
 
 def _row(check, level, message, channel=None):
@@ -61,75 +92,127 @@ def _one_force(measured, rows):
     for signals in measured.force:
         sizes = np.sqrt(np.mean(np.square(np.nan_to_num(signals)), axis=-1))
         if sizes.size > 1 and sizes[1:].max() > OTHER_FORCE * sizes[0]:
-            raise Unusable(f"Several forces act at once ({', '.join(measured.forces)}): modes are identified under one; drive at one point.", rows)
+            raise Unusable(
+                f"Several forces act at once ({', '.join(measured.forces)}): modes are identified"
+                " under one; drive at one point.",
+                rows,
+            )
 
 
 def _one_gap(campaign, usable, rows):
-    """Return (record,) whether a record has the gap that most usable ones have: another gap is another structure."""
+    """Return (record,) whether a record has the gap that most usable ones have: another gap is
+    another structure.
+    """
     gap = np.nan_to_num(campaign["gap"].values.astype(float), nan=-1.0)
     values, counts = np.unique(gap[usable], return_counts=True)
     chosen = values[int(np.argmax(counts))]
     if values.size > 1:
         told = "without gap" if chosen < 0.0 else f"with the gap {chosen:.4g} m"
-        rows.append(_row("gaps", "warn", f"The records have {values.size} gaps, each another structure: only those {told} are used."))
+        rows.append(
+            _row(
+                "gaps",
+                "warn",
+                f"The records have {values.size} gaps, each another structure: only those {told}"
+                " are used.",
+            )
+        )
     return gap == chosen
 
 
 def _named_apart(campaign):
     """The campaign with a number behind the names of records that share one."""
     names = [str(name) for name in campaign["record_name"].values]
-    apart = [name if names.count(name) == 1 else f"{name} ({names[:index].count(name) + 1})" for index, name in enumerate(names)]
+    apart = [
+        name if names.count(name) == 1 else f"{name} ({names[:index].count(name) + 1})"
+        for index, name in enumerate(names)
+    ]
     return campaign.assign(record_name=("record", np.array(apart, dtype=object)))
 
 
 def _coherent(measured, band_Hz, rows):
-    """Add a row per record and channel: the mean coherence with the force, which noise and what is not linear lower."""
-    for name, force, response in zip(measured.records, measured.force, measured.response, strict=True):
-        for channel, value in zip(measured.channels, mean_coherences(force[0], response, measured.rate, band_Hz), strict=True):
-            row = _row("coherence", "warn" if value < COHERENT else "pass", f"The mean coherence of {channel} with the force is {value:.2f} in record {name}.", channel)
+    """Add a row per record and channel: the mean coherence with the force, which noise and what is
+    not linear lower.
+    """
+    for name, force, response in zip(
+        measured.records, measured.force, measured.response, strict=True
+    ):
+        for channel, value in zip(
+            measured.channels,
+            mean_coherences(force[0], response, measured.rate, band_Hz),
+            strict=True,
+        ):
+            row = _row(
+                "coherence",
+                "warn" if value < COHERENT else "pass",
+                f"The mean coherence of {channel} with the force is {value:.2f} in record {name}.",
+                channel,
+            )
             rows.append({**row, "record": name})
 
 
 def unsettled_periods(response, period):
-    """Return how many leading periods of a response (channel, time) differ from the last one by more than the rest do; one is always kept."""
+    """Return how many leading periods of a response (channel, time) differ from the last one by
+    more than the rest do; one is always kept.
+    """
     count = response.shape[-1] // period
     if count < 3:
         return max(count - 1, 0)
     parts = response[:, response.shape[-1] - count * period :].reshape(len(response), count, period)
     size = np.maximum(parts[:, -1].std(axis=-1), np.finfo(float).tiny)
-    apart = np.sqrt(np.mean(((parts[:, :-1] - parts[:, -1:]).std(axis=-1) / size[:, None]) ** 2, axis=0))
-    usual = np.sort(apart)[(apart.size - 1) // 2]  # drift makes near periods more alike than far ones: not the least
+    apart = np.sqrt(
+        np.mean(((parts[:, :-1] - parts[:, -1:]).std(axis=-1) / size[:, None]) ** 2, axis=0)
+    )
+    usual = np.sort(apart)[
+        (apart.size - 1) // 2
+    ]  # drift makes near periods more alike than far ones: not the least
     settled = apart <= max(SETTLED * usual, UNSEEN)
     return int(np.argmax(settled))
 
 
 def _last_stretch(campaign, longest):
-    """The campaign with the last samples of every record moved to the front, at most `longest` of each."""
+    """The campaign with the last samples of every record moved to the front, at most `longest` of
+    each.
+    """
     counts = np.array([valid_count(campaign, record) for record in range(campaign.sizes["record"])])
     kept = np.array([quick_length(min(count, longest)) for count in counts])
     out = campaign.isel(time=slice(0, int(kept.max()))).copy(deep=True)
     for record, (count, size) in enumerate(zip(counts, kept, strict=True)):
         for name in ("force", "response"):
             out[name].values[record] = np.nan
-            out[name].values[record, :, :size] = campaign[name].values[record, :, count - size : count]
+            out[name].values[record, :, :size] = campaign[name].values[
+                record, :, count - size : count
+            ]
     return out.drop_vars("voltage", errors="ignore").assign(valid_samples=("record", kept))
 
 
 def drive_channel(campaign, measured, wanted=None):
-    """Return (index of the channel at the force, sentence or None where it is not at its point, sign that turns it along the force).
+    """Return (index of the channel at the force, sentence or None where it is not at its point,
+    sign that turns it along the force).
 
-    wanted: its name; else the nearest channel along the force, or the nearest of all. The sentence says how far it is.
+    wanted: its name; else the nearest channel along the force, or the nearest of all. The sentence
+    says how far it is.
     """
     names = [str(name) for name in campaign["channel_name"].values]
-    force = measured.force_directions[0] / max(np.linalg.norm(measured.force_directions[0]), np.finfo(float).tiny)
+    force = measured.force_directions[0] / max(
+        np.linalg.norm(measured.force_directions[0]), np.finfo(float).tiny
+    )
     along = measured.directions @ force
-    distance = np.linalg.norm(measured.points - campaign["force_channel_point"].values[0].astype(float), axis=1)
+    distance = np.linalg.norm(
+        measured.points - campaign["force_channel_point"].values[0].astype(float), axis=1
+    )
     distance = np.where(np.isfinite(distance), distance, np.inf)
     if wanted is not None:
         index = names.index(wanted)
     else:
         index = int(np.argmin(distance + np.where(np.abs(along) > ALONG, 0.0, 1.0e6)))
     here = np.abs(along[index]) > ALONG and distance[index] < NEAR_M
-    away = None if here else (f"{names[index]} is taken for the response at the force but lies {distance[index] * 1e3:.3g} mm away or across it: stiffnesses and "
-                              "forces of laws are then only right up to a factor; measure at the force.")  # fmt: skip
+    away = (
+        None
+        if here
+        else (
+            f"{names[index]} is taken for the response at the force but lies"
+            f" {distance[index] * 1e3:.3g} mm away or across it: stiffnesses and forces of laws are"
+            " then only right up to a factor; measure at the force."
+        )
+    )
     return index, away, -1.0 if along[index] < -ALONG else 1.0

@@ -1,16 +1,34 @@
-"""The coefficients of the Silverbox as the benchmark's authors write them, beside those published."""
+"""The coefficients of the Silverbox as the benchmark's authors write them, beside those
+published.
+"""
 
-# u = mass y'' + damping y' + stiffness y + quadratic y² + cubic y³, volts and seconds. Source: Noel and Schoukens, Int. J. Control 2017.
+# u = mass y'' + damping y' + stiffness y + quadratic y² + cubic y³, volts and seconds. Source: Noel
+# and Schoukens, Int. J. Control 2017.
 PUBLISHED = {"cubic": 3.97, "quadratic": -0.26, "frequency_Hz": 68.58, "damping_ratio": 0.0468}
 
 
 def silverbox_table(verdict, completed):
-    """Return rows {quantity, identified, low, high, published, relative_difference} from a verdict and its completed model."""
+    """Return rows {quantity, identified, low, high, published, relative_difference} from a verdict
+    and its completed model.
+    """
     modes = completed["trial"]["modes"]
-    found = {"frequency_Hz": (modes["frequency"][0],) * 3, "damping_ratio": (modes["damping_ratio"][0],) * 3}
+    found = {
+        "frequency_Hz": (modes["frequency"][0],) * 3,
+        "damping_ratio": (modes["damping_ratio"][0],) * 3,
+    }
     for effect in verdict["effects"]:
         for name, each in effect["parameters"].items():
             found[name.removesuffix("_stiffness")] = each["value"], each["low"], each["high"]
-    return [{"quantity": name, "identified": value, "low": low, "high": high, "published": PUBLISHED.get(name, float("nan")),
-             "relative_difference": value / PUBLISHED[name] - 1.0 if name in PUBLISHED else float("nan")}
-            for name, (value, low, high) in found.items()]  # fmt: skip
+    return [
+        {
+            "quantity": name,
+            "identified": value,
+            "low": low,
+            "high": high,
+            "published": PUBLISHED.get(name, float("nan")),
+            "relative_difference": (
+                value / PUBLISHED[name] - 1.0 if name in PUBLISHED else float("nan")
+            ),
+        }
+        for name, (value, low, high) in found.items()
+    ]

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.campaign import read_campaign, write_campaign
-from vibroimpact.completion.trial import Term, Trial
-from vibroimpact.identified import IdentifiedModes
+from vibroimpact.campaign.file import read_campaign, write_campaign
 from vibroimpact.records import plain
+from vibroimpact.reduction.modal_structure import IdentifiedModes
+
+from .trial import Term, Trial
 
 
 def modes_values(modes):
@@ -19,26 +20,48 @@ def modes_values(modes):
 
 def modes_of(values):
     """Return the IdentifiedModes of modes_values."""
-    arrays = {name: np.array(values[name], bool if name == "residual" else float) for name in ("frequency", "damping_ratio", "shapes", "residual")}
-    return IdentifiedModes(**arrays, drive=int(values["drive"]), kinds=tuple(values["kinds"]), names=tuple(values["names"]))
+    arrays = {
+        name: np.array(values[name], bool if name == "residual" else float)
+        for name in ("frequency", "damping_ratio", "shapes", "residual")
+    }
+    return IdentifiedModes(
+        **arrays,
+        drive=int(values["drive"]),
+        kinds=tuple(values["kinds"]),
+        names=tuple(values["names"]),
+    )
 
 
 def trial_values(trial):
     """Return a dict of plain values of a Trial."""
-    return {"modes": modes_values(trial.modes), "terms": [plain(asdict(term)) for term in trial.terms], "offsets": plain(trial.offsets)}
+    return {
+        "modes": modes_values(trial.modes),
+        "terms": [plain(asdict(term)) for term in trial.terms],
+        "offsets": plain(trial.offsets),
+    }
 
 
 def trial_of(values):
     """Return the Trial of trial_values."""
-    terms = tuple(Term(each["law"], each["place"], None if each["row"] is None else tuple(each["row"]), np.array(each["values"], float),
-                       None if each["participation"] is None else np.array(each["participation"], float)) for each in values["terms"])
+    terms = tuple(
+        Term(
+            each["law"],
+            each["place"],
+            None if each["row"] is None else tuple(each["row"]),
+            np.array(each["values"], float),
+            None if each["participation"] is None else np.array(each["participation"], float),
+        )
+        for each in values["terms"]
+    )
     return Trial(modes_of(values["modes"]), terms, dict(values["offsets"]))
 
 
 def write_values(values, path):
     """Write plain values as JSON; numbers that are not finite become null."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    Path(path).write_text(json.dumps(plain(values), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    Path(path).write_text(
+        json.dumps(plain(values), indent=1, allow_nan=False) + "\n", encoding="utf-8"
+    )
 
 
 def read_values(path):

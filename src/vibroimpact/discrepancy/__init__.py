@@ -1,1 +1,3 @@
-"""Where simulation and measurement disagree, which effect is missing, and how far adding it closes the gap."""
+"""Where simulation and measurement disagree, which effect is missing, and how far adding it closes
+the gap.
+"""

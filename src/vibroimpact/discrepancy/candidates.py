@@ -1,15 +1,25 @@
-"""Candidates: an effect at a place, its parameters between 0 and 1, and what it does to the features of a campaign."""
+"""Candidates: an effect at a place, its parameters between 0 and 1, and what it does to the
+features of a campaign.
+"""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.measuring import measuring_of, places
 from vibroimpact.effects.registry import EFFECTS
 
+from . import priors
+from .measuring import measuring_of, places
+
 ALONE = "@alone"
-QUICK_PLACES = {"added_mass": 4, "cubic_stiffness": 2, "quadratic_stiffness": 2, "saturation_stiffness": 1, "coulomb_friction": 2, "clearance": 2}
+QUICK_PLACES = {
+    "added_mass": 4,
+    "cubic_stiffness": 2,
+    "quadratic_stiffness": 2,
+    "saturation_stiffness": 1,
+    "coulomb_friction": 2,
+    "clearance": 2,
+}
 PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
 ALONG = (0.1, 0.2)  # of a searched range
 
@@ -18,7 +28,9 @@ QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect at a location; its name is effect@location, and effect@location@alone where it stands in the place of the linear effect that was adopted."""
+    """An effect at a location; its name is effect@location, and effect@location@alone where it
+    stands in the place of the linear effect that was adopted.
+    """
 
     effect_id: str
     location: str
@@ -46,65 +58,122 @@ class Candidate:
             low, high = parameter.low, parameter.high
             scaled = low * (high / low) ** value if parameter.log else low + (high - low) * value
             out[parameter.name] = float(scaled * scales[parameter.per])
-        sizes = {parameter.name: out[parameter.name] / scales[parameter.per] for parameter in self.effect.parameters}
-        return {parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0) for parameter in self.effect.parameters}
+        sizes = {
+            parameter.name: out[parameter.name] / scales[parameter.per]
+            for parameter in self.effect.parameters
+        }
+        return {
+            parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0)
+            for parameter in self.effect.parameters
+        }
 
     def estimate(self, unit, interval, scales):
-        """Return {name: (value, low, high)} in SI of normalised parameters unit (parameter,) and their intervals (parameter, 2).
+        """Return {name: (value, low, high)} in SI of normalised parameters unit (parameter,) and
+        their intervals (parameter, 2).
 
-        What a gain common to force and responses may hide (priors.GAIN_SD) is no scatter of the features: it is added here, in quadrature.
+        What a gain common to force and responses may hide (priors.GAIN_SD) is no scatter of the
+        features: it is added here, in quadrature.
         """
-        value, *ends = (self.physical(row, scales) for row in (unit, interval[:, 0], interval[:, 1]))
+        value, *ends = (
+            self.physical(row, scales) for row in (unit, interval[:, 0], interval[:, 1])
+        )
         out = {}
         for parameter in self.effect.parameters:
             best, row = value[parameter.name], [end[parameter.name] for end in ends]
             hidden = priors.NINETY_SD * priors.GAIN_SD * abs(parameter.gain_power * best)
-            out[parameter.name] = best, best - np.hypot(best - min(best, *row), hidden), best + np.hypot(max(best, *row) - best, hidden)
+            out[parameter.name] = (
+                best,
+                best - np.hypot(best - min(best, *row), hidden),
+                best + np.hypot(max(best, *row) - best, hidden),
+            )
         return {name: tuple(map(float, row)) for name, row in out.items()}
 
     def normalised(self, physical, scales):
         """Return (parameter,) from 0 to 1 of {name: value in SI}."""
         out = []
         for parameter in self.effect.parameters:
-            value, low, high = physical[parameter.name] / scales[parameter.per], parameter.low, parameter.high
+            value = physical[parameter.name] / scales[parameter.per]
+            low = parameter.low
+            high = parameter.high
             if parameter.over:
-                value = value / physical[parameter.over] * scales[next(other.per for other in self.effect.parameters if other.name == parameter.over)]
-            out.append(np.log(value / low) / np.log(high / low) if parameter.log else (value - low) / (high - low))
+                value = (
+                    value
+                    / physical[parameter.over]
+                    * scales[
+                        next(
+                            other.per
+                            for other in self.effect.parameters
+                            if other.name == parameter.over
+                        )
+                    ]
+                )
+            out.append(
+                np.log(value / low) / np.log(high / low)
+                if parameter.log
+                else (value - low) / (high - low)
+            )
         return np.array(out)
 
     def neutral_unit(self, scales):
-        """Return (parameter,) normalised where the effect is not there, NaN in parameters whose range does not hold such a value."""
-        with np.errstate(divide="ignore", invalid="ignore"):  # nothing is no value of a range that is searched in its logarithm
-            unit = self.normalised({parameter.name: np.nan if parameter.neutral is None else parameter.neutral for parameter in self.effect.parameters}, scales)
+        """Return (parameter,) normalised where the effect is not there, NaN in parameters whose
+        range does not hold such a value.
+        """
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # nothing is no value of a range that is searched in its logarithm
+            unit = self.normalised(
+                {
+                    parameter.name: np.nan if parameter.neutral is None else parameter.neutral
+                    for parameter in self.effect.parameters
+                },
+                scales,
+            )
             return np.where((unit >= 0.0) & (unit <= 1.0), unit, np.nan)
 
     def design(self, quick=False):
-        """Return (point, parameter): the parameters to try first, all combinations of the effect's own design, of a vector also along its axes; fewer if quick."""
+        """Return (point, parameter): the parameters to try first, all combinations of the effect's
+        own design, of a vector also along its axes; fewer if quick.
+        """
         chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
-        axes = np.meshgrid(*[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij")
+        axes = np.meshgrid(
+            *[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij"
+        )
         points = np.stack([axis.ravel() for axis in axes], axis=-1)
         if len(axes) > 1 and len(self.signed) == len(axes):
-            # components of a vector: along one axis alone the structure may keep its symmetry, which no point beside it tells of
-            along = np.vstack([0.5 + side * step * np.eye(len(axes)) for step in ALONG for side in (-1.0, 1.0)])
+            # components of a vector: along one axis alone the structure may keep its symmetry,
+            # which no point beside it tells of
+            along = np.vstack(
+                [0.5 + side * step * np.eye(len(axes)) for step in ALONG for side in (-1.0, 1.0)]
+            )
             points = along if quick else np.vstack([points, along])
         return points
 
     @property
     def signed(self):
         """Return the numbers of the parameters that are as strong with the other sign."""
-        return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.neutral == 0.0 and parameter.low == -parameter.high)
+        return tuple(
+            number
+            for number, parameter in enumerate(self.effect.parameters)
+            if parameter.neutral == 0.0 and parameter.low == -parameter.high
+        )
 
     @property
     def periodic(self):
         """Return the numbers of the parameters that are angles over a whole period."""
-        return tuple(number for number, parameter in enumerate(self.effect.parameters) if parameter.name == "angle" and self.ids == ["foliate_obstacle"])
+        return tuple(
+            number
+            for number, parameter in enumerate(self.effect.parameters)
+            if parameter.name == "angle" and self.ids == ["foliate_obstacle"]
+        )
 
     def parts(self, unit):
         """Return [(candidate, its parameters)] of unit (parameter,), as a Pair has two."""
         return [(self, np.asarray(unit))]
 
     def renumbered(self, index_of):
-        """Return the candidate for a model that numbers its modes otherwise; index_of(index of a mode, from 0) gives the index there."""
+        """Return the candidate for a model that numbers its modes otherwise; index_of(index of a
+        mode, from 0) gives the index there.
+        """
         if self.effect_id != "mode_frequency_error":
             return self
         return replace(self, location=f"mode_{index_of(self.mode) + 1}")
@@ -115,21 +184,33 @@ class Candidate:
         return int(self.location.removeprefix("mode_")) - 1
 
     def variant(self, values, parameters):
-        """Return the configuration in plain values with the effect; unchanged for a fault of the measuring chain."""
-        return values if self.effect.measured else self.effect.apply(values, parameters, self.location)
+        """Return the configuration in plain values with the effect; unchanged for a fault of the
+        measuring chain.
+        """
+        return (
+            values if self.effect.measured else self.effect.apply(values, parameters, self.location)
+        )
 
     def other_laws(self, values, parameters):
         """Return [configuration] with the effect by each of its other laws."""
         return [law(values, parameters, self.location) for law in self.effect.other_laws]
 
     def measuring(self, parameters, names):
-        """Return the Measuring of a fault of the measuring chain, None for an effect of the model."""
-        return measuring_of(self.effect_id, parameters, self.location, names) if self.effect.measured else None
+        """Return the Measuring of a fault of the measuring chain, None for an effect of the
+        model.
+        """
+        return (
+            measuring_of(self.effect_id, parameters, self.location, names)
+            if self.effect.measured
+            else None
+        )
 
 
 @dataclass(frozen=True)
 class PairEffect:
-    """What two effects together have of an effect; measured: one of them is of the measuring chain."""
+    """What two effects together have of an effect; measured: one of them is of the measuring
+    chain.
+    """
 
     parameters: tuple
     linear: bool = False
@@ -141,7 +222,9 @@ class PairEffect:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two candidates at once, the parameters of the first before those of the second; its name joins theirs with a plus."""
+    """Two candidates at once, the parameters of the first before those of the second; its name
+    joins theirs with a plus.
+    """
 
     first: Candidate
     second: Candidate
@@ -170,7 +253,11 @@ class Pair:
     def effect(self):
         """Return both effects as one."""
         both = self.first.effect, self.second.effect
-        return PairEffect(both[0].parameters + both[1].parameters, all(effect.linear for effect in both), measured=any(effect.measured for effect in both))
+        return PairEffect(
+            both[0].parameters + both[1].parameters,
+            all(effect.linear for effect in both),
+            measured=any(effect.measured for effect in both),
+        )
 
     @property
     def split(self):
@@ -209,41 +296,81 @@ class Pair:
 
     def other_laws(self, values, parameters):
         """Return [configuration] with both effects, one of them by each of its other laws."""
-        firsts = [self.second.variant(other, parameters[1]) for other in self.first.other_laws(values, parameters[0])]
-        return firsts + self.second.other_laws(self.first.variant(values, parameters[0]), parameters[1])
+        firsts = [
+            self.second.variant(other, parameters[1])
+            for other in self.first.other_laws(values, parameters[0])
+        ]
+        return firsts + self.second.other_laws(
+            self.first.variant(values, parameters[0]), parameters[1]
+        )
 
     def measuring(self, parameters, names):
-        """Return the Measuring of the one of the two that is a fault of the measuring chain, None where neither is."""
-        return next((candidate.measuring(own, names) for candidate, own in zip((self.first, self.second), parameters, strict=True) if candidate.effect.measured), None)
+        """Return the Measuring of the one of the two that is a fault of the measuring chain, None
+        where neither is.
+        """
+        return next(
+            (
+                candidate.measuring(own, names)
+                for candidate, own in zip((self.first, self.second), parameters, strict=True)
+                if candidate.effect.measured
+            ),
+            None,
+        )
 
 
 def unit_grid(count, points):
-    """Return (points**count, count): normalised parameters, evenly from 0 to 1 along each of `count`."""
-    return np.stack([axis.ravel() for axis in np.meshgrid(*[np.linspace(0.0, 1.0, points)] * count, indexing="ij")], axis=-1)
+    """Return (points**count, count): normalised parameters, evenly from 0 to 1 along each of
+    `count`.
+    """
+    return np.stack(
+        [
+            axis.ravel()
+            for axis in np.meshgrid(*[np.linspace(0.0, 1.0, points)] * count, indexing="ij")
+        ],
+        axis=-1,
+    )
 
 
 def candidate_named(name):
     """Return the Candidate or Pair of a name."""
-    parts = [Candidate(*part.removesuffix(ALONE).split("@"), part.endswith(ALONE)) for part in name.split("+")]
+    parts = [
+        Candidate(*part.removesuffix(ALONE).split("@"), part.endswith(ALONE))
+        for part in name.split("+")
+    ]
     return parts[0] if len(parts) == 1 else Pair(*parts)
 
 
 def elsewhere(candidate, values):
     """Return the candidate at each single support, where it was at all of them."""
-    return [Candidate(candidate.effect_id, place) for place in candidate.effect.locations(values) if place != candidate.location] if candidate.location == "all" else []
+    return (
+        [
+            Candidate(candidate.effect_id, place)
+            for place in candidate.effect.locations(values)
+            if place != candidate.location
+        ]
+        if candidate.location == "all"
+        else []
+    )
 
 
 def other_places(candidate, values):
-    """Return the candidate at every other place of its kind, of an effect that sits at a point; of a Pair the second effect, as the first was placed alone."""
+    """Return the candidate at every other place of its kind, of an effect that sits at a point; of
+    a Pair the second effect, as the first was placed alone.
+    """
     if isinstance(candidate, Pair):
         return [Pair(candidate.first, other) for other in other_places(candidate.second, values)]
     locations = candidate.effect.locations(values)
-    return [replace(candidate, location=place) for place in locations if place != candidate.location] if candidate.effect_id in QUICK_PLACES else []
+    return (
+        [replace(candidate, location=place) for place in locations if place != candidate.location]
+        if candidate.effect_id in QUICK_PLACES
+        else []
+    )
 
 
 def linear_candidates(values, names, held, modes):
-    """Return the candidates that the lowest record tells of by itself; held: names of what the campaign holds beyond force and response; modes: those
-    that were seen, from 0."""
+    """Return the candidates that the lowest record tells of by itself; held: names of what the
+    campaign holds beyond force and response; modes: those that were seen, from 0.
+    """
     found = []
     for effect in EFFECTS.values():
         if effect.linear and set(effect.needs) <= set(held):
@@ -257,9 +384,11 @@ def linear_candidates(values, names, held, modes):
 
 
 def local_candidates(values, held, modes=None, quick=False):
-    """Return the candidates that only simulation tells of, those to screen first: all supports together, points up to PLACES, fewer where it must be quick.
+    """Return the candidates that only simulation tells of, those to screen first: all supports
+    together, points up to PLACES, fewer where it must be quick.
 
-    modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear structure, and linear effects are tried as the others are.
+    modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear
+    structure, and linear effects are tried as the others are.
     """
     found = []
     for effect in EFFECTS.values():
@@ -277,14 +406,23 @@ def local_candidates(values, held, modes=None, quick=False):
 
 def spread(locations, count=PLACES):
     """Return the first of locations and others evenly among the rest, `count` at most."""
-    return [locations[number] for number in np.unique(np.round(np.linspace(0, len(locations) - 1, min(count, len(locations)))).astype(int))]
+    return [
+        locations[number]
+        for number in np.unique(
+            np.round(np.linspace(0, len(locations) - 1, min(count, len(locations)))).astype(int)
+        )
+    ]
 
 
-UNSEEN_MODES = 6  # the first so many modes of the structure: the frequencies of those that the lowest record does not show are tried
+# the first so many modes of the structure: the frequencies of those that the lowest record does not
+# show are tried
+UNSEEN_MODES = 6
 
 
 def _told(candidate, modes):
-    """Return whether the lowest record tells of a candidate where it shows modes (mode,): of linear effects, but for what acts across its motion."""
+    """Return whether the lowest record tells of a candidate where it shows modes (mode,): of linear
+    effects, but for what acts across its motion.
+    """
     if candidate.effect_id == "mode_frequency_error":
         return candidate.mode in modes
     return candidate.effect.linear and candidate != Candidate("lateral_stinger", "along_x")

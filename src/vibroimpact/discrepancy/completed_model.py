@@ -1,46 +1,74 @@
-"""The completed model as a configuration that runs: effects, corrected frequencies and damping of its modes."""
+"""The completed model as a configuration that runs: effects, corrected frequencies and damping of
+its modes.
+"""
 
 import numpy as np
 import yaml
 
-from vibroimpact.config import check_config
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.modifications import with_factors
+from vibroimpact.config.reading import check_config
 from vibroimpact.records import plain
+from vibroimpact.reduction.structural_modifications import with_factors
+
+from .attach import attach
 
 
 def updated_model(bench, decision, prepared):
-    """Return the text of the completed configuration: effects, corrected modes; gains of channels as a comment, for they are not of the model."""
+    """Return the text of the completed configuration: effects, corrected modes; gains of channels
+    as a comment, for they are not of the model.
+    """
     values = bench.values
     if decision.chosen is not None:
-        values = bench.variant(decision.chosen.candidate, decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales))
+        values = bench.variant(
+            decision.chosen.candidate,
+            decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales),
+        )
     if bench.nuisance is not None:
-        values = with_nuisance(values, bench.nuisance, computed_modes(values, bench.campaign)[bench.nuisance.modes])
-    what = "The verdict is unknown: nothing was added to what the lowest record told." if decision.verdict == "unknown" else "The model with what the campaign showed to be missing."
+        values = with_nuisance(
+            values, bench.nuisance, computed_modes(values, bench.campaign)[bench.nuisance.modes]
+        )
+    what = (
+        "The verdict is unknown: nothing was added to what the lowest record told."
+        if decision.verdict == "unknown"
+        else "The model with what the campaign showed to be missing."
+    )
     lines = [f"# {what} Corrections of modes are in mode_frequency_factors and damping."]
     if bench.nuisance is not None:
-        gains = ", ".join(f"{name} {gain:.4f}" for name, gain in zip(bench.signals.names, bench.nuisance.gain, strict=True))
+        gains = ", ".join(
+            f"{name} {gain:.4f}"
+            for name, gain in zip(bench.signals.names, bench.nuisance.gain, strict=True)
+        )
         lines.append(f"# Gains of the channels, measured over true: {gains}")
     values = values | {"study": f"{values['study']}_updated"}
     return "\n".join([*lines, yaml.safe_dump(plain(values), sort_keys=False, width=140)])
 
 
 def computed_modes(values, campaign):
-    """Return (mode,): the number that each mode of a configuration in plain values has among those computed, before frequency factors let some pass others."""
+    """Return (mode,): the number that each mode of a configuration in plain values has among those
+    computed, before frequency factors let some pass others.
+    """
     computed = attach(check_config(values | {"mode_frequency_factors": []}, "model"), campaign)
     return with_factors(computed.omega, values["mode_frequency_factors"])[1]
 
 
 def with_nuisance(values, nuisance, computed):
-    """Return the configuration in plain values with the corrected frequencies and damping ratios of its first modes; computed (mode,): the numbers among the
-    computed modes of those that the nuisance corrects."""
+    """Return the configuration in plain values with the corrected frequencies and damping ratios of
+    its first modes; computed (mode,): the numbers among the computed modes of those that the
+    nuisance corrects.
+    """
     count = int(nuisance.modes.max(initial=-1)) + 1
-    factors = [*values["mode_frequency_factors"], *[1.0] * max(0, int(np.max(computed, initial=-1)) + 1 - len(values["mode_frequency_factors"]))]
+    factors = [
+        *values["mode_frequency_factors"],
+        *[1.0]
+        * max(0, int(np.max(computed, initial=-1)) + 1 - len(values["mode_frequency_factors"])),
+    ]
     for mode, factor in zip(computed, nuisance.frequency, strict=True):
         factors[mode] *= float(factor)
     damping = dict(values["damping"])
     if damping["kind"] == "modal":
-        ratios = [*damping["first_ratios"], *[damping["other_ratio"]] * max(0, count - len(damping["first_ratios"]))]
+        ratios = [
+            *damping["first_ratios"],
+            *[damping["other_ratio"]] * max(0, count - len(damping["first_ratios"])),
+        ]
         for mode, factor in zip(nuisance.modes, nuisance.damping, strict=True):
             ratios[mode] *= float(factor)
         damping["first_ratios"] = ratios

@@ -1,4 +1,6 @@
-"""The last job: fresh seeds of the bare and the completed model, the maps before and after, verdict.json, ranking.csv, and the model that runs."""
+"""The last job: fresh seeds of the bare and the completed model, the maps before and after,
+verdict.json, ranking.csv, and the model that runs.
+"""
 
 import json
 import time
@@ -8,21 +10,24 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.contraction import IntegrationError
-from vibroimpact.discrepancy import jobs, mapping, misfit, naming, power_balance, priors, verdict
-from vibroimpact.discrepancy.by_level import by_level
-from vibroimpact.discrepancy.candidates import Pair, candidate_named
-from vibroimpact.discrepancy.completed_model import updated_model
-from vibroimpact.discrepancy.estimate_scatter import with_scatter
-from vibroimpact.discrepancy.invariances import broken_invariances
-from vibroimpact.discrepancy.law_directions import within_any_law
-from vibroimpact.discrepancy.next_measurement import next_measurement
-from vibroimpact.discrepancy.prepared import workbench
-from vibroimpact.discrepancy.same_quantity import by_other_laws
-from vibroimpact.discrepancy.survivors import survivors
+from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.records import plain, read_text, write_record, write_table, write_text
 
-BEGUN = time.perf_counter()  # this job, which has no benchmark file until it ends; of a quick run it is all there is
+from . import jobs, mapping, misfit, naming, power_balance, priors, verdict
+from .by_level import by_level
+from .candidates import Pair, candidate_named
+from .completed_model import updated_model
+from .estimate_scatter import with_scatter
+from .invariances import broken_invariances
+from .law_directions import within_any_law
+from .next_measurement import next_measurement
+from .prepared import workbench
+from .same_quantity import by_other_laws
+from .survivors import survivors
+
+BEGUN = (
+    time.perf_counter()
+)  # this job, which has no benchmark file until it ends; of a quick run it is all there is
 FRESH = 20000  # first seed of the verification: none of the calibration's
 FRESH_RUNS, LEAST_FRESH = 32, 4  # runs of whole records in all, seeds of each at least
 BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
@@ -32,26 +37,55 @@ def refused(folder, prepared, provenance):
     """Write the verdict of a campaign that can not be tested."""
     folder = Path(folder)
     empty = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
-    content = {"verdict": "not_testable", "effects": [], "ambiguity_set": [], "ranking": [], "next_measurement": prepared.refusal, "broken_invariances": [],
-               "regions": [], "misfit": {"fit": empty, "holdout": empty}, "p_global_before": None, "p_global_after": None,
-               "checks": contract_checks(prepared.checks), "seconds": 0.0, "simulations": 0, "provenance": provenance}  # fmt: skip
+    content = {
+        "verdict": "not_testable",
+        "effects": [],
+        "ambiguity_set": [],
+        "ranking": [],
+        "next_measurement": prepared.refusal,
+        "broken_invariances": [],
+        "regions": [],
+        "misfit": {"fit": empty, "holdout": empty},
+        "p_global_before": None,
+        "p_global_after": None,
+        "checks": contract_checks(prepared.checks),
+        "seconds": 0.0,
+        "simulations": 0,
+        "provenance": provenance,
+    }
     write_text(json.dumps(content, indent=1), folder / "verdict.json")
     write_table([], folder / "ranking.csv", columns=COLUMNS)
     for name in ("map", "map_after"):
-        write_record(xr.Dataset(attrs={"title": "no map: the campaign can not be tested"}), folder / f"{name}.nc")
+        write_record(
+            xr.Dataset(attrs={"title": "no map: the campaign can not be tested"}),
+            folder / f"{name}.nc",
+        )
     write_text("# not testable: the model is as it was\n", folder / "model_updated.yaml")
 
 
-COLUMNS = ("ids", "location", "fit_score", "heldout_score", "closed_fraction", "threshold", "tested")
+COLUMNS = (
+    "ids",
+    "location",
+    "fit_score",
+    "heldout_score",
+    "closed_fraction",
+    "threshold",
+    "tested",
+)
 
 
 def contract_checks(rows):
     """Return the rows of checks with the keys of the contract alone."""
-    return [{key: row.get(key) for key in ("check", "level", "record", "channel", "message")} for row in rows]
+    return [
+        {key: row.get(key) for key in ("check", "level", "record", "channel", "message")}
+        for row in rows
+    ]
 
 
 def conclude(run, screening, final_files, provenance, quick=False):
-    """Decide, verify on fresh seeds, and write everything into the folder of a Run; screening: content of its file."""
+    """Decide, verify on fresh seeds, and write everything into the folder of a Run; screening:
+    content of its file.
+    """
     if run.refused:
         refused(run.folder, run.prepared, provenance)
         return
@@ -59,7 +93,11 @@ def conclude(run, screening, final_files, provenance, quick=False):
     found, totals = jobs.ordered(bench, null, jobs.known_finalists(final_files))
     measured = bench.measured_features[null.records]
     if found and isinstance(found[0].candidate, Pair) and not quick:
-        found, totals = jobs.ordered(bench, null, jobs.best_of_each([*found, *by_other_laws(bench, null, measured, found[0], prepared)]))
+        found, totals = jobs.ordered(
+            bench,
+            null,
+            jobs.best_of_each([*found, *by_other_laws(bench, null, measured, found[0], prepared)]),
+        )
     p_before = mapping.global_p(bench, null, measured)
     decision = verdict.decide(bench, null, prepared, found, screening["threshold"], p_before)
     if decision.chosen is not None:
@@ -68,53 +106,114 @@ def conclude(run, screening, final_files, provenance, quick=False):
         found = [chosen if row is decision.chosen else row for row in found]
         decision = replace(decision, chosen=chosen)
     whole = before_bench = run.whole_bench
-    seeds = LEAST_FRESH if quick else max(LEAST_FRESH, min(priors.FINAL_SEEDS, FRESH_RUNS // len(bench.signals.load)))
+    seeds = (
+        LEAST_FRESH
+        if quick
+        else max(LEAST_FRESH, min(priors.FINAL_SEEDS, FRESH_RUNS // len(bench.signals.load)))
+    )
     if prepared.adopted is not None:
-        before_bench = workbench(run.config, run.campaign, replace(prepared, adopted=None, fit=None), prepared.longest_s)
+        before_bench = workbench(
+            run.config, run.campaign, replace(prepared, adopted=None, fit=None), prepared.longest_s
+        )
     before = verified(before_bench, before_bench.model(), seeds, bench)
     most_probable = verdict.effects_of(prepared, decision, bench.bare)
     after = completed(run, decision, before, seeds)
     gaps = None if after is None else misfits(whole, before, after)
-    if gaps is None or verdict.refuted(decision, *(gaps[split]["closed_fraction"] for split in ("fit", "holdout"))):  # nothing is added then
-        decision = replace(decision, verdict="unknown", chosen=None, ambiguity=[], explained=naming.bare_explained(bench, null, measured))
+    if gaps is None or verdict.refuted(
+        decision, *(gaps[split]["closed_fraction"] for split in ("fit", "holdout"))
+    ):  # nothing is added then
+        decision = replace(
+            decision,
+            verdict="unknown",
+            chosen=None,
+            ambiguity=[],
+            explained=naming.bare_explained(bench, null, measured),
+        )
         after = completed(run, decision, before, seeds)
         gaps = misfits(whole, before, after)
     p_after = p_before
     if after is not before:
-        p_after = mapping.global_p(bench, null if decision.chosen is None else decision.chosen.own(null), measured, after.compared[null.records])
+        p_after = mapping.global_p(
+            bench,
+            null if decision.chosen is None else decision.chosen.own(null),
+            measured,
+            after.compared[null.records],
+        )
     if prepared.adopted is not None:  # the null holds what was adopted; the model as given does not
         p_before = mapping.global_p(bench, null, measured, before.compared[null.records], law=False)
     difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)
     ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured, decision)
     content = {
         "verdict": decision.verdict,
-        "effects": verdict.effects_of(prepared, decision, bench.bare) if decision.verdict in ("named", "partly_explained") else [],
-        "ambiguity_set": decision.ambiguity if decision.verdict in ("named", "ambiguous", "partly_explained") else [],
-        "ranking": [{"ids": row["ids"].split("+"), "heldout_score": row["heldout_score"], "closed_fraction": row["closed_fraction"], "location": row["location"]}
-                    for row in ranking],
+        "effects": (
+            verdict.effects_of(prepared, decision, bench.bare)
+            if decision.verdict in ("named", "partly_explained")
+            else []
+        ),
+        "ambiguity_set": (
+            decision.ambiguity
+            if decision.verdict in ("named", "ambiguous", "partly_explained")
+            else []
+        ),
+        "ranking": [
+            {
+                "ids": row["ids"].split("+"),
+                "heldout_score": row["heldout_score"],
+                "closed_fraction": row["closed_fraction"],
+                "location": row["location"],
+            }
+            for row in ranking
+        ],
         "next_measurement": next_measurement(decision.ambiguity),
-        "broken_invariances": broken_invariances(bench, null, prepared, power_balance.broken(before_bench, before.shown)),
+        "broken_invariances": broken_invariances(
+            bench, null, prepared, power_balance.broken(before_bench, before.shown)
+        ),
         "regions": mapping.regions(before_bench, difference, z, misfit.counted(whole)),
-        "misfit": gaps, "p_global_before": p_before, "p_global_after": p_after,
+        "misfit": gaps,
+        "p_global_before": p_before,
+        "p_global_after": p_after,
         "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
-        "seconds": elapsed(folder), "simulations": simulations(null, paths, found, before.features, after.features),
-        "not_testable": prepared.not_testable, "linear": prepared.linear[:SHOWN], "explained_z": decision.explained.tolist(),
-        "most_probable": most_probable, "provenance": provenance,
-    }  # fmt: skip
+        "seconds": elapsed(folder),
+        "simulations": simulations(null, paths, found, before.features, after.features),
+        "not_testable": prepared.not_testable,
+        "linear": prepared.linear[:SHOWN],
+        "explained_z": decision.explained.tolist(),
+        "most_probable": most_probable,
+        "provenance": provenance,
+    }
     write_text(json.dumps(plain(content), indent=1), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
-    write_record(mapping.map_dataset(before_bench, before.features, before.shown), folder / "map.nc")
+    write_record(
+        mapping.map_dataset(before_bench, before.features, before.shown), folder / "map.nc"
+    )
     write_record(mapping.map_dataset(whole, after.features, after.shown), folder / "map_after.nc")
-    levels = {} if decision.chosen is None else {decision.chosen.candidate.name: by_level(bench, null, measured, decision.chosen, prepared.scales)}
+    levels = (
+        {}
+        if decision.chosen is None
+        else {
+            decision.chosen.candidate.name: by_level(
+                bench, null, measured, decision.chosen, prepared.scales
+            )
+        }
+    )
     write_candidates(found, prepared, totals, folder / "candidates", levels)
-    write_text(updated_model(bench if decision.chosen is None else bench.corrected_by(decision.chosen.nuisance), decision, prepared), folder / "model_updated.yaml")
+    write_text(
+        updated_model(
+            bench if decision.chosen is None else bench.corrected_by(decision.chosen.nuisance),
+            decision,
+            prepared,
+        ),
+        folder / "model_updated.yaml",
+    )
 
 
 SHOWN = 8
 
 
 def elapsed(folder):
-    """Return the seconds that the jobs of a folder took so far, summed over them, by their benchmark files, and this one."""
+    """Return the seconds that the jobs of a folder took so far, summed over them, by their
+    benchmark files, and this one.
+    """
     total = time.perf_counter() - BEGUN
     for file in (folder / "benchmarks").glob("*.tsv"):
         rows = read_text(file).splitlines()
@@ -124,7 +223,9 @@ def elapsed(folder):
 
 
 def completed(run, decision, before, seeds):
-    """Return the Verified of the model with what was adopted and what a Decision chose, `before` itself where that is nothing, None where whole records throw it off."""
+    """Return the Verified of the model with what was adopted and what a Decision chose, `before`
+    itself where that is nothing, None where whole records throw it off.
+    """
     if decision.chosen is None and run.prepared.adopted is None:
         return before
     whole, chosen = run.whole_bench, decision.chosen
@@ -132,22 +233,52 @@ def completed(run, decision, before, seeds):
         return verified(whole, whole.model(), seeds, run.bench)
     whole = whole.corrected_by(chosen.nuisance)
     try:
-        return verified(whole, whole.model(whole.variant(chosen.candidate, chosen.candidate.physical(chosen.unit, run.prepared.scales))), seeds, run.bench)
+        return verified(
+            whole,
+            whole.model(
+                whole.variant(
+                    chosen.candidate, chosen.candidate.physical(chosen.unit, run.prepared.scales)
+                )
+            ),
+            seeds,
+            run.bench,
+        )
     except IntegrationError:
         return None
 
 
 def misfits(whole, before, after):
-    """Return {split: misfit.misfit_of} of what two Verified leave, nothing known where a split has no records."""
-    cells, splits = misfit.counted(whole), {"fit": whole.signals.fit(), "holdout": whole.signals.holdout()}
-    return {name: misfit.misfit_of(whole, records, cells, before.features.mean(axis=1), after.features.mean(axis=1), after.features) if len(records) else
-            {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None} for name, records in splits.items()}  # fmt: skip
+    """Return {split: misfit.misfit_of} of what two Verified leave, nothing known where a split has
+    no records.
+    """
+    cells = misfit.counted(whole)
+    splits = {
+        "fit": whole.signals.fit(),
+        "holdout": whole.signals.holdout(),
+    }
+    return {
+        name: (
+            misfit.misfit_of(
+                whole,
+                records,
+                cells,
+                before.features.mean(axis=1),
+                after.features.mean(axis=1),
+                after.features,
+            )
+            if len(records)
+            else {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
+        )
+        for name, records in splits.items()
+    }
 
 
 @dataclass(frozen=True)
 class Verified:
-    """Fresh seeds of a model on whole records: features (record, seed, feature); compared (record, feature): their mean over what candidates were
-    calibrated on; shown (record, shown seed, channel, sample): responses with noise."""
+    """Fresh seeds of a model on whole records: features (record, seed, feature); compared (record,
+    feature): their mean over what candidates were calibrated on; shown (record, shown seed,
+    channel, sample): responses with noise.
+    """
 
     features: np.ndarray
     compared: np.ndarray
@@ -155,56 +286,111 @@ class Verified:
 
 
 def verified(whole, model, seeds, bench):
-    """Return the Verified of a model on the Workbench of whole records; bench: that of what was compared."""
+    """Return the Verified of a model on the Workbench of whole records; bench: that of what was
+    compared.
+    """
     records = len(whole.signals.load)
     runs = whole.runs(range(records), seeds, FRESH)
     responses = whole.respond(model, runs)
-    features, compared = (window.noisy_features(runs, responses).reshape(records, seeds, -1) for window in (whole, bench))
+    features, compared = (
+        window.noisy_features(runs, responses).reshape(records, seeds, -1)
+        for window in (whole, bench)
+    )
     stayed = survivors(features)
-    features, compared = (np.take_along_axis(rows, stayed[..., None], axis=1) for rows in (features, compared))
-    responses = responses.reshape(records, seeds, *responses.shape[1:])[np.arange(records)[:, None], stayed[:, : mapping.SHOWN_SEEDS]]
-    noise = np.random.default_rng(11).standard_normal(responses.shape, dtype=np.float32) * whole.signals.noise[:, None].astype(np.float32)
+    features, compared = (
+        np.take_along_axis(rows, stayed[..., None], axis=1) for rows in (features, compared)
+    )
+    responses = responses.reshape(records, seeds, *responses.shape[1:])[
+        np.arange(records)[:, None], stayed[:, : mapping.SHOWN_SEEDS]
+    ]
+    noise = np.random.default_rng(11).standard_normal(
+        responses.shape, dtype=np.float32
+    ) * whole.signals.noise[:, None].astype(np.float32)
     shown = np.where(np.isfinite(whole.signals.force[:, :1])[:, None], responses + noise, np.nan)
     return Verified(features, compared.mean(axis=1), shown)
 
 
 def ranking_rows(bench, null, prepared, found, totals, screening, measured, decision):
-    """Return the rows of ranking.csv: what was simulated directly, what the decision chose and then the best first, then what was screened, then linear effects that were not adopted."""
+    """Return the rows of ranking.csv: what was simulated directly, what the decision chose and then
+    the best first, then what was screened, then linear effects that were not adopted.
+    """
     rows, seen = [], set()
     prefix = [] if prepared.adopted is None else candidate_named(prepared.adopted["name"]).ids
     for row in found:
         ids = [*([] if row.candidate.alone else prefix), *row.candidate.ids]
         gain, on_fit, held_out = totals[row.candidate.name]
-        rows.append({"ids": "+".join(ids), "location": where(row.candidate.name), "fit_score": on_fit, "heldout_score": held_out,
-                     "closed_fraction": float(verdict.closure(bench, null, row, measured)), "threshold": screening["threshold"], "tested": True,
-                     "gain": np.inf if row is decision.chosen else gain})  # fmt: skip
+        rows.append(
+            {
+                "ids": "+".join(ids),
+                "location": where(row.candidate.name),
+                "fit_score": on_fit,
+                "heldout_score": held_out,
+                "closed_fraction": float(verdict.closure(bench, null, row, measured)),
+                "threshold": screening["threshold"],
+                "tested": True,
+                "gain": np.inf if row is decision.chosen else gain,
+            }
+        )
         seen.add(row.candidate.name)
     if prefix:
         alone = decision.chosen is None and decision.verdict != "unknown"
-        only = {"ids": "+".join(prefix), "location": where(prepared.adopted["name"]), "fit_score": 0.0, "heldout_score": 0.0,  # all others are scored against it
-                "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True, "gain": np.inf if alone else screening["threshold"]}  # fmt: skip
+        only = {
+            "ids": "+".join(prefix),
+            "location": where(prepared.adopted["name"]),
+            "fit_score": 0.0,
+            "heldout_score": 0.0,  # all others are scored against it
+            "closed_fraction": None,
+            "threshold": priors.LINEAR_GAIN,
+            "tested": True,
+            "gain": np.inf if alone else screening["threshold"],
+        }
         rows.append(only)
     rows.sort(key=lambda row: -row["gain"])
     for row in screening["ranked"]:
         if row["name"] not in seen:
             candidate = candidate_named(row["name"])
             ids = [*([] if candidate.alone else prefix), *candidate.ids]
-            rows.append({"ids": "+".join(ids), "location": where(row["name"]), "fit_score": row["score"], "heldout_score": None,
-                         "closed_fraction": None, "threshold": screening["threshold"], "tested": False})  # fmt: skip
-    known = 0.0 if prepared.adopted is None else prepared.adopted["gain"]  # against the model with it, as all others
+            rows.append(
+                {
+                    "ids": "+".join(ids),
+                    "location": where(row["name"]),
+                    "fit_score": row["score"],
+                    "heldout_score": None,
+                    "closed_fraction": None,
+                    "threshold": screening["threshold"],
+                    "tested": False,
+                }
+            )
+    known = (
+        0.0 if prepared.adopted is None else prepared.adopted["gain"]
+    )  # against the model with it, as all others
     for row in prepared.linear[:SHOWN]:
         if prepared.adopted is None or row["name"] != prepared.adopted["name"]:
-            rows.append({"ids": "+".join(candidate_named(row["name"]).ids), "location": where(row["name"]), "fit_score": row["gain"] - known, "heldout_score": None,
-                         "closed_fraction": None, "threshold": priors.LINEAR_GAIN, "tested": True})  # fmt: skip
+            rows.append(
+                {
+                    "ids": "+".join(candidate_named(row["name"]).ids),
+                    "location": where(row["name"]),
+                    "fit_score": row["gain"] - known,
+                    "heldout_score": None,
+                    "closed_fraction": None,
+                    "threshold": priors.LINEAR_GAIN,
+                    "tested": True,
+                }
+            )
     return [{key: row[key] for key in COLUMNS} for row in rows]
 
 
 def where(name):
-    """Return the location in a candidate's name, both of a pair's joined with a plus; with its law where the catalogue has several of one effect."""
+    """Return the location in a candidate's name, both of a pair's joined with a plus; with its law
+    where the catalogue has several of one effect.
+    """
     places = []
     for part in name.split("+"):
         candidate = candidate_named(part)
-        places.append(candidate.location + (f", {candidate.effect_id.replace('_', ' ')}" if candidate.effect.law_of else ""))
+        places.append(
+            candidate.location
+            + (f", {candidate.effect_id.replace('_', ' ')}" if candidate.effect.law_of else "")
+        )
     return "+".join(places)
 
 
@@ -213,19 +399,38 @@ def bounds(decision, prepared):
     if decision.chosen is None:
         return []
     parameters = decision.chosen.candidate.effect.parameters
-    return [{"check": "bounds", "level": "warn", "record": None, "channel": None, "message": f"{parameter.name} of {decision.chosen.candidate.name} is at a bound of its range."}
-            for value, parameter in zip(decision.chosen.unit, parameters, strict=True) if min(value, 1.0 - value) < BOUND and parameter.name != "angle"]  # fmt: skip
+    return [
+        {
+            "check": "bounds",
+            "level": "warn",
+            "record": None,
+            "channel": None,
+            "message": (
+                f"{parameter.name} of {decision.chosen.candidate.name} is at a bound of its range."
+            ),
+        }
+        for value, parameter in zip(decision.chosen.unit, parameters, strict=True)
+        if min(value, 1.0 - value) < BOUND and parameter.name != "angle"
+    ]
 
 
 def write_candidates(found, prepared, totals, folder, levels):
-    """Write candidates/<name>.json: parameters with their intervals, the score along each of them and the values that were simulated, and levels {name: see by_level}."""
+    """Write candidates/<name>.json: parameters with their intervals, the score along each of them
+    and the values that were simulated, and levels {name: see by_level}.
+    """
     for row in found:
-        parts = [(row.candidate.first, 0), (row.candidate.second, row.candidate.split)] if isinstance(row.candidate, Pair) else [(row.candidate, 0)]
+        parts = (
+            [(row.candidate.first, 0), (row.candidate.second, row.candidate.split)]
+            if isinstance(row.candidate, Pair)
+            else [(row.candidate, 0)]
+        )
         profile, parameters = [], {}
         for candidate, offset in parts:
             own = slice(offset, offset + len(candidate.effect.parameters))
             unit, interval = row.unit[own], np.array(row.interval[own])
-            simulated = [candidate.physical(point, prepared.scales) for point in row.path.parameters[:, own]]
+            simulated = [
+                candidate.physical(point, prepared.scales) for point in row.path.parameters[:, own]
+            ]
             estimate = candidate.estimate(unit, interval, prepared.scales)
             for number, parameter in enumerate(candidate.effect.parameters):
                 values, score = row.profile[offset + number]
@@ -234,18 +439,44 @@ def write_candidates(found, prepared, totals, folder, levels):
                     moved = unit.copy()
                     moved[number] = value
                     sizes.append(candidate.physical(moved, prepared.scales)[parameter.name])
-                name = parameter.name if len(parts) == 1 else f"{candidate.effect.reported}.{parameter.name}"
-                profile.append({"parameter": name, "unit": parameter.unit, "values": sizes, "score": score.tolist(),
-                                "simulated": sorted({point[parameter.name] for point in simulated})})  # fmt: skip
-                parameters[name] = dict(zip(("value", "low", "high"), estimate[parameter.name], strict=True)) | {"unit": parameter.unit}
-        content = {"ids": row.candidate.ids, "name": row.candidate.name, "gain": totals[row.candidate.name][0], "profile": profile,
-                   "parameters": parameters, "by_level": levels.get(row.candidate.name, [])}  # fmt: skip
-        write_text(json.dumps(plain(content), indent=1), folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json")
+                name = (
+                    parameter.name
+                    if len(parts) == 1
+                    else f"{candidate.effect.reported}.{parameter.name}"
+                )
+                profile.append(
+                    {
+                        "parameter": name,
+                        "unit": parameter.unit,
+                        "values": sizes,
+                        "score": score.tolist(),
+                        "simulated": sorted({point[parameter.name] for point in simulated}),
+                    }
+                )
+                parameters[name] = dict(
+                    zip(("value", "low", "high"), estimate[parameter.name], strict=True)
+                ) | {"unit": parameter.unit}
+        content = {
+            "ids": row.candidate.ids,
+            "name": row.candidate.name,
+            "gain": totals[row.candidate.name][0],
+            "profile": profile,
+            "parameters": parameters,
+            "by_level": levels.get(row.candidate.name, []),
+        }
+        write_text(
+            json.dumps(plain(content), indent=1),
+            folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json",
+        )
 
 
 def simulations(null, paths, found, before, after):
     """Return how many records were simulated."""
     records = len(null.mean)
-    count = records * (null.seeds + 2 * jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (1 if after is before else 2)
+    count = records * (null.seeds + 2 * jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (
+        1 if after is before else 2
+    )
     count += sum(int(path.seeds.sum()) * records for path in paths.values())
-    return count + sum(int(row.path.seeds.sum()) * records + row.features.shape[1] * records for row in found)
+    return count + sum(
+        int(row.path.seeds.sum()) * records + row.features.shape[1] * records for row in found
+    )

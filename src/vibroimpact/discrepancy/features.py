@@ -1,7 +1,8 @@
-"""What is compared: band powers, coherences, skewness and peakedness of a record, with the measuring noise in both.
+"""What is compared: band powers, coherences, skewness and peakedness of a record, with the
+measuring noise in both.
 
-Every feature is in units in which its scatter is about even over the level: decibels for powers, Fisher's z for coherences and
-correlations, the cube root of skewness, the logarithm of kurtosis.
+Every feature is in units in which its scatter is about even over the level: decibels for powers,
+Fisher's z for coherences and correlations, the cube root of skewness, the logarithm of kurtosis.
 """
 
 from dataclasses import dataclass
@@ -14,15 +15,22 @@ COARSE = 8  # bands of the coherences
 SEGMENT_S = 5.0
 LEAST_SEGMENTS = 7
 SAME_POINT_M = 1.0e-3
-BLEND = {"power": 10.0, "coherence": 1.0, "co": 1.0, "quad": 1.0, "skewness": 0.5, "kurtosis": 0.5}  # larger differences are drawn in
+BLEND = {
+    "power": 10.0,
+    "coherence": 1.0,
+    "co": 1.0,
+    "quad": 1.0,
+    "skewness": 0.5,
+    "kurtosis": 0.5,
+}  # larger differences are drawn in
 
 
 @dataclass(frozen=True)
 class FeatureLayout:
     """Which features a record of a campaign has.
 
-    edges (band + 1,), coarse (coarse + 1,) Hz; pairs [(channel, channel)]: two directions at one point; kind, channel, band (feature,): what each
-    feature is; band is -1 where it has none.
+    edges (band + 1,), coarse (coarse + 1,) Hz; pairs [(channel, channel)]: two directions at one
+    point; kind, channel, band (feature,): what each feature is; band is -1 where it has none.
     """
 
     rate: float
@@ -47,26 +55,45 @@ class FeatureLayout:
 def feature_layout(signals, points):
     """Return the FeatureLayout of Signals; points (channel, 3) m."""
     channels = len(signals.names)
-    pairs = [(a, b) for a in range(channels) for b in range(a + 1, channels)
-             if np.linalg.norm(points[a] - points[b]) < SAME_POINT_M and signals.kinds[a] == signals.kinds[b]]  # fmt: skip
+    pairs = [
+        (a, b)
+        for a in range(channels)
+        for b in range(a + 1, channels)
+        if np.linalg.norm(points[a] - points[b]) < SAME_POINT_M
+        and signals.kinds[a] == signals.kinds[b]
+    ]
     bands = len(signals.edges) - 1
     rows = [("power", c, b) for c in range(channels) for b in range(bands)]
     rows += [("coherence", c, b) for c in range(channels) for b in range(COARSE)]
     rows += [(kind, a, b) for kind in ("co", "quad") for a, _ in pairs for b in range(COARSE)]
     rows += [(kind, c, -1) for kind in ("skewness", "kurtosis") for c in range(channels)]
     kind, channel, band = zip(*rows, strict=True)
-    return FeatureLayout(signals.rate, signals.edges, np.geomspace(*signals.band_Hz, COARSE + 1), pairs, np.array(kind), np.array(channel), np.array(band))
+    return FeatureLayout(
+        signals.rate,
+        signals.edges,
+        np.geomspace(*signals.band_Hz, COARSE + 1),
+        pairs,
+        np.array(kind),
+        np.array(channel),
+        np.array(band),
+    )
 
 
 def record_features(layout, force, response):
-    """Return (feature,) of one record: force (sample,), response (channel, sample), both of valid samples."""
+    """Return (feature,) of one record: force (sample,), response (channel, sample), both of valid
+    samples.
+    """
     samples = response.shape[-1]
-    length = fft.next_fast_len(min(round(SEGMENT_S * layout.rate), 2 * samples // (LEAST_SEGMENTS + 1)))
+    length = fft.next_fast_len(
+        min(round(SEGMENT_S * layout.rate), 2 * samples // (LEAST_SEGMENTS + 1))
+    )
     step = length // 2
     count = 1 + (samples - length) // step
     window = np.hanning(length + 1)[:-1].astype(np.float32)
     series = np.concatenate([response, force[None]]).astype(np.float32)
-    segments = np.lib.stride_tricks.sliding_window_view(series, length, axis=-1)[:, : count * step : step]
+    segments = np.lib.stride_tricks.sliding_window_view(series, length, axis=-1)[
+        :, : count * step : step
+    ]
     frequency = fft.rfftfreq(length, 1.0 / layout.rate)
     lines = frequency <= layout.edges[-1]
     spectra = fft.rfft(segments * window, axis=-1)[..., lines]
@@ -76,7 +103,8 @@ def record_features(layout, force, response):
     fine = _sums(frequency[lines], layout.edges)
     coarse = _sums(frequency[lines], layout.coarse)
     values = [10.0 * np.log10(np.maximum(power[:-1] @ fine, 1.0e-300)).ravel()]
-    # coherence from spectra summed over lines would mix phases: it is averaged line by line, by power
+    # coherence from spectra summed over lines would mix phases: it is averaged line by line, by
+    # power
     coherent = np.abs(cross) ** 2 / np.maximum(power[-1], 1.0e-300)
     share = (coherent @ coarse) / np.maximum(power[:-1] @ coarse, 1.0e-300)
     values.append(np.arctanh(np.sqrt(np.clip(share, 0.0, 0.9999))).ravel())
@@ -84,8 +112,14 @@ def record_features(layout, force, response):
     for part in (np.real, np.imag):
         for (a, b), product in zip(layout.pairs, both, strict=True):
             level = np.sqrt((power[a] @ coarse) * (power[b] @ coarse))
-            values.append(np.arctanh(np.clip(part(product) @ coarse / np.maximum(level, 1.0e-300), -0.9999, 0.9999)))
-    centred = np.asarray(response, np.float64) - response.mean(axis=-1, keepdims=True, dtype=np.float64)
+            values.append(
+                np.arctanh(
+                    np.clip(part(product) @ coarse / np.maximum(level, 1.0e-300), -0.9999, 0.9999)
+                )
+            )
+    centred = np.asarray(response, np.float64) - response.mean(
+        axis=-1, keepdims=True, dtype=np.float64
+    )
     square = centred * centred
     variance = np.maximum(square.mean(axis=-1), 1.0e-300)
     values.append(np.cbrt(np.mean(square * centred, axis=-1) / variance**1.5))
@@ -94,12 +128,16 @@ def record_features(layout, force, response):
 
 
 def _mean_product(one, other):
-    """Return (channel, line): the mean over segments of one times the conjugate of the other, (channel, segment, line) each."""
+    """Return (channel, line): the mean over segments of one times the conjugate of the other,
+    (channel, segment, line) each.
+    """
     return np.einsum("csl,csl->cl", one, np.broadcast_to(other, one.shape).conj()) / one.shape[1]
 
 
 def compressed(difference, layout):
-    """Differences (..., feature) of features with those beyond BLEND drawn in: an exact match of what is far off is not asked for."""
+    """Differences (..., feature) of features with those beyond BLEND drawn in: an exact match of
+    what is far off is not asked for.
+    """
     return layout.blend * np.arcsinh(difference / layout.blend)
 
 
@@ -109,7 +147,9 @@ def uncompressed(values, layout):
 
 
 def _sums(frequency, edges):
-    """Return (line, band) 0 or 1: the lines of each band; a band that no line falls into takes the nearest."""
+    """Return (line, band) 0 or 1: the lines of each band; a band that no line falls into takes the
+    nearest.
+    """
     inside = (frequency[:, None] >= edges[:-1]) & (frequency[:, None] < edges[1:])
     middle = np.sqrt(edges[:-1] * edges[1:])
     for band in np.flatnonzero(~inside.any(axis=0)):

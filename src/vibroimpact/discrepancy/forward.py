@@ -1,22 +1,28 @@
-"""Simulating a campaign's records: the measured force on the model, the response as its sensors would have kept it."""
+"""Simulating a campaign's records: the measured force on the model, the response as its sensors
+would have kept it.
+"""
 
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
-from vibroimpact.contraction import IntegrationError
-from vibroimpact.excitation import resample_measured
-from vibroimpact.integrate import Schedule, march_lanes, resting
-from vibroimpact.kernels import LANES, RATIO, SLOTS
+from vibroimpact.excitation.random_force import resample_measured
+from vibroimpact.integration.batch import Schedule, march_lanes, resting
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.kernels import LANES, RATIO, SLOTS
 
 IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
-LOST = 0.25  # of a batch at most: a structure that is thrown off more often is none that was measured
+LOST = (
+    0.25  # of a batch at most: a structure that is thrown off more often is none that was measured
+)
 NO_GAP_M = 1.0  # where a record has no clearance
 
 
 def schedule_of(campaign, integration, duration_s):
-    """Return the Schedule of runs from rest at the campaign's sampling frequency, its steps at least those of the model's configuration."""
+    """Return the Schedule of runs from rest at the campaign's sampling frequency, its steps at
+    least those of the model's configuration.
+    """
     sampling = float(campaign.attrs["sampling_frequency"])
     ratio = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
     return Schedule(RATIO * ratio * sampling, sampling, 0.0, duration_s, integration.scheme)
@@ -25,8 +31,8 @@ def schedule_of(campaign, integration, duration_s):
 class Forces:
     """The measured forces of a campaign at the integration step, cut to the schedule's length.
 
-    force: (record, force_channel, time) N as measured; values(record) -> (step, force_channel) N, one more than the steps (the first
-    is one step before time 0).
+    force: (record, force_channel, time) N as measured; values(record) -> (step, force_channel) N,
+    one more than the steps (the first is one step before time 0).
     """
 
     def __init__(self, force, schedule):
@@ -45,19 +51,30 @@ class Forces:
 
 
 def simulate_records(model, schedule, forces, runs, kinds):
-    """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed), LANES of them at a time.
+    """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed),
+    LANES of them at a time.
 
-    kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is the integral of neither: refused by the checks.
-    A run that diverges is NaN where few of its batch do, IntegrationError where more. Before a record begins, the structure rests under its dead loads, against its supports where it must. A run's seed draws
-    the tiny offset of the obstacles that makes two runs of an impacting tube differ.
+    kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is
+    the integral of neither: refused by the checks. A run that diverges is NaN where few of its
+    batch do, IntegrationError where more. Before a record begins, the structure rests under its
+    dead loads, against its supports where it must. A run's seed draws the tiny offset of the
+    obstacles that makes two runs of an impacting tube differ.
     """
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
     acceleration = np.array([kind == "acceleration" for kind in kinds])
     for first in range(0, len(runs), LANES):
         batch = runs[first : first + LANES]
         gaps = np.array([gap if np.isfinite(gap) else NO_GAP_M for _, gap, _ in batch])
-        offsets = np.stack([np.random.default_rng([seed, record]).uniform(-IMPERFECTION, IMPERFECTION, (len(model.support_of_point), 2)) * gap
-                            for (record, _, seed), gap in zip(batch, gaps, strict=True)], axis=-1)  # fmt: skip
+        offsets = np.stack(
+            [
+                np.random.default_rng([seed, record]).uniform(
+                    -IMPERFECTION, IMPERFECTION, (len(model.support_of_point), 2)
+                )
+                * gap
+                for (record, _, seed), gap in zip(batch, gaps, strict=True)
+            ],
+            axis=-1,
+        )
 
         initial = resting(model, schedule, gaps, offsets)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
@@ -66,7 +83,13 @@ def simulate_records(model, schedule, forces, runs, kinds):
 
         def drive(at, count, batch=batch, lead=lead, lost=lost):
             silent = min(max(lead - at, 0), count)
-            force = np.stack([forces.values(record)[max(at - lead, 0) : max(at - lead + count, 0)] for record, _, _ in batch], axis=-1)
+            force = np.stack(
+                [
+                    forces.values(record)[max(at - lead, 0) : max(at - lead + count, 0)]
+                    for record, _, _ in batch
+                ],
+                axis=-1,
+            )
             force[..., list(lost)] = 0.0
             return np.pad(force, ((silent, 0), (0, 0), (0, 0)))
 
@@ -88,6 +111,8 @@ def simulate_records(model, schedule, forces, runs, kinds):
 
 
 def _led(schedule):
-    """Return (Schedule, steps): with as long a start-up as the output filter looks back, so that it sees a structure that does not rest at zero at rest."""
+    """Return (Schedule, steps): with as long a start-up as the output filter looks back, so that it
+    sees a structure that does not rest at zero at rest.
+    """
     ticks = schedule.filter.delay + SLOTS
     return replace(schedule, start_up=ticks * RATIO / schedule.steps_per_second), ticks * RATIO

@@ -1,8 +1,11 @@
-"""Which effects that are not linear may be what the lowest record took for a linear one: those at places where a spring and a dashpot would do as much.
+"""Which effects that are not linear may be what the lowest record took for a linear one: those at
+places where a spring and a dashpot would do as much.
 
-A record that shows the modes of a linear structure sees of an effect at a point, whatever its law, the stiffness and damping that are equivalent to it at
-that load (statistical linearisation: J.B. Roberts, P.D. Spanos, Random Vibration and Statistical Linearization, Wiley, 1990, chapter 4). What no spring and
-dashpot at a point explain, no effect there does: it is not simulated in the place of what was adopted.
+A record that shows the modes of a linear structure sees of an effect at a point, whatever its law,
+the stiffness and damping that are equivalent to it at that load (statistical linearisation: J.B.
+Roberts, P.D. Spanos, Random Vibration and Statistical Linearization, Wiley, 1990, chapter 4). What
+no spring and dashpot at a point explain, no effect there does: it is not simulated in the place of
+what was adopted.
 """
 
 from dataclasses import replace
@@ -10,61 +13,102 @@ from dataclasses import replace
 import numpy as np
 from scipy import optimize
 
-from vibroimpact.config import check_config
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.linear_fit import LinearChanges
-from vibroimpact.discrepancy.linearised import linearised
+from vibroimpact.config.reading import check_config
 from vibroimpact.effects import places
 
+from . import nuisance as linear
+from .attach import attach
+from .linear_fit import LinearChanges
+from .linearised import linearised
+
 LEAST_SHARE = 0.5  # of the gain of what was adopted: at right places it is all of it
-SMALL = 0.01  # of the tube's own stiffness: below it a spring is searched linearly, above it in its logarithm
-GRID = np.linspace(-5.0, 9.0, 15), (-9.0, -5.0, -2.0)  # arsinh of the stiffness, ln of the damping, in units of the small one's
+# of the tube's own stiffness: below it a spring is searched linearly, above it in its logarithm
+SMALL = 0.01
+GRID = (
+    np.linspace(-5.0, 9.0, 15),
+    (
+        -9.0,
+        -5.0,
+        -2.0,
+    ),
+)  # arsinh of the stiffness, ln of the damping, in units of the small one's
 SEARCHED = 80  # evaluations at most, from the best point of the grid
 
 
 def in_place(bench, candidates, gain, stiffness):
-    """Return the names of Candidates that may stand in the place of the linear effect that a Workbench's lowest record told, with so much gain.
+    """Return the names of Candidates that may stand in the place of the linear effect that a
+    Workbench's lowest record told, with so much gain.
 
-    bench: of the bare model, with the measured fit of its modes; stiffness: scale in N/m. Of an effect that is screened at some of its places each stands for
-    those nearest to it; one that acts all along the structure may always stand there.
+    bench: of the bare model, with the measured fit of its modes; stiffness: scale in N/m. Of an
+    effect that is screened at some of its places each stands for those nearest to it; one that acts
+    all along the structure may always stand there.
     """
     acting = [candidate for candidate in candidates if candidate.effect.below_contact]
-    at = {name: np.array(bench.values["points"][name]) for name in places.masses_and_springs(bench.values)}
+    at = {
+        name: np.array(bench.values["points"][name])
+        for name in places.masses_and_springs(bench.values)
+    }
     if not any(candidate.location in at for candidate in acting):
         return [candidate.name for candidate in acting]
     changes = LinearChanges(bench)
-    enough = [name for name in at if gain_of_spring(bench, changes, name, stiffness) > LEAST_SHARE * gain]
+    enough = [
+        name for name in at if gain_of_spring(bench, changes, name, stiffness) > LEAST_SHARE * gain
+    ]
     kept = []
     for candidate in acting:
         own = [other.location for other in acting if other.effect_id == candidate.effect_id]
-        if candidate.location not in at or candidate.location in {min(own, key=lambda place, name=name: np.linalg.norm(at[place] - at[name])) for name in enough}:
+        if candidate.location not in at or candidate.location in {
+            min(own, key=lambda place, name=name: np.linalg.norm(at[place] - at[name]))
+            for name in enough
+        }:
             kept.append(candidate.name)
     return kept
 
 
 def gain_of_spring(bench, changes, place, stiffness):
-    """Return the gain in log likelihood of the lowest record by the best spring, stiffening or softening, and dashpot between a named point and the ground.
+    """Return the gain in log likelihood of the lowest record by the best spring, stiffening or
+    softening, and dashpot between a named point and the ground.
 
     changes: LinearChanges of the Workbench; stiffness: scale in N/m.
     """
-    element = places.with_element(changes.values, "equivalent", place, places.across(changes.values, place), stiffness_N_per_m=1.0)
+    element = places.with_element(
+        changes.values,
+        "equivalent",
+        place,
+        places.across(changes.values, place),
+        stiffness_N_per_m=1.0,
+    )
     model = attach(check_config(element, "variant of the model"), bench.campaign)
     damping = SMALL * stiffness / model.omega[model.omega > 0.0][0]
     start = linear.reading_of_model(bench.bare, changes.modes)
     bare = linear.likelihood(bench.measured_reading, start, bench.measured_fit.covariance)[0]
 
     def loss(unit):
-        laws = replace(model.local_laws, stiffness=_last(model.local_laws.stiffness, SMALL * stiffness * np.sinh(unit[0])),
-                       damping=_last(model.local_laws.damping, damping * np.exp(unit[1])))  # fmt: skip
+        laws = replace(
+            model.local_laws,
+            stiffness=_last(model.local_laws.stiffness, SMALL * stiffness * np.sinh(unit[0])),
+            damping=_last(model.local_laws.damping, damping * np.exp(unit[1])),
+        )
         changed = linearised(replace(model, local_laws=laws))
         if np.sum(changed.omega > 0.0) < np.sum(model.omega > 0.0):
             return np.inf  # softened until it does not stand
         reading = changes.reading_of(changed)
-        return bare - linear.likelihood(bench.measured_reading, reading, bench.measured_fit.covariance, start)[0]
+        return (
+            bare
+            - linear.likelihood(
+                bench.measured_reading, reading, bench.measured_fit.covariance, start
+            )[0]
+        )
 
     best = min(((first, second) for first in GRID[0] for second in GRID[1]), key=loss)
-    return -float(optimize.minimize(loss, best, method="Nelder-Mead", options={"xatol": 0.01, "fatol": 0.3, "maxfev": SEARCHED}).fun)
+    return -float(
+        optimize.minimize(
+            loss,
+            best,
+            method="Nelder-Mead",
+            options={"xatol": 0.01, "fatol": 0.3, "maxfev": SEARCHED},
+        ).fun
+    )
 
 
 def _last(values, value):

@@ -2,16 +2,21 @@
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
+from . import priors
 
 PARITY_Z, MIRROR_Z, SCALING_DB = 3.5, 4.0, 1.0
 
 
 def broken_invariances(bench, null, prepared, power=False):
-    """Return [T1, ...]: the tests that fail beyond the seeds' scatter. T1 linearity below contact, T2 scaling, T3 parity, T4 mirror, T5 power balance
-    (power: see power_balance.broken), T6 stationarity."""
+    """Return [T1, ...]: the tests that fail beyond the seeds' scatter. T1 linearity below contact,
+    T2 scaling, T3 parity, T4 mirror, T5 power balance (power: see power_balance.broken), T6
+    stationarity.
+    """
     layout, measured = bench.layout, bench.measured_features[null.records]
-    spread = np.sqrt(null.seed_variance * (1.0 + 1.0 / null.seeds) + np.array([priors.FEATURE_SD[kind] for kind in layout.kind]) ** 2)
+    spread = np.sqrt(
+        null.seed_variance * (1.0 + 1.0 / null.seeds)
+        + np.array([priors.FEATURE_SD[kind] for kind in layout.kind]) ** 2
+    )
     z = (measured - null.mean) / spread
     out = []
     if prepared.adopted is not None or prepared.nonlinear_low:
@@ -30,13 +35,23 @@ def broken_invariances(bench, null, prepared, power=False):
 
 
 def _scaling(bench, null, measured):
-    """Return the RMS in dB by which D differs between records of one load and different gaps: q/gap no longer depends on F/gap alone."""
+    """Return the RMS in dB by which D differs between records of one load and different gaps: q/gap
+    no longer depends on F/gap alone.
+    """
     difference = bench.layout.power(measured - null.mean)
     load, gap = np.round(bench.signals.load[null.records], 3), bench.signals.gap[null.records]
     worst = 0.0
     for one in range(len(load)):
         for other in range(one + 1, len(load)):
-            if abs(load[one] / load[other] - 1.0) < 0.05 and abs(gap[one] / gap[other] - 1.0) > 0.05:
-                own = np.mean(null.seed_variance[[one, other]].sum(axis=0)[bench.layout.kind == "power"])
-                worst = max(worst, np.sqrt(max(0.0, np.mean((difference[one] - difference[other]) ** 2) - own)))
+            if (
+                abs(load[one] / load[other] - 1.0) < 0.05
+                and abs(gap[one] / gap[other] - 1.0) > 0.05
+            ):
+                own = np.mean(
+                    null.seed_variance[[one, other]].sum(axis=0)[bench.layout.kind == "power"]
+                )
+                worst = max(
+                    worst,
+                    np.sqrt(max(0.0, np.mean((difference[one] - difference[other]) ** 2) - own)),
+                )
     return float(worst)

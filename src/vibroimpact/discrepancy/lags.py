@@ -11,15 +11,19 @@ DEAF = 0.3  # share of a channel that no mode explains: above it the channel has
 
 
 def lags(found, model):
-    """Return (channel,) s: by how much each channel lags, from the phases of its participations in a fit that leaves them free.
+    """Return (channel,) s: by how much each channel lags, from the phases of its participations in
+    a fit that leaves them free.
 
-    Modes damped in proportion move in phase or against it, as the model says; what turns with the frequency is a delay, the same for all modes.
+    Modes damped in proportion move in phase or against it, as the model says; what turns with the
+    frequency is a delay, the same for all modes.
     """
     frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
     driven = driven_modes(model, found.modes)
     out = np.zeros(len(found.participation))
-    for channel, (shape, own) in enumerate(zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)):
+    for channel, (shape, own) in enumerate(
+        zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)
+    ):
         weight = np.where(driven & (np.abs(own) > 0.05 * np.abs(own).max()), 1.0, 0.0)
         if found.share[channel] > DEAF or not weight.any():
             continue  # a channel of noise, or of motion of which the model does not tell the sense
@@ -28,19 +32,25 @@ def lags(found, model):
         best = tried[np.argmax(match - 1.0e-3 * np.abs(tried) / LONGEST_LAG_S)]
         for _ in range(5):
             turned = unit * np.exp(2j * np.pi * frequency * best)
-            best -= np.sum(frequency * turned.imag) / max(2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300)
+            best -= np.sum(frequency * turned.imag) / max(
+                2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300
+            )
         out[channel] = best
     return out
 
 
 def from_phases(lines, noise):
-    """Return (channel,) s: by how much each channel lags, 0 where that can not be told, from the lines of a record (ModalLines) alone; noise (channel,) RMS in the band.
+    """Return (channel,) s: by how much each channel lags, 0 where that can not be told, from the
+    lines of a record (ModalLines) alone; noise (channel,) RMS in the band.
 
-    Modes damped in proportion answer in phase or against it away from their resonances, so that twice the phase per force is zero on most lines.
+    Modes damped in proportion answer in phase or against it away from their resonances, so that
+    twice the phase per force is zero on most lines.
     """
     record = lines.record
     force = record.short_spectra(record.spectrum[:1])[0]
-    driven = np.abs(force) > EXCITED * np.abs(force).max()  # of periodic forces most lines are empty
+    driven = (
+        np.abs(force) > EXCITED * np.abs(force).max()
+    )  # of periodic forces most lines are empty
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / record.frequency[-1])
     out = np.zeros(len(lines.measured))
     for channel, own in enumerate(lines.measured):
@@ -48,7 +58,13 @@ def from_phases(lines, noise):
         if heard.sum() < FEWEST:
             continue
         squared = (own[heard] / force[heard]) ** 2
-        score = np.real((squared / np.abs(squared)) @ np.exp(4j * np.pi * np.outer(record.frequency[heard], tried))) / heard.sum()
+        score = (
+            np.real(
+                (squared / np.abs(squared))
+                @ np.exp(4j * np.pi * np.outer(record.frequency[heard], tried))
+            )
+            / heard.sum()
+        )
         if score.max() > REAL_ENOUGH and abs(tried[np.argmax(score)]) > SEEN_S:
             out[channel] = tried[np.argmax(score)]
     return out
@@ -56,4 +72,6 @@ def from_phases(lines, noise):
 
 def driven_modes(model, modes):
     """Return (mode,) bool: whether a force drives these modes of a model."""
-    return np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()
+    return (
+        np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()
+    )

@@ -1,15 +1,18 @@
-"""Linear effects fitted to the lowest record with the model itself: what a change of the configuration does to its modes, and the best parameters."""
+"""Linear effects fitted to the lowest record with the model itself: what a change of the
+configuration does to its modes, and the best parameters.
+"""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg, optimize
 
-from vibroimpact.config import ConfigError, check_config
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.linearised import linearised, matched, same_modes
+from vibroimpact.config.reading import ConfigError, check_config
+
+from . import nuisance as linear
+from . import priors
+from .attach import attach
+from .linearised import linearised, matched, same_modes
 
 COARSE_MESH = {"elements_per_span": 8, "elements_per_bend": 32}
 REACH = 6.0  # the reduced basis for readings reaches to so many times the excited band
@@ -22,7 +25,9 @@ ANCHORED = 2  # times: once moves the parameters by percents, twice by less than
 
 @dataclass(frozen=True)
 class LinearResult:
-    """The best of a candidate: unit (parameter,) normalised; gain of log likelihood over the bare model; interval (parameter, 2) of 90 %, normalised."""
+    """The best of a candidate: unit (parameter,) normalised; gain of log likelihood over the bare
+    model; interval (parameter, 2) of 90 %, normalised.
+    """
 
     candidate: object
     unit: np.ndarray
@@ -31,73 +36,134 @@ class LinearResult:
 
 
 class LinearChanges:
-    """What a change of the configuration does to the readings of the modes that a Workbench's lowest record shows, by a reduced basis."""
+    """What a change of the configuration does to the readings of the modes that a Workbench's
+    lowest record shows, by a reduced basis.
+    """
 
     def __init__(self, bench):
         config = coarse(bench.config, REACH * bench.signals.band_Hz[1])
-        self.campaign, self.modes, self.there, self.given = bench.campaign, bench.measured_fit.modes, bench.bare, bench.values
+        self.campaign, self.modes, self.there, self.given = (
+            bench.campaign,
+            bench.measured_fit.modes,
+            bench.bare,
+            bench.values,
+        )
         self.bare, self.values = attach(config, bench.campaign), config.model_dump(mode="json")
         self.measured = bench.measured_reading
-        self.reference = linear.reading_of_model(self.bare, same_modes(self.bare, self.modes, bench.bare))
+        self.reference = linear.reading_of_model(
+            self.bare, same_modes(self.bare, self.modes, bench.bare)
+        )
         self.full = linear.reading_of_model(bench.bare, self.modes)
 
     def _here(self, mode):
-        """Return the index that a mode of the full model has in the reduced basis: near pairs may change places."""
+        """Return the index that a mode of the full model has in the reduced basis: near pairs may
+        change places.
+        """
         return int(same_modes(self.bare, [mode], self.there)[0])
 
     def model(self, candidate, physical):
-        """Return the linear ModalModel, of the reduced basis, with a Candidate or Pair at its parameters in SI."""
-        return linearised(attach(check_config(candidate.renumbered(self._here).variant(self.values, physical), "variant of the model"), self.campaign))
+        """Return the linear ModalModel, of the reduced basis, with a Candidate or Pair at its
+        parameters in SI.
+        """
+        return linearised(
+            attach(
+                check_config(
+                    candidate.renumbered(self._here).variant(self.values, physical),
+                    "variant of the model",
+                ),
+                self.campaign,
+            )
+        )
 
     def reading(self, candidate, physical):
-        """Return the Reading of the model with a Candidate or Pair at its parameters in SI: of the modes most like those that were measured."""
+        """Return the Reading of the model with a Candidate or Pair at its parameters in SI: of the
+        modes most like those that were measured.
+        """
         return self.reading_of(self.model(candidate, physical))
 
     def reading_of(self, model):
-        """Return the Reading of a linear ModalModel of the reduced basis, which serves the change alone."""
+        """Return the Reading of a linear ModalModel of the reduced basis, which serves the change
+        alone.
+        """
         return moved(self.full, self._of(model), self.reference)
 
     def whole_reading(self, candidate, physical):
         """Return the same of the model without the reduction."""
-        return self._of(linearised(attach(check_config(candidate.variant(self.given, physical), "variant of the model"), self.campaign)))
+        return self._of(
+            linearised(
+                attach(
+                    check_config(candidate.variant(self.given, physical), "variant of the model"),
+                    self.campaign,
+                )
+            )
+        )
 
     def _of(self, model):
-        return linear.reading_of_model(model, matched(model, self.measured.log_frequency, self.measured.participation))
+        return linear.reading_of_model(
+            model, matched(model, self.measured.log_frequency, self.measured.participation)
+        )
 
 
 def moved(reading, found, reference):
     """Return a Reading changed by what another one differs from a reference."""
-    return replace(reading, log_frequency=reading.log_frequency + found.log_frequency - reference.log_frequency,
-                   log_damping=reading.log_damping + found.log_damping - reference.log_damping,
-                   participation=reading.participation + found.participation - reference.participation)  # fmt: skip
+    return replace(
+        reading,
+        log_frequency=reading.log_frequency + found.log_frequency - reference.log_frequency,
+        log_damping=reading.log_damping + found.log_damping - reference.log_damping,
+        participation=reading.participation + found.participation - reference.participation,
+    )
 
 
 def coarse(config, highest_Hz):
-    """Return the configuration with a coarse mesh and free modes alone, to a frequency in Hz: for changes of modes, not for modes."""
-    basis = config.basis.model_copy(update={"free_modes_to_Hz": highest_Hz, "constrained_modes_to_Hz": 1.0, "attachment_shapes": False})
+    """Return the configuration with a coarse mesh and free modes alone, to a frequency in Hz: for
+    changes of modes, not for modes.
+    """
+    basis = config.basis.model_copy(
+        update={
+            "free_modes_to_Hz": highest_Hz,
+            "constrained_modes_to_Hz": 1.0,
+            "attachment_shapes": False,
+        }
+    )
     structure = config.structure
     if hasattr(structure, "mesh"):
-        structure = structure.model_copy(update={"mesh": structure.mesh.model_copy(update=COARSE_MESH)})
+        structure = structure.model_copy(
+            update={"mesh": structure.mesh.model_copy(update=COARSE_MESH)}
+        )
     return config.model_copy(update={"basis": basis, "structure": structure})
 
 
 def fitted(bench, changes, candidate, unit, scales):
-    """Return the LinearResult of a Candidate or Pair from normalised parameters (parameter,) on, by Gauss-Newton with the model itself; None where it
-    can not be built. Intervals are of each parameter with the others free."""
+    """Return the LinearResult of a Candidate or Pair from normalised parameters (parameter,) on, by
+    Gauss-Newton with the model itself; None where it can not be built. Intervals are of each
+    parameter with the others free.
+    """
     measured, error = bench.measured_reading, bench.measured_fit.covariance
     bare = linear.likelihood(measured, linear.reading_of_model(bench.bare, changes.modes), error)[0]
 
     def reading(unit, anchor):
         physical = candidate.physical(unit, scales)
-        return linear.gained(moved(anchor[0], changes.reading(candidate, physical), anchor[1]), candidate.measuring(physical, bench.signals.names))
+        return linear.gained(
+            moved(anchor[0], changes.reading(candidate, physical), anchor[1]),
+            candidate.measuring(physical, bench.signals.names),
+        )
 
     try:
         unit, anchor = np.array(unit, float), (changes.full, changes.full)
-        for _ in range(ANCHORED):  # the change from the bare model, then from the model with the effect itself: the reduced basis is 1 to 3 % off in shapes that change much
-            unit, best, slopes = _descended(lambda at, anchor=anchor: reading(at, anchor), unit, measured, error, changes.full)
+        # the change from the bare model, then from the model with the effect itself: the reduced
+        # basis is 1 to 3 % off in shapes that change much
+        for _ in range(ANCHORED):
+            unit, best, slopes = _descended(
+                lambda at, anchor=anchor: reading(at, anchor), unit, measured, error, changes.full
+            )
             physical = candidate.physical(unit, scales)
-            anchor = changes.whole_reading(candidate, physical), changes.reading(candidate, physical)
-        unit, best, slopes = _descended(lambda at: reading(at, anchor), unit, measured, error, changes.full)
+            anchor = (
+                changes.whole_reading(candidate, physical),
+                changes.reading(candidate, physical),
+            )
+        unit, best, slopes = _descended(
+            lambda at: reading(at, anchor), unit, measured, error, changes.full
+        )
     except (ConfigError, linalg.LinAlgError):
         return None
     left = max(1.0, best[1] / best[2])  # what the effects do not explain widens their intervals
@@ -107,8 +173,9 @@ def fitted(bench, changes, candidate, unit, scales):
 
 
 def _descended(reading, unit, measured, error, bare):
-    """Return (unit (parameter,), (score, chi-square, number of values), slopes (value, parameter)) where Gauss-Newton from unit on ends; reading(unit) -> Reading;
-    bare: that without effects."""
+    """Return (unit (parameter,), (score, chi-square, number of values), slopes (value, parameter))
+    where Gauss-Newton from unit on ends; reading(unit) -> Reading; bare: that without effects.
+    """
     best, shorter, new = None, 1.0, unit
     for _ in range(TURNS):
         simulated = reading(new)
@@ -116,11 +183,22 @@ def _descended(reading, unit, measured, error, bare):
         if best is not None and score < best[0]:
             shorter *= 0.4
         else:
-            values, covariance, sensitivity = linear.difference(measured, simulated, error, bare=bare)
+            values, covariance, sensitivity = linear.difference(
+                measured, simulated, error, bare=bare
+            )
             factor = linalg.cholesky(covariance + sensitivity @ sensitivity.T, lower=True)
             best, unit, shorter = (score, chi_square, len(values)), new, 1.0
-            slopes = np.array([_slope(reading, unit, number, simulated, measured, error, factor) for number in range(len(unit))]).T
-            step = optimize.lsq_linear(slopes, -linalg.solve_triangular(factor, values, lower=True), (-unit - 1.0e-12, 1.0 - unit + 1.0e-12)).x
+            slopes = np.array(
+                [
+                    _slope(reading, unit, number, simulated, measured, error, factor)
+                    for number in range(len(unit))
+                ]
+            ).T
+            step = optimize.lsq_linear(
+                slopes,
+                -linalg.solve_triangular(factor, values, lower=True),
+                (-unit - 1.0e-12, 1.0 - unit + 1.0e-12),
+            ).x
         taken = step * shorter * min(1.0, FARTHEST / max(np.abs(step).max(), 1.0e-12))
         new = np.clip(unit + taken, 0.0, 1.0)
         if np.abs(taken).max() < SETTLED:
@@ -134,5 +212,7 @@ def _slope(reading, unit, number, simulated, measured, error, factor):
     there = np.array(unit)
     there[number] += side
     seen = linear.seen_by(measured, simulated)  # the same on both sides
-    one, other = (linear.difference(measured, row, error, seen)[0] for row in (simulated, reading(there)))
+    one, other = (
+        linear.difference(measured, row, error, seen)[0] for row in (simulated, reading(there))
+    )
     return linalg.solve_triangular(factor, (other - one) / side, lower=True)

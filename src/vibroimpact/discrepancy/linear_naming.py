@@ -1,4 +1,6 @@
-"""Linear effects against the lowest record: each candidate's readings on a grid of its parameters, and the most probable parameters between."""
+"""Linear effects against the lowest record: each candidate's readings on a grid of its parameters,
+and the most probable parameters between.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -7,19 +9,24 @@ import numpy as np
 from scipy import optimize
 from scipy.interpolate import RegularGridInterpolator
 
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.candidates import unit_grid
-from vibroimpact.discrepancy.linear_fit import LinearResult
-from vibroimpact.discrepancy.screening import NINETY
+from . import nuisance as linear
+from .candidates import unit_grid
+from .linear_fit import LinearResult
+from .screening import NINETY
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
-NUISANCES = ("mode_frequency_error", "modal_damping")  # logarithms of readings are straight in their normalised parameters
+NUISANCES = (
+    "mode_frequency_error",
+    "modal_damping",
+)  # logarithms of readings are straight in their normalised parameters
 STRAIGHT = 3
 
 
 @dataclass(frozen=True)
 class LinearTable:
-    """Readings of a candidate on a grid: axes of each parameter normalised from 0 to 1; values (..., reading) over the grid, of modes (mode,) and channels."""
+    """Readings of a candidate on a grid: axes of each parameter normalised from 0 to 1; values
+    (..., reading) over the grid, of modes (mode,) and channels.
+    """
 
     axes: tuple
     values: np.ndarray
@@ -28,34 +35,60 @@ class LinearTable:
 
     def serves(self, bench):
         """Return whether the readings are of the modes and channels of a Workbench."""
-        return np.array_equal(self.modes, bench.measured_fit.modes) and self.channels == tuple(bench.signals.names)
+        return np.array_equal(self.modes, bench.measured_fit.modes) and self.channels == tuple(
+            bench.signals.names
+        )
 
     @cached_property
     def _interpolator(self):
-        return RegularGridInterpolator(self.axes, self.values, method="cubic" if min(len(axis) for axis in self.axes) > 3 else "linear")
+        return RegularGridInterpolator(
+            self.axes,
+            self.values,
+            method="cubic" if min(len(axis) for axis in self.axes) > 3 else "linear",
+        )
 
     def reading(self, unit):
         """Return the Reading at normalised parameters (parameter,)."""
         row = self._interpolator(np.clip(unit, 0.0, 1.0)[None])[0]
         count = len(self.modes)
-        return linear.Reading(self.modes, row[:count], row[count : 2 * count], row[2 * count :].reshape(-1, count), None)
+        return linear.Reading(
+            self.modes,
+            row[:count],
+            row[count : 2 * count],
+            row[2 * count :].reshape(-1, count),
+            None,
+        )
 
 
 def table_of(bench, candidate, scales, changes):
-    """Return the LinearTable of a linear effect of the model, modes as the measured fit has them; changes: LinearChanges of the Workbench."""
-    count = STRAIGHT if candidate.effect_id in NUISANCES else POINTS[len(candidate.effect.parameters)]
+    """Return the LinearTable of a linear effect of the model, modes as the measured fit has them;
+    changes: LinearChanges of the Workbench.
+    """
+    count = (
+        STRAIGHT if candidate.effect_id in NUISANCES else POINTS[len(candidate.effect.parameters)]
+    )
     axes, rows = (np.linspace(0.0, 1.0, count),) * len(candidate.effect.parameters), []
     for unit in unit_grid(len(axes), count):
         found = changes.reading(candidate, candidate.physical(unit, scales))
-        rows.append(np.concatenate([found.log_frequency, found.log_damping, found.participation.ravel()]))
-    return LinearTable(axes, np.array(rows).reshape(*[count] * len(axes), -1), changes.modes, tuple(bench.signals.names))
+        rows.append(
+            np.concatenate([found.log_frequency, found.log_damping, found.participation.ravel()])
+        )
+    return LinearTable(
+        axes,
+        np.array(rows).reshape(*[count] * len(axes), -1),
+        changes.modes,
+        tuple(bench.signals.names),
+    )
 
 
 def reading_under(bench, candidate, unit, scales, table):
     """Return the Reading under a linear candidate at normalised parameters."""
     if not candidate.effect.measured:
         return replace(table.reading(unit), residual=np.ones(len(bench.signals.names)))
-    return linear.gained(linear.reading_of_model(bench.bare, bench.measured_fit.modes), candidate.measuring(candidate.physical(unit, scales), bench.signals.names))
+    return linear.gained(
+        linear.reading_of_model(bench.bare, bench.measured_fit.modes),
+        candidate.measuring(candidate.physical(unit, scales), bench.signals.names),
+    )
 
 
 def calibrate(bench, candidate, scales, table=None):
@@ -67,29 +100,55 @@ def calibrate(bench, candidate, scales, table=None):
     def loss(unit):
         outside = np.sum(np.maximum(np.abs(np.asarray(unit) - 0.5) - 0.5, 0.0))
         reading = reading_under(bench, candidate, np.clip(unit, 0.0, 1.0), scales, table)
-        return bare - linear.likelihood(measured, reading, fit.covariance, start)[0] + 1.0e3 * outside
+        return (
+            bare - linear.likelihood(measured, reading, fit.covariance, start)[0] + 1.0e3 * outside
+        )
 
     count = len(candidate.effect.parameters)
     starts = unit_grid(count, {1: 61, 2: 15, 3: 7}[count])
     losses = np.array([loss(unit) for unit in starts])
-    found = optimize.minimize(loss, starts[np.argmin(losses)], method="Nelder-Mead", options={"xatol": 1.0e-4, "fatol": 1.0e-3, "maxiter": 200,
-                              "initial_simplex": starts[np.argmin(losses)] + 0.05 * np.vstack([np.zeros(count), np.eye(count)])})  # fmt: skip
+    found = optimize.minimize(
+        loss,
+        starts[np.argmin(losses)],
+        method="Nelder-Mead",
+        options={
+            "xatol": 1.0e-4,
+            "fatol": 1.0e-3,
+            "maxiter": 200,
+            "initial_simplex": (
+                starts[np.argmin(losses)] + 0.05 * np.vstack([np.zeros(count), np.eye(count)])
+            ),
+        },
+    )
     unit = np.clip(found.x, 0.0, 1.0)
-    chi_square = linear.likelihood(measured, reading_under(bench, candidate, unit, scales, table), fit.covariance, start)[1]
-    left = max(1.0, chi_square / (2 * len(fit.modes) + fit.participation.size))  # what the effect does not explain widens its interval
-    return LinearResult(candidate, unit, -float(found.fun), interval_of(loss, found.x, found.fun, NINETY * left))
+    chi_square = linear.likelihood(
+        measured, reading_under(bench, candidate, unit, scales, table), fit.covariance, start
+    )[1]
+    left = max(
+        1.0, chi_square / (2 * len(fit.modes) + fit.participation.size)
+    )  # what the effect does not explain widens its interval
+    return LinearResult(
+        candidate, unit, -float(found.fun), interval_of(loss, found.x, found.fun, NINETY * left)
+    )
 
 
 def interval_of(loss, best, least, rise):
-    """Return (parameter, 2): where the loss has risen by `rise` along each parameter, the others held; a bound where it never does."""
+    """Return (parameter, 2): where the loss has risen by `rise` along each parameter, the others
+    held; a bound where it never does.
+    """
     out = np.zeros((len(best), 2))
     for number in range(len(best)):
         for side, end in ((0, 0.0), (1, 1.0)):
+
             def along(value, number=number):
                 moved = np.array(best, float)
                 moved[number] = value
                 return loss(moved) - least - rise
 
             inside = float(np.clip(best[number], 0.0, 1.0))
-            out[number, side] = optimize.brentq(along, inside, end, xtol=1.0e-4) if abs(end - inside) > 1.0e-9 and along(end) > 0.0 > along(inside) else end
+            out[number, side] = (
+                optimize.brentq(along, inside, end, xtol=1.0e-4)
+                if abs(end - inside) > 1.0e-9 and along(end) > 0.0 > along(inside)
+                else end
+            )
     return out

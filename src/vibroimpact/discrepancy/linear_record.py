@@ -10,11 +10,13 @@ RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band'
 class LinearRecord:
     """A force record, ready for linear responses to it.
 
-    force (force_channel, sample) N at rate Hz; band_Hz: lines that are compared; from_rest: False for a record that was under way.
+    force (force_channel, sample) N at rate Hz; band_Hz: lines that are compared; from_rest: False
+    for a record that was under way.
     """
 
     def __init__(self, force, rate, band_Hz, from_rest=True):
-        # responses are needed at a fraction of the rate only: the force holds nothing above the band
+        # responses are needed at a fraction of the rate only: the force holds nothing above the
+        # band
         self.every = max(1, int(rate / (RATE_PER_BAND * band_Hz[1])))
         samples = force.shape[-1] // self.every * self.every
         self.rate, self.samples = rate, samples
@@ -31,20 +33,29 @@ class LinearRecord:
 
     def spectra(self, responses):
         """Return (..., line) complex: the Fourier lines in the band of series (..., sample)."""
-        return fft.rfft(responses[..., self.first : self.samples], axis=-1)[..., self.lines] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
+        return fft.rfft(responses[..., self.first : self.samples], axis=-1)[
+            ..., self.lines
+        ] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
 
     def responses(self, omega, damping, drive_shapes, kinds):
-        """Return (mode, line) complex for modes of omega rad/s, damping = 2 zeta omega 1/s and drive_shapes (mode, force_channel).
+        """Return (mode, line) complex for modes of omega rad/s, damping = 2 zeta omega 1/s and
+        drive_shapes (mode, force_channel).
 
         kinds: acceleration or displacement, of all of them.
         """
-        return self.short_spectra(self._driving(drive_shapes, kinds) / self._stiffness(omega, damping))
+        return self.short_spectra(
+            self._driving(drive_shapes, kinds) / self._stiffness(omega, damping)
+        )
 
     def changes(self, omega, damping, drive_shapes, kinds):
-        """Return (by ln omega, by ln damping ratio) of what responses returns, each (mode, line)."""
+        """Return (by ln omega, by ln damping ratio) of what responses returns, each (mode,
+        line).
+        """
         stiffness, damped = self._stiffness(omega, damping), 1j * damping[:, None] * self.omega
         falling = -self._driving(drive_shapes, kinds) / stiffness**2
-        return self.short_spectra(falling * (2.0 * omega[:, None] ** 2 + damped)), self.short_spectra(falling * damped)
+        return self.short_spectra(
+            falling * (2.0 * omega[:, None] ** 2 + damped)
+        ), self.short_spectra(falling * damped)
 
     def _driving(self, drive_shapes, kinds):
         """Return (mode, line): the modal force, for displacements or accelerations."""
@@ -58,6 +69,12 @@ class LinearRecord:
         return stiffness
 
     def short_spectra(self, lines):
-        """Return (..., line): the lines in the band of responses given by their spectra over the whole length, cut to the record."""
-        series = fft.irfft(lines, self.length // self.every, axis=-1)[..., self.first // self.every : self.samples // self.every]
-        return fft.rfft(series, axis=-1)[..., self.lines] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
+        """Return (..., line): the lines in the band of responses given by their spectra over the
+        whole length, cut to the record.
+        """
+        series = fft.irfft(lines, self.length // self.every, axis=-1)[
+            ..., self.first // self.every : self.samples // self.every
+        ]
+        return fft.rfft(series, axis=-1)[..., self.lines] * np.sqrt(
+            2.0 / (self.samples - self.first) ** 2
+        )

@@ -1,58 +1,96 @@
-"""Every linear effect, and the best two at once, against the lowest record: how much each explains, and whether it may be named."""
+"""Every linear effect, and the best two at once, against the lowest record: how much each explains,
+and whether it may be named.
+"""
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import Candidate, candidate_named, linear_candidates
-from vibroimpact.discrepancy.linear_fit import LinearChanges, fitted
-from vibroimpact.discrepancy.linear_naming import calibrate, table_of
-from vibroimpact.discrepancy.linear_pairs import best_pairs
+from . import priors
+from .candidates import Candidate, candidate_named, linear_candidates
+from .linear_fit import LinearChanges, fitted
+from .linear_naming import calibrate, table_of
+from .linear_pairs import best_pairs
 
-FITTED = 3  # of the best effects are fitted with the model itself: between the points of a table a stinger was read 8 % off
+# of the best effects are fitted with the model itself: between the points of a table a stinger was
+# read 8 % off
+FITTED = 3
 
 
 def linear_rows(bench, sizes, tables, without, begun=()):
-    """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a Workbench, best first; before them two of them at once where
-    one does not suffice. tables are extended; begun: see best_pairs."""
+    """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a
+    Workbench, best first; before them two of them at once where one does not suffice. tables are
+    extended; begun: see best_pairs.
+    """
     found, changes = [], LinearChanges(bench)
-    for candidate in linear_candidates(bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes):
+    for candidate in linear_candidates(
+        bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes
+    ):
         if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
             continue
         known = tables.get(candidate.name)
         if not candidate.effect.measured and not (known and known.serves(bench)):
-            tables[candidate.name] = table_of(bench, candidate, sizes, changes)  # a table is of what a record shows
+            tables[candidate.name] = table_of(
+                bench, candidate, sizes, changes
+            )  # a table is of what a record shows
         found.append(calibrate(bench, candidate, sizes, tables.get(candidate.name)))
     found.sort(key=lambda row: -row.gain)
-    found[:FITTED] = [row if row.candidate.effect.measured else fitted(bench, changes, row.candidate, row.unit, sizes) or row for row in found[:FITTED]]
+    found[:FITTED] = [
+        (
+            row
+            if row.candidate.effect.measured
+            else fitted(bench, changes, row.candidate, row.unit, sizes) or row
+        )
+        for row in found[:FITTED]
+    ]
     rows = sorted(map(plain_row, found), key=lambda row: -row["gain"])
     single = rows[0]
     if nameable(single, sizes):
         for row in map(plain_row, best_pairs(bench, changes, rows, sizes, tables, begun)):
-            if nameable(row, sizes) and row["gain"] > single["gain"] + priors.LINEAR_SECOND + priors.PARAMETER_COST * (len(row["unit"]) - len(single["unit"]) - 1):
+            if nameable(row, sizes) and row["gain"] > single[
+                "gain"
+            ] + priors.LINEAR_SECOND + priors.PARAMETER_COST * (
+                len(row["unit"]) - len(single["unit"]) - 1
+            ):
                 rows.append(row)
     return sorted(rows, key=lambda row: -row["gain"])
 
 
 def plain_row(result):
     """Return {name, unit, gain, interval} of a LinearResult, in plain values."""
-    return {"name": result.candidate.name, "unit": result.unit.tolist(), "gain": result.gain, "interval": result.interval.tolist()}
+    return {
+        "name": result.candidate.name,
+        "unit": result.unit.tolist(),
+        "gain": result.gain,
+        "interval": result.interval.tolist(),
+    }
 
 
 def nameable(row, sizes):
-    """Return whether a linear effect, or two, (a row of linear_rows) explain enough, beyond what their priors allow."""
-    return row["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (len(row["unit"]) - 1) and beyond_prior(row, sizes)
+    """Return whether a linear effect, or two, (a row of linear_rows) explain enough, beyond what
+    their priors allow.
+    """
+    return row["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (
+        len(row["unit"]) - 1
+    ) and beyond_prior(row, sizes)
 
 
 def beyond_prior(row, sizes):
-    """Return whether effects that are also nuisances lie, with their whole interval, outside what their priors allow."""
+    """Return whether effects that are also nuisances lie, with their whole interval, outside what
+    their priors allow.
+    """
     candidate, interval = candidate_named(row["name"]), np.atleast_2d(row["interval"])
     sides = zip(candidate.parts(interval[:, 0]), candidate.parts(interval[:, 1]), strict=True)
     return all(_beyond(part, (low, high), sizes) for (part, low), (_, high) in sides)
 
 
 def _beyond(candidate, ends, sizes):
-    """Return whether a Candidate between two ends (parameter,) is no nuisance or lies outside what its prior allows."""
-    sd = {"mode_frequency_error": priors.FREQUENCY_SD, "modal_damping": priors.DAMPING_SD, "sensor_gain": priors.GAIN_SD}.get(candidate.effect_id)
+    """Return whether a Candidate between two ends (parameter,) is no nuisance or lies outside what
+    its prior allows.
+    """
+    sd = {
+        "mode_frequency_error": priors.FREQUENCY_SD,
+        "modal_damping": priors.DAMPING_SD,
+        "sensor_gain": priors.GAIN_SD,
+    }.get(candidate.effect_id)
     if sd is None:
         return True
     (parameter,) = candidate.effect.parameters
@@ -61,11 +99,17 @@ def _beyond(candidate, ends, sizes):
 
 
 def nearest_linear(rows):
-    """Return the names of the best few of single effects of the model in rows (see linear_rows), one of each id."""
+    """Return the names of the best few of single effects of the model in rows (see linear_rows),
+    one of each id.
+    """
     best = {}
     for row in rows:
         candidate = candidate_named(row["name"])
-        if isinstance(candidate, Candidate) and not candidate.effect.measured and row["gain"] > priors.LINEAR_GAIN:
+        if (
+            isinstance(candidate, Candidate)
+            and not candidate.effect.measured
+            and row["gain"] > priors.LINEAR_GAIN
+        ):
             best.setdefault(candidate.effect_id, row["name"])
     return list(best.values())[:FITTED]
 

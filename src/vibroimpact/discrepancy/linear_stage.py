@@ -1,21 +1,27 @@
-"""Modal parameters of a low-level record: frequencies, damping and participations fitted to its waveform, run from rest to its end.
+"""Modal parameters of a low-level record: frequencies, damping and participations fitted to its
+waveform, run from rest to its end.
 
-The same fit reads the measured and a simulated record, so that what it can not do it does to both: which modes, from where, and by which participations; see
-modal_fit for a fit itself.
+The same fit reads the measured and a simulated record, so that what it can not do it does to both:
+which modes, from where, and by which participations; see modal_fit for a fit itself.
 """
 
 import numpy as np
 
-from vibroimpact.discrepancy.lags import driven_modes, from_phases, lags
-from vibroimpact.discrepancy.modal_fit import LARGEST_LOG_DAMPING, ModalLines
-from vibroimpact.discrepancy.pursuit import assigned, pursued
+from .lags import driven_modes, from_phases, lags
+from .modal_fit import LARGEST_LOG_DAMPING, ModalLines
+from .pursuit import assigned, pursued
 
-MODEL_ERROR = 3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
-LEAK = 2.0e-3  # of the typical line: what the ends of a record and modes far above the band leave in every line
+MODEL_ERROR = (
+    3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
+)
+# of the typical line: what the ends of a record and modes far above the band leave in every line
+LEAK = 2.0e-3
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S = 2.0e-5
-SILENT = 1.0e-4  # of a mode's largest displacement among the channels: below it a channel does not see the mode in the model
+# of a mode's largest displacement among the channels: below it a channel does not see the mode in
+# the model
+SILENT = 1.0e-4
 BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
 AT_ONCE = 32  # modes, so that their lines fit into little memory
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
@@ -24,22 +30,33 @@ LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the 
 def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=True):
     """Return the ModalFit of responses (channel, sample) to the force of a LinearRecord.
 
-    model: ModalModel attached to the campaign; kinds (channel,), all of one kind; noise_rms (channel,) in the band. visible: the modes to fit, as another fit had
-    them; chosen by their predicted share where it is None; search: where the model's frequencies lead nowhere, look for resonances without it. Returns None
-    where no mode is visible.
+    model: ModalModel attached to the campaign; kinds (channel,), all of one kind; noise_rms
+    (channel,) in the band. visible: the modes to fit, as another fit had them; chosen by their
+    predicted share where it is None; search: where the model's frequencies lead nowhere, look for
+    resonances without it. Returns None where no mode is visible.
     """
     found = _fit(record, responses, model, kinds, noise_rms, visible)
     if found is None or visible is not None or not search or left(found, model) < LOST:
         return found
-    return min(found, _fit(record, responses, model, kinds, noise_rms, visible, True), key=lambda fit: left(fit, model))
+    return min(
+        found,
+        _fit(record, responses, model, kinds, noise_rms, visible, True),
+        key=lambda fit: left(fit, model),
+    )
 
 
 def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
-    """Return the ModalFit from the model's frequencies, or from where the resonances are found without it."""
+    """Return the ModalFit from the model's frequencies, or from where the resonances are found
+    without it.
+    """
     kind = "acceleration" if kinds[0] == "acceleration" else "displacement"
     measured = record.spectra(np.asarray(responses, float))
-    near = np.flatnonzero((model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1]))
-    expected = record.responses(model.omega[near], model.damping[near], model.drive_shapes[near], kind)
+    near = np.flatnonzero(
+        (model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1])
+    )
+    expected = record.responses(
+        model.omega[near], model.damping[near], model.drive_shapes[near], kind
+    )
     size = np.sqrt(np.sum(np.abs(expected) ** 2, axis=-1))
     noise = np.maximum(noise_rms, 1.0e-12)
     fixed = visible is not None
@@ -50,35 +67,61 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     if len(visible) == 0:
         return None
     typical = np.sqrt(np.mean(np.abs(measured) ** 2, axis=-1, keepdims=True))
-    weights = 1.0 / np.sqrt(noise[:, None] ** 2 / len(record.lines) + (MODEL_ERROR * _smooth(np.abs(measured))) ** 2 + (LEAK * typical) ** 2 + 1.0e-300)
+    weights = 1.0 / np.sqrt(
+        noise[:, None] ** 2 / len(record.lines)
+        + (MODEL_ERROR * _smooth(np.abs(measured))) ** 2
+        + (LEAK * typical) ** 2
+        + 1.0e-300
+    )
     delay, lag, start = np.zeros(len(measured)), None, np.zeros(len(visible)) if fixed else None
-    for _ in range(3):  # modes that the model does not excite, and delays, are seen once the rest is taken out
+    for _ in range(
+        3
+    ):  # modes that the model does not excite, and delays, are seen once the rest is taken out
         drive = model.drive_shapes[visible].copy()
         drive[~driven_modes(model, visible), 0] = 1.0
         rest = _rest(record, model, visible, kind)
         strict, more = _seen(model, visible, True), _seen(model, visible, False)
 
         def lines_at(delay, rest=rest, visible=visible, drive=drive):
-            return ModalLines(record, _turned_back(measured, record, delay) - rest, weights, model, visible, drive, kind)
+            return ModalLines(
+                record,
+                _turned_back(measured, record, delay) - rest,
+                weights,
+                model,
+                visible,
+                drive,
+                kind,
+            )
 
-        if not fixed and lag is None:  # a late channel would pull the fit of all: first with a phase for every participation
-            start = _elsewhere(record, lines_at(delay).measured, weights, model, visible, kind) if elsewhere else None
+        if (
+            not fixed and lag is None
+        ):  # a late channel would pull the fit of all: first with a phase for every participation
+            start = (
+                _elsewhere(record, lines_at(delay).measured, weights, model, visible, kind)
+                if elsewhere
+                else None
+            )
             lag, start = _lags(lines_at, delay, strict, noise, model, start)
             delay = _told(lag)
         lines = lines_at(delay)
         known = lines.fit(strict, noise, delay, start)
         begun = [(known.log_frequency, known.log_damping)]
         if not fixed or lines.explains_more(known, strict, more):
-            # what breaks a symmetry lets a channel see modes that it does not in the model: looked at from the beginning, and once the modes are where they are
+            # what breaks a symmetry lets a channel see modes that it does not in the model: looked
+            # at from the beginning, and once the modes are where they are
             begun = [start, *begun]
         found = min((lines.fit(more, noise, delay, one) for one in begun), key=_implausible)
         if fixed:
             break
-        nothing = np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING  # modes that the model excites and the record does not hold
+        nothing = (
+            np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING
+        )  # modes that the model excites and the record does not hold
         if nothing.any() and not nothing.all():
             lag, start, visible = None, None, visible[~nothing]
             continue
-        extra = _unexpected(record, _turned_back(measured, record, delay), found, weights, drive, model, near, kind)
+        extra = _unexpected(
+            record, _turned_back(measured, record, delay), found, weights, drive, model, near, kind
+        )
         if not len(extra):
             break
         lag, start, visible = None, None, np.sort(np.concatenate([visible, extra]))
@@ -91,10 +134,12 @@ def _turned_back(measured, record, delay):
 
 
 def _lags(lines_at, delay, seen, noise, model, start):
-    """Return ((channel,) s by which channels lag, ln frequency (fitted,)) of a fit with a phase for every participation; lines_at(delay) -> ModalLines with channels
-    turned back; delay: what is known so far, and is returned where the fit leads nowhere.
+    """Return ((channel,) s by which channels lag, ln frequency (fitted,)) of a fit with a phase for
+    every participation; lines_at(delay) -> ModalLines with channels turned back; delay: what is
+    known so far, and is returned where the fit leads nowhere.
 
-    Between its resonances no phase of each mode stands for milliseconds: a channel so late spoils the fit, and is turned back by what its lines tell first.
+    Between its resonances no phase of each mode stands for milliseconds: a channel so late spoils
+    the fit, and is turned back by what its lines tell first.
     """
     first = free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
     if left(free, model) >= LOST:
@@ -112,14 +157,20 @@ def _told(lag):
 
 
 def _elsewhere(record, measured, weights, model, visible, kind):
-    """Return (visible,) ln of the frequencies at which the record has its strongest resonances over those of the model."""
+    """Return (visible,) ln of the frequencies at which the record has its strongest resonances over
+    those of the model.
+    """
     zeta = np.median(model.damping[visible] / (2.0 * model.omega[visible]))
     return assigned(*pursued(record, measured, weights, len(visible), zeta, kind), model, visible)
 
 
 def left(found, model):
-    """Return the largest residual over noise of a ModalFit among the channels that the force drives in the model."""
-    driven = np.abs(model.sensor_shapes[found.modes].T) @ np.abs(model.drive_shapes[found.modes]).max(axis=1)
+    """Return the largest residual over noise of a ModalFit among the channels that the force drives
+    in the model.
+    """
+    driven = np.abs(model.sensor_shapes[found.modes].T) @ np.abs(
+        model.drive_shapes[found.modes]
+    ).max(axis=1)
     return found.residual[driven > 1.0e-3 * driven.max()].max()
 
 
@@ -131,12 +182,15 @@ def _fitted(record, found, drive, model, kind):
 
 
 def _implausible(found):
-    """Return what a ModalFit leaves, and how far its damping is from the model's: a mode fitted to nothing ends at a limit."""
+    """Return what a ModalFit leaves, and how far its damping is from the model's: a mode fitted to
+    nothing ends at a limit.
+    """
     return np.sum(found.residual**2) + np.sum((found.log_damping / LARGEST_LOG_DAMPING) ** 2)
 
 
 def _seen(model, modes, strict):
-    """Return (channel, mode) bool: whether a channel may see a mode: where it does in the model; if not strict, also where no mode beside it is seen there.
+    """Return (channel, mode) bool: whether a channel may see a mode: where it does in the model; if
+    not strict, also where no mode beside it is seen there.
 
     Of two modes side by side, one along and one across, a channel would take any mixture.
     """
@@ -148,14 +202,22 @@ def _seen(model, modes, strict):
 
 def _unexpected(record, measured, found, weights, drive, model, near, kind):
     """Return the modes that the model does not excite visibly but the record holds."""
-    residual = measured - _fitted(record, found, drive, model, kind) - _rest(record, model, found.modes, kind)
+    residual = (
+        measured
+        - _fitted(record, found, drive, model, kind)
+        - _rest(record, model, found.modes, kind)
+    )
     extra = []
     for mode in np.setdiff1d(near, found.modes):
         if model.omega[mode] > 2.0 * np.pi * record.frequency[-1]:
             continue
-        basis = record.responses(model.omega[[mode]], model.damping[[mode]], np.eye(1, model.drive_shapes.shape[1]), kind)[0]
+        basis = record.responses(
+            model.omega[[mode]], model.damping[[mode]], np.eye(1, model.drive_shapes.shape[1]), kind
+        )[0]
         gain = 0.0
-        for channel in np.flatnonzero(np.abs(model.sensor_shapes[mode]) > 1.0e-6 * np.abs(model.sensor_shapes).max()):
+        for channel in np.flatnonzero(
+            np.abs(model.sensor_shapes[mode]) > 1.0e-6 * np.abs(model.sensor_shapes).max()
+        ):
             y, b = weights[channel] * residual[channel], weights[channel] * basis
             gain += np.vdot(b, y).real ** 2 / np.vdot(b, b).real
         if gain > UNEXPECTED and not _covered(model, mode, found):
@@ -164,7 +226,9 @@ def _unexpected(record, measured, found, weights, drive, model, near, kind):
 
 
 def _covered(model, mode, found):
-    """True where the fitted modes have the shape and place of another one: its remainder is theirs."""
+    """True where the fitted modes have the shape and place of another one: its remainder is
+    theirs.
+    """
     shape = model.sensor_shapes[mode]
     for other in found.modes:
         against = model.sensor_shapes[other]
@@ -175,15 +239,21 @@ def _covered(model, mode, found):
 
 
 def _rest(record, model, visible, kind):
-    """Return (channel, line): what the modes that are not fitted add, those far above the band as their static response."""
+    """Return (channel, line): what the modes that are not fitted add, those far above the band as
+    their static response.
+    """
     others = np.setdiff1d(np.flatnonzero(model.omega > 0.0), visible)
     reach = record.omega <= 2.2 * np.pi * record.frequency[-1]
     omega, force = record.omega[reach], record.spectrum[:, reach]
     lines = np.zeros((model.sensor_shapes.shape[1], record.omega.size), complex)
     for first in range(0, len(others), AT_ONCE):
         part = others[first : first + AT_ONCE]
-        transfer = 1.0 / (model.omega[part, None] ** 2 - omega**2 + 1j * model.damping[part, None] * omega)
-        lines[:, reach] += model.sensor_shapes[part].T @ (transfer * (model.drive_shapes[part] @ force))
+        transfer = 1.0 / (
+            model.omega[part, None] ** 2 - omega**2 + 1j * model.damping[part, None] * omega
+        )
+        lines[:, reach] += model.sensor_shapes[part].T @ (
+            transfer * (model.drive_shapes[part] @ force)
+        )
     if kind == "acceleration":
         lines *= -(record.omega**2)
     return record.short_spectra(lines)
@@ -192,4 +262,8 @@ def _rest(record, model, visible, kind):
 def _smooth(values, width=21):
     """Running mean over the last axis."""
     kernel = np.ones(width) / width
-    return np.apply_along_axis(lambda row: np.convolve(np.pad(row, width // 2, mode="edge"), kernel, mode="valid"), -1, values)
+    return np.apply_along_axis(
+        lambda row: np.convolve(np.pad(row, width // 2, mode="edge"), kernel, mode="valid"),
+        -1,
+        values,
+    )

@@ -1,18 +1,32 @@
-"""A model without contact as uncoupled modes: the linear part of its local elements folded into the modes."""
+"""A model without contact as uncoupled modes: the linear part of its local elements folded into the
+modes.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 from scipy import optimize
 
-from vibroimpact.laws import LocalLaws
+from vibroimpact.contact.laws import LocalLaws
 
-MODE_ARRAYS = ("contact_shapes", "drive_shapes", "sensor_shapes", "line_shapes", "stress_shapes", "element_shapes")
-FREQUENCY_REACH, SHAPE_REACH = 0.2, 0.3  # of ln frequency, and of 1 - MAC: as bad a match as each other
+MODE_ARRAYS = (
+    "contact_shapes",
+    "drive_shapes",
+    "sensor_shapes",
+    "line_shapes",
+    "stress_shapes",
+    "element_shapes",
+)
+FREQUENCY_REACH, SHAPE_REACH = (
+    0.2,
+    0.3,
+)  # of ln frequency, and of 1 - MAC: as bad a match as each other
 
 
 def linearised(model):
-    """Return the ModalModel whose modes hold the stiffness and damping of the local elements, which are gone; of damping the diagonal is kept."""
+    """Return the ModalModel whose modes hold the stiffness and damping of the local elements, which
+    are gone; of damping the diagonal is kept.
+    """
     laws = model.local_laws
     if not len(laws.stiffness) or not (np.any(laws.stiffness) or np.any(laws.damping)):
         return model
@@ -21,15 +35,26 @@ def linearised(model):
     damping = np.diag(turn.T @ (np.diag(model.damping) + (shapes * laws.damping) @ shapes.T) @ turn)
     fields = {name: np.tensordot(turn.T, getattr(model, name), axes=1) for name in MODE_ARRAYS}
     fields["element_shapes"] = np.zeros((model.modes, 0))
-    return replace(model, omega=np.sqrt(np.maximum(squares, 0.0)), damping=damping, element_names=(), local_laws=LocalLaws.neutral(0), **fields)
+    return replace(
+        model,
+        omega=np.sqrt(np.maximum(squares, 0.0)),
+        damping=damping,
+        element_names=(),
+        local_laws=LocalLaws.neutral(0),
+        **fields,
+    )
 
 
 def same_modes(model, modes, reference):
-    """Return (mode,) indices of the modes of `model` that are those of `reference` (a model) at `modes`: alike in shape at the sensors, near in frequency."""
+    """Return (mode,) indices of the modes of `model` that are those of `reference` (a model) at
+    `modes`: alike in shape at the sensors, near in frequency.
+    """
     out = []
     for mode in modes:
         wanted = reference.sensor_shapes[mode]
-        alike = (model.sensor_shapes @ wanted) ** 2 / np.maximum(np.sum(model.sensor_shapes**2, axis=1) * (wanted @ wanted), 1.0e-300)
+        alike = (model.sensor_shapes @ wanted) ** 2 / np.maximum(
+            np.sum(model.sensor_shapes**2, axis=1) * (wanted @ wanted), 1.0e-300
+        )
         distance = np.log(np.maximum(model.omega, 1.0e-3) / reference.omega[mode])
         score = alike / (1.0 + (distance / 0.15) ** 2)
         score[out] = -1.0
@@ -38,9 +63,15 @@ def same_modes(model, modes, reference):
 
 
 def matched(model, logs, shapes):
-    """Return (mode,) indices of the modes of a ModalModel, each once, that are most like modes of ln rad/s logs (mode,) and shapes (channel, mode)."""
+    """Return (mode,) indices of the modes of a ModalModel, each once, that are most like modes of
+    ln rad/s logs (mode,) and shapes (channel, mode).
+    """
     own = model.sensor_shapes
-    alike = (own @ shapes) ** 2 / np.maximum(np.outer(np.sum(own**2, axis=1), np.sum(shapes**2, axis=0)), 1.0e-300)
+    alike = (own @ shapes) ** 2 / np.maximum(
+        np.outer(np.sum(own**2, axis=1), np.sum(shapes**2, axis=0)), 1.0e-300
+    )
     distance = np.log(np.maximum(model.omega, 1.0e-3))[:, None] - logs
-    rows, columns = optimize.linear_sum_assignment((distance / FREQUENCY_REACH) ** 2 + (1.0 - alike) / SHAPE_REACH)
+    rows, columns = optimize.linear_sum_assignment(
+        (distance / FREQUENCY_REACH) ** 2 + (1.0 - alike) / SHAPE_REACH
+    )
     return rows[np.argsort(columns)]

@@ -1,10 +1,12 @@
-"""The discrepancy map: measured against simulated band powers per record, channel and band, with z from seeds, clusters of bands, and a global p."""
+"""The discrepancy map: measured against simulated band powers per record, channel and band, with z
+from seeds, clusters of bands, and a global p.
+"""
 
 import numpy as np
 import xarray as xr
 from scipy import stats
 
-from vibroimpact.discrepancy import naming, priors
+from . import naming, priors
 
 SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
@@ -13,52 +15,78 @@ PEAK = 0.5  # of the largest difference in dB: bands beside it that differ by as
 
 
 def z_of(bench, measured, seeds):
-    """Return (D, z, sd), each (record, channel, band): measured (record, feature) against seeds (record, seed, feature)."""
+    """Return (D, z, sd), each (record, channel, band): measured (record, feature) against seeds
+    (record, seed, feature).
+    """
     layout = bench.layout
     power = layout.power(seeds)
     mean = power.mean(axis=1)
-    variance = np.apply_along_axis(lambda row: np.convolve(np.pad(row, 1, mode="edge"), SMOOTH, mode="valid"), -1, power.var(axis=1, ddof=1))
+    variance = np.apply_along_axis(
+        lambda row: np.convolve(np.pad(row, 1, mode="edge"), SMOOTH, mode="valid"),
+        -1,
+        power.var(axis=1, ddof=1),
+    )
     sd = np.sqrt(variance * (1.0 + 1.0 / power.shape[1]) + priors.FEATURE_SD["power"] ** 2)
     difference = layout.power(measured) - mean
     return difference, difference / sd, sd
 
 
 def global_p(bench, null, measured, mean=None, law=True):
-    """Return p: how probable records as far off as the measured ones are, from seeds and what two codes differ by.
+    """Return p: how probable records as far off as the measured ones are, from seeds and what two
+    codes differ by.
 
-    mean (record, feature) of a model, the null's where None; law: whether what it changes counts as uncertain as its law. The sum of the records'
-    chi-squares is compared with a gamma law of its expectation and of the bare model's scatter, see naming.bare_spread.
+    mean (record, feature) of a model, the null's where None; law: whether what it changes counts as
+    uncertain as its law. The sum of the records' chi-squares is compared with a gamma law of its
+    expectation and of the bare model's scatter, see naming.bare_spread.
     """
-    total = naming.chi_squares(bench, null, null.mean if mean is None else mean, measured, law and mean is not None).sum()
+    total = naming.chi_squares(
+        bench, null, null.mean if mean is None else mean, measured, law and mean is not None
+    ).sum()
     expected, variance = measured.size, np.sum(naming.bare_spread(null) ** 2)
     return float(stats.gamma.sf(total, expected**2 / variance, scale=variance / expected))
 
 
 def significant(z, chosen):
-    """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate (Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995)."""
+    """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate (Y.
+    Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995).
+    """
     p = 2.0 * stats.t.sf(np.abs(z), priors.NULL_SEEDS - 1)
     inside = np.sort(p[chosen])
-    passed = np.flatnonzero(inside <= priors.FALSE_DISCOVERY * (1 + np.arange(inside.size)) / max(inside.size, 1))
+    passed = np.flatnonzero(
+        inside <= priors.FALSE_DISCOVERY * (1 + np.arange(inside.size)) / max(inside.size, 1)
+    )
     return chosen & (p <= inside[passed[-1]]) if passed.size else np.zeros_like(chosen)
 
 
 def regions(bench, difference, z, chosen):
-    """Return the clusters of significant neighbouring bands, as verdict.json has them, the strongest first."""
+    """Return the clusters of significant neighbouring bands, as verdict.json has them, the
+    strongest first.
+    """
     marked, edges, signals = significant(z, chosen), bench.layout.edges, bench.signals
     found = []
     for record, channel in np.ndindex(marked.shape[:2]):
         own = difference[record, channel]
         for part in clusters(own, marked[record, channel]):
             peak = part[np.argmax(np.abs(z[record, channel, part]))]
-            found.append({"band_Hz": [float(edges[part[0]]), float(edges[part[-1] + 1])], "load_rms_N": float(signals.load[record]),
-                          "gap_m": None if np.isnan(signals.gap[record]) else float(signals.gap[record]), "channel": signals.names[channel],
-                          "record": signals.record_names[record], "discrepancy_dB": float(own[part].mean()),
-                          "z": float(z[record, channel, peak]), "nearest_modes_Hz": nearest(bench, edges[part[0]], edges[part[-1] + 1])})  # fmt: skip
+            found.append(
+                {
+                    "band_Hz": [float(edges[part[0]]), float(edges[part[-1] + 1])],
+                    "load_rms_N": float(signals.load[record]),
+                    "gap_m": None if np.isnan(signals.gap[record]) else float(signals.gap[record]),
+                    "channel": signals.names[channel],
+                    "record": signals.record_names[record],
+                    "discrepancy_dB": float(own[part].mean()),
+                    "z": float(z[record, channel, peak]),
+                    "nearest_modes_Hz": nearest(bench, edges[part[0]], edges[part[-1] + 1]),
+                }
+            )
     return sorted(found, key=lambda row: -abs(row["z"]))
 
 
 def clusters(difference, marked):
-    """Return [(band,)]: runs of marked bands of one sign within PEAK of their largest difference, from the largest down; difference, marked (band,)."""
+    """Return [(band,)]: runs of marked bands of one sign within PEAK of their largest difference,
+    from the largest down; difference, marked (band,).
+    """
     left, out = marked.copy(), []
     while left.any():
         top = int(np.argmax(np.where(left, np.abs(difference), 0.0)))
@@ -78,32 +106,53 @@ def nearest(bench, low, high):
     frequencies = bench.bare.frequencies[bench.bare.frequencies < 3.0 * bench.layout.edges[-1]]
     inside = frequencies[(frequencies >= low) & (frequencies <= high)]
     middle = np.sqrt(low * high)
-    return [round(float(value), 2) for value in (inside if len(inside) else [frequencies[np.argmin(np.abs(frequencies - middle))]])]
+    return [
+        round(float(value), 2)
+        for value in (
+            inside if len(inside) else [frequencies[np.argmin(np.abs(frequencies - middle))]]
+        )
+    ]
 
 
 def map_dataset(bench, seeds, responses):
-    """Return the map as a Dataset: seeds (record, seed, feature); responses (record, shown seed, channel, sample) of the same model with noise."""
-    from vibroimpact.discrepancy.misfit import counted
+    """Return the map as a Dataset: seeds (record, seed, feature); responses (record, shown seed,
+    channel, sample) of the same model with noise.
+    """
+    from .misfit import counted
 
     difference, z, sd = z_of(bench, bench.measured_features, seeds)
     layout, signals = bench.layout, bench.signals
     cell, line = ("record", "channel", "band"), ("record", "channel", "frequency")
     frequency, measured = _spectra(signals, signals.response)
-    shown = np.stack([_spectra(signals, responses[:, seed])[1] for seed in range(responses.shape[1])])
+    shown = np.stack(
+        [_spectra(signals, responses[:, seed])[1] for seed in range(responses.shape[1])]
+    )
     data = {
-        "measured_dB": (cell, layout.power(bench.measured_features)), "simulated_dB": (cell, layout.power(seeds).mean(axis=1)), "seed_sd_dB": (cell, sd),
-        "D": (cell, difference), "z": (cell, z), "band_Hz": (("band", "edge"), np.stack([layout.edges[:-1], layout.edges[1:]], axis=1)),
-        "counted": (cell, counted(bench).astype(np.int8)), "record_name": ("record", np.array(signals.record_names, dtype=object)),
-        "load_rms": ("record", signals.load), "gap": ("record", signals.gap), "split": ("record", signals.split.astype(object)),
-        "channel_name": ("channel", np.array(signals.names, dtype=object)), "psd_frequency": ("frequency", frequency),
-        "psd_measured": (line, measured), "psd_simulated_mean": (line, shown.mean(axis=0)),
-        "psd_simulated_low": (line, shown.min(axis=0)), "psd_simulated_high": (line, shown.max(axis=0)),
-    }  # fmt: skip
+        "measured_dB": (cell, layout.power(bench.measured_features)),
+        "simulated_dB": (cell, layout.power(seeds).mean(axis=1)),
+        "seed_sd_dB": (cell, sd),
+        "D": (cell, difference),
+        "z": (cell, z),
+        "band_Hz": (("band", "edge"), np.stack([layout.edges[:-1], layout.edges[1:]], axis=1)),
+        "counted": (cell, counted(bench).astype(np.int8)),
+        "record_name": ("record", np.array(signals.record_names, dtype=object)),
+        "load_rms": ("record", signals.load),
+        "gap": ("record", signals.gap),
+        "split": ("record", signals.split.astype(object)),
+        "channel_name": ("channel", np.array(signals.names, dtype=object)),
+        "psd_frequency": ("frequency", frequency),
+        "psd_measured": (line, measured),
+        "psd_simulated_mean": (line, shown.mean(axis=0)),
+        "psd_simulated_low": (line, shown.min(axis=0)),
+        "psd_simulated_high": (line, shown.max(axis=0)),
+    }
     return xr.Dataset(data)
 
 
 def _spectra(signals, response):
-    """Return (frequency Hz, PSD (record, channel, frequency)) up to twice the excited band, averaged over Hann segments of 1/SPECTRUM_HZ."""
+    """Return (frequency Hz, PSD (record, channel, frequency)) up to twice the excited band,
+    averaged over Hann segments of 1/SPECTRUM_HZ.
+    """
     length = round(signals.rate / SPECTRUM_HZ)
     window = np.hanning(length)
     frequency = np.fft.rfftfreq(length, 1.0 / signals.rate)
@@ -114,6 +163,9 @@ def _spectra(signals, response):
         starts = range(0, max(valid.shape[-1] - length, 0) + 1, length // 2)
         for first in starts:
             piece = valid[:, first : first + length]
-            out[record] += np.abs(np.fft.rfft(piece * window[: piece.shape[-1]], length, axis=-1)[:, kept]) ** 2
+            out[record] += (
+                np.abs(np.fft.rfft(piece * window[: piece.shape[-1]], length, axis=-1)[:, kept])
+                ** 2
+            )
         out[record] *= 2.0 / (signals.rate * np.sum(window**2) * len(starts))
     return frequency[kept], out

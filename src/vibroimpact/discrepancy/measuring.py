@@ -1,4 +1,6 @@
-"""What a faulty measuring chain does to simulated records: gains and delays of channels, and a force that is not the one measured."""
+"""What a faulty measuring chain does to simulated records: gains and delays of channels, and a
+force that is not the one measured.
+"""
 
 from dataclasses import dataclass
 
@@ -21,11 +23,15 @@ class Measuring:
         length = fft.next_fast_len(responses.shape[-1] + 64, real=True)
         lines = fft.rfft(responses, length, axis=-1)
         turn = np.exp(-2j * np.pi * np.outer(self.delay, fft.rfftfreq(length, 1.0 / rate)))
-        return fft.irfft(lines * turn, length, axis=-1)[..., : responses.shape[-1]].astype(responses.dtype)
+        return fft.irfft(lines * turn, length, axis=-1)[..., : responses.shape[-1]].astype(
+            responses.dtype
+        )
 
 
 def places(names):
-    """Return the places of a measuring fault: every channel, the force, all responses together, force and responses together."""
+    """Return the places of a measuring fault: every channel, the force, all responses together,
+    force and responses together.
+    """
     return [*names, "force", "responses", "force_and_responses"]
 
 

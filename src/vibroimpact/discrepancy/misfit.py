@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
+from . import priors
 
 ABOVE_NOISE_DB = 6.0
 
@@ -12,7 +12,9 @@ def counted(bench):
     layout = bench.layout
     power = layout.power(bench.measured_features)
     width = np.diff(layout.edges)
-    noise = 10.0 * np.log10(np.maximum(bench.signals.noise[:, None] ** 2 * width / (0.5 * layout.rate), 1.0e-300))
+    noise = 10.0 * np.log10(
+        np.maximum(bench.signals.noise[:, None] ** 2 * width / (0.5 * layout.rate), 1.0e-300)
+    )
     return power > noise + ABOVE_NOISE_DB
 
 
@@ -33,7 +35,9 @@ def closed_fraction(before, after, floor):
 
 
 def floor_of(power, chosen):
-    """Return the distance in dB between two seeds of a model, RMS over all pairs: power (record, seed, channel, band)."""
+    """Return the distance in dB between two seeds of a model, RMS over all pairs: power (record,
+    seed, channel, band).
+    """
     total, count = 0.0, 0
     for one in range(power.shape[1]):
         for other in range(one + 1, power.shape[1]):
@@ -45,8 +49,9 @@ def floor_of(power, chosen):
 def misfit_of(bench, records, chosen, before, after, completed):
     """Return {before_dB, after_dB, floor_dB, closed_fraction} on some records.
 
-    before, after: (record, feature) means of all records; completed: (record, seed, feature) of the completed model. As the mean of several
-    seeds scatters less than one seed, the distance of measurement to mean is brought to that of two single runs.
+    before, after: (record, feature) means of all records; completed: (record, seed, feature) of the
+    completed model. As the mean of several seeds scatters less than one seed, the distance of
+    measurement to mean is brought to that of two single runs.
     """
     layout = bench.layout
     measured = layout.power(bench.measured_features)[records]
@@ -54,5 +59,15 @@ def misfit_of(bench, records, chosen, before, after, completed):
     seeds = completed.shape[1]
     floor = floor_of(layout.power(completed)[records], inside)
     own = floor**2 / 2.0 * (1.0 - 1.0 / seeds)
-    distances = [float(np.hypot(level_distance(measured - layout.power(mean)[records], inside), np.sqrt(own))) for mean in (before, after)]
-    return {"before_dB": distances[0], "after_dB": distances[1], "floor_dB": floor, "closed_fraction": closed_fraction(*distances, floor)}
+    distances = [
+        float(
+            np.hypot(level_distance(measured - layout.power(mean)[records], inside), np.sqrt(own))
+        )
+        for mean in (before, after)
+    ]
+    return {
+        "before_dB": distances[0],
+        "after_dB": distances[1],
+        "floor_dB": floor,
+        "closed_fraction": closed_fraction(*distances, floor),
+    }

@@ -1,4 +1,5 @@
-"""One fit of modes to a record's lines: frequencies and damping by Gauss-Newton, participations, which are linear, solved for at each step.
+"""One fit of modes to a record's lines: frequencies and damping by Gauss-Newton, participations,
+which are linear, solved for at each step.
 
 Variable projection: G.H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432.
 """
@@ -14,17 +15,21 @@ LARGEST_LOG_DAMPING = 3.0
 IDLE = 1.0e-9  # of the change with the logarithm that changes most
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 SETTLED = 1.0e-6  # of what is left: a step that promises less is not taken
-SEARCH = 0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
+SEARCH = (
+    0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
+)
 
 
 @dataclass(frozen=True)
 class ModalFit:
     """What the fit of one record found.
 
-    modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted over the model's value;
-    participation (channel, fitted): response per unit modal response to the force on `drive` (fitted, force_channel); covariance of
-    [log_frequency, log_damping] (2 fitted, 2 fitted); delay (channel,) s by which a channel lags the others' fit, 0 where it is not to be told from none;
-    residual (channel,): RMS of what is left over that of the noise and of RESIDUAL_SHARE of the response, in the band; share (channel,): residual over response, RMS.
+    modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted
+    over the model's value; participation (channel, fitted): response per unit modal response to the
+    force on `drive` (fitted, force_channel); covariance of [log_frequency, log_damping] (2 fitted,
+    2 fitted); delay (channel,) s by which a channel lags the others' fit, 0 where it is not to be
+    told from none; residual (channel,): RMS of what is left over that of the noise and of
+    RESIDUAL_SHARE of the response, in the band; share (channel,): residual over response, RMS.
     """
 
     modes: np.ndarray
@@ -41,19 +46,31 @@ class ModalFit:
 class ModalLines:
     """The lines of a record to which modes are fitted.
 
-    record: LinearRecord; measured, weights: (channel, line); model: ModalModel; modes (fitted,): indices of its modes that are fitted; drive (fitted, force_channel);
-    kind: of all channels.
+    record: LinearRecord; measured, weights: (channel, line); model: ModalModel; modes (fitted,):
+    indices of its modes that are fitted; drive (fitted, force_channel); kind: of all channels.
     """
 
     def __init__(self, record, measured, weights, model, modes, drive, kind):
-        self.record, self.measured, self.weights, self.modes, self.drive, self.kind = record, measured, weights, modes, drive, kind
-        self.omega, self.zeta, self.count = model.omega[modes], model.damping[modes] / (2.0 * model.omega[modes]), len(modes)
+        self.record, self.measured, self.weights, self.modes, self.drive, self.kind = (
+            record,
+            measured,
+            weights,
+            modes,
+            drive,
+            kind,
+        )
+        self.omega, self.zeta, self.count = (
+            model.omega[modes],
+            model.damping[modes] / (2.0 * model.omega[modes]),
+            len(modes),
+        )
 
     def fit(self, seen, noise, delay, start=None, phases=False):
         """Return the ModalFit (participations complex where `phases`).
 
-        seen (channel, fitted) bool: the participations that there are; noise, delay: (channel,), see ModalFit; start: (log_frequency, log_damping) to begin from,
-        or log_frequency alone, or None: the frequency at which each mode's own resonance fits best.
+        seen (channel, fitted) bool: the participations that there are; noise, delay: (channel,),
+        see ModalFit; start: (log_frequency, log_damping) to begin from, or log_frequency alone, or
+        None: the frequency at which each mode's own resonance fits best.
         """
         logs = np.zeros(2 * self.count)
         if isinstance(start, tuple):
@@ -68,7 +85,11 @@ class ModalLines:
             cost = np.sum(np.abs(residual) ** 2)
             if cost < best_cost:
                 converged = best is not None and best_cost - cost < SETTLED * cost
-                best, best_cost, damp = (logs.copy(), shapes, basis, residual), cost, max(0.2 * damp, 1.0e-9)
+                best, best_cost, damp = (
+                    (logs.copy(), shapes, basis, residual),
+                    cost,
+                    max(0.2 * damp, 1.0e-9),
+                )
                 slopes = self._slopes(best, seen)
                 if converged:
                     break
@@ -77,21 +98,37 @@ class ModalLines:
                 if damp > 1.0e3:
                     break
             length = np.linalg.norm(slopes, axis=0)
-            length = np.where(length > IDLE * length.max(), length, np.inf)  # a mode that takes no part stays where it is, and spoils no equation
+            length = np.where(
+                length > IDLE * length.max(), length, np.inf
+            )  # a mode that takes no part stays where it is, and spoils no equation
             jacobian = slopes / length
             fall = jacobian.T @ _real(best[3]).ravel()
-            step = linalg.solve(jacobian.T @ jacobian + damp * np.eye(2 * self.count), fall, assume_a="pos")
+            step = linalg.solve(
+                jacobian.T @ jacobian + damp * np.eye(2 * self.count), fall, assume_a="pos"
+            )
             if damp < 1.0 and fall @ step < SETTLED * best_cost:
                 break
             step /= length
-            logs = best[0] + step * min(1.0, STEP_LIMIT / max(np.abs(step[: self.count]).max(), 1.0e-30))
-            logs[self.count :] = np.clip(logs[self.count :], -LARGEST_LOG_DAMPING, LARGEST_LOG_DAMPING)
+            logs = best[0] + step * min(
+                1.0, STEP_LIMIT / max(np.abs(step[: self.count]).max(), 1.0e-30)
+            )
+            logs[self.count :] = np.clip(
+                logs[self.count :], -LARGEST_LOG_DAMPING, LARGEST_LOG_DAMPING
+            )
         return self._result(best, slopes, noise, delay)
 
     def explains_more(self, found, seen, more):
-        """Return whether a ModalFit with the participations `seen` would leave less with `more` of them, both (channel, fitted) bool, frequencies and damping as they are."""
+        """Return whether a ModalFit with the participations `seen` would leave less with `more` of
+        them, both (channel, fitted) bool, frequencies and damping as they are.
+        """
         basis = self._basis(np.concatenate([found.log_frequency, found.log_damping]))
-        one, other = (np.sum(np.abs(self.weights * (self.measured - self._participations(basis, which) @ basis)) ** 2) for which in (seen, more))
+        one, other = (
+            np.sum(
+                np.abs(self.weights * (self.measured - self._participations(basis, which) @ basis))
+                ** 2
+            )
+            for which in (seen, more)
+        )
         return other < (1.0 - SETTLED) * one
 
     def _at(self, logs):
@@ -108,13 +145,19 @@ class ModalLines:
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
             rows, target = self.weights[c] * basis[seen[c]], self.weights[c] * self.measured[c]
-            shapes[c, seen[c]] = linalg.lstsq(rows.T, target)[0] if phases else linalg.lstsq(_real(rows).T, _real(target), lapack_driver="gelsy")[0]
+            shapes[c, seen[c]] = (
+                linalg.lstsq(rows.T, target)[0]
+                if phases
+                else linalg.lstsq(_real(rows).T, _real(target), lapack_driver="gelsy")[0]
+            )
         return shapes
 
     def _slopes(self, best, seen):
-        """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm, without what the participations would take up.
+        """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm,
+        without what the participations would take up.
 
-        The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of the basis, channel by channel.
+        The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of
+        the basis, channel by channel.
         """
         logs, shapes, basis, _ = best
         change = np.concatenate(self.record.changes(*self._at(logs), self.drive, self.kind))
@@ -132,24 +175,47 @@ class ModalLines:
         covariance = linalg.pinvh(slopes.T @ slopes) * max(1.0, np.mean(np.abs(residual) ** 2))
         power = np.sqrt(np.sum(np.abs(residual / self.weights) ** 2, axis=-1))
         total = np.sqrt(np.sum(np.abs(self.measured) ** 2, axis=-1))
-        return ModalFit(self.modes, self.drive, logs[: self.count], logs[self.count :], shapes, covariance, delay, power / np.hypot(noise, RESIDUAL_SHARE * total),
-                        power / np.maximum(total, 1.0e-300))  # fmt: skip
+        return ModalFit(
+            self.modes,
+            self.drive,
+            logs[: self.count],
+            logs[self.count :],
+            shapes,
+            covariance,
+            delay,
+            power / np.hypot(noise, RESIDUAL_SHARE * total),
+            power / np.maximum(total, 1.0e-300),
+        )
 
     def _start(self):
-        """Return (fitted,) ln of the frequency at which the mode alone explains most near its resonance, within SEARCH."""
+        """Return (fitted,) ln of the frequency at which the mode alone explains most near its
+        resonance, within SEARCH.
+        """
         frequency, out = self.record.frequency, np.zeros(self.count)
         for number, omega in enumerate(self.omega):
-            near = np.abs(frequency - omega / (2.0 * np.pi)) < SEARCH * 1.5 * omega / (2.0 * np.pi) + 0.5
+            near = (
+                np.abs(frequency - omega / (2.0 * np.pi))
+                < SEARCH * 1.5 * omega / (2.0 * np.pi) + 0.5
+            )
             if near.sum() < 10:
                 continue
             grid = np.arange(-SEARCH, SEARCH + 1.0e-9, max(self.zeta[number], SEARCH / 40.0))
             w = omega * np.exp(grid)
-            basis = self.record.responses(w, 2.0 * self.zeta[number] * w, np.repeat(self.drive[number][None], len(w), axis=0), self.kind)[:, near]
+            basis = self.record.responses(
+                w,
+                2.0 * self.zeta[number] * w,
+                np.repeat(self.drive[number][None], len(w), axis=0),
+                self.kind,
+            )[:, near]
             explained = np.zeros(len(grid))
             for c in range(len(self.measured)):
                 y, b = self.weights[c, near] * self.measured[c, near], self.weights[c, near] * basis
-                explained += np.real(b.conj() @ y) ** 2 / np.maximum(np.sum(np.abs(b) ** 2, axis=-1), 1.0e-300)
-            prior = -0.5 * (grid / 0.006) ** 2 * 0.02 * explained.max()  # between equals the one near the model
+                explained += np.real(b.conj() @ y) ** 2 / np.maximum(
+                    np.sum(np.abs(b) ** 2, axis=-1), 1.0e-300
+                )
+            prior = (
+                -0.5 * (grid / 0.006) ** 2 * 0.02 * explained.max()
+            )  # between equals the one near the model
             out[number] = grid[np.argmax(explained + prior)]
         return out
 

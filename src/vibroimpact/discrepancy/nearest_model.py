@@ -1,36 +1,60 @@
-"""Where the bare model's modes are too far from those of the lowest record to be followed: the linear effects whose spectra come nearest, to begin the fit from."""
+"""Where the bare model's modes are too far from those of the lowest record to be followed: the
+linear effects whose spectra come nearest, to begin the fit from.
+"""
 
 from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 
-from vibroimpact.config import ConfigError
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import Pair, linear_candidates, unit_grid
-from vibroimpact.discrepancy.linear_stage import fit_modes, left
-from vibroimpact.discrepancy.linearised import matched
+from vibroimpact.config.reading import ConfigError
+
+from . import priors
+from .candidates import Pair, linear_candidates, unit_grid
+from .linear_stage import fit_modes, left
+from .linearised import matched
 
 BANDS_PER_OCTAVE = 8
-FARTHEST_DB = 12.0  # a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however sharp both are
-GRID = ({1: 7, 2: 5, 3: 4}, {1: 5, 2: 3, 3: 3})  # points along each parameter, by the number of parameters: of one effect, of a second one
+# a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however
+# sharp both are
+FARTHEST_DB = 12.0
+GRID = (
+    {1: 7, 2: 5, 3: 4},
+    {1: 5, 2: 3, 3: 3},
+)  # points along each parameter, by the number of parameters: of one effect, of a second one
 BEGUN = 3  # models that the fit is begun from
 
 
 def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
-    """Return (ModalFit, [(Pair, unit (parameter,))]) of the lowest record of a Workbench, relative to its bare model, begun from the linear effects whose
-    spectra come nearest, and those pairs among them.
+    """Return (ModalFit, [(Pair, unit (parameter,))]) of the lowest record of a Workbench, relative
+    to its bare model, begun from the linear effects whose spectra come nearest, and those pairs
+    among them.
 
-    One effect, then two where one does not lead to a fit. changes: LinearChanges of the Workbench; scales: see Candidate.physical; held: names of what the
-    campaign holds beyond force and response; without: ids of effects that are left out. The Workbench's own fit where nothing leads to a better one.
+    One effect, then two where one does not lead to a fit. changes: LinearChanges of the Workbench;
+    scales: see Candidate.physical; held: names of what the campaign holds beyond force and
+    response; without: ids of effects that are left out. The Workbench's own fit where nothing leads
+    to a better one.
     """
     spectra = BandSpectra(bench)
-    singles = [candidate for candidate in linear_candidates(bench.values, bench.signals.names, held, bench.measured_fit.modes)
-               if not candidate.effect.measured and candidate.effect_id not in without]  # fmt: skip
+    singles = [
+        candidate
+        for candidate in linear_candidates(
+            bench.values, bench.signals.names, held, bench.measured_fit.modes
+        )
+        if not candidate.effect.measured and candidate.effect_id not in without
+    ]
     pairs = []
     least, best, known = left(bench.measured_fit, bench.bare), bench.measured_fit, []
     for second in (False, True):
-        tried = singles if not second else [Pair(known[0][1], other) for other in singles if other.effect_id != known[0][1].effect_id]
+        tried = (
+            singles
+            if not second
+            else [
+                Pair(known[0][1], other)
+                for other in singles
+                if other.effect_id != known[0][1].effect_id
+            ]
+        )
         ranked = []
         for candidate in tried:
             count = len((candidate.second if second else candidate).effect.parameters)
@@ -56,42 +80,81 @@ def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
 
 
 def begun_from(bench, model):
-    """Return (what is left over noise, ModalFit relative to the bare model) of the lowest record fitted from another model; (inf, None) where it shows no mode of that."""
+    """Return (what is left over noise, ModalFit relative to the bare model) of the lowest record
+    fitted from another model; (inf, None) where it shows no mode of that.
+    """
     record = bench.signals.lowest
     responses = bench.valid(bench.signals.response[record])
-    found = fit_modes(bench.linear_record, responses, model, bench.signals.kinds, bench.signals.noise_in_band, search=False)
-    return (np.inf, None) if found is None else (left(found, model), translated(found, model, bench.bare))
+    found = fit_modes(
+        bench.linear_record,
+        responses,
+        model,
+        bench.signals.kinds,
+        bench.signals.noise_in_band,
+        search=False,
+    )
+    return (
+        (np.inf, None)
+        if found is None
+        else (left(found, model), translated(found, model, bench.bare))
+    )
 
 
 def translated(fit, model, other):
-    """Return a ModalFit relative to `model` as one relative to another ModalModel: each mode as that of the other which is most like it."""
+    """Return a ModalFit relative to `model` as one relative to another ModalModel: each mode as
+    that of the other which is most like it.
+    """
     modes = matched(other, np.log(model.omega[fit.modes]) + fit.log_frequency, fit.participation)
     order, count = np.argsort(modes), len(modes)
     frequency = fit.log_frequency + np.log(model.omega[fit.modes] / other.omega[modes])
-    damping = fit.log_damping + np.log(model.damping[fit.modes] / model.omega[fit.modes]) - np.log(other.damping[modes] / other.omega[modes])
+    damping = (
+        fit.log_damping
+        + np.log(model.damping[fit.modes] / model.omega[fit.modes])
+        - np.log(other.damping[modes] / other.omega[modes])
+    )
     both = np.concatenate([order, order + count])
-    return replace(fit, modes=modes[order], drive=fit.drive[order], log_frequency=frequency[order], log_damping=damping[order],
-                   participation=fit.participation[:, order], covariance=fit.covariance[np.ix_(both, both)])  # fmt: skip
+    return replace(
+        fit,
+        modes=modes[order],
+        drive=fit.drive[order],
+        log_frequency=frequency[order],
+        log_damping=damping[order],
+        participation=fit.participation[:, order],
+        covariance=fit.covariance[np.ix_(both, both)],
+    )
 
 
 class BandSpectra:
-    """The spectra of the lowest record of a Workbench in narrow bands, against those of linear models."""
+    """The spectra of the lowest record of a Workbench in narrow bands, against those of linear
+    models.
+    """
 
     def __init__(self, bench):
         record, lowest = bench.linear_record, bench.signals.lowest
         self.acceleration = bench.signals.kinds[0] == "acceleration"
-        self.frequency, self.force = record.frequency, record.spectra(bench.valid(bench.signals.force[lowest]))
+        self.frequency, self.force = (
+            record.frequency,
+            record.spectra(bench.valid(bench.signals.force[lowest])),
+        )
         octaves = np.log2(self.frequency / self.frequency[0])
-        self.starts = np.unique(np.searchsorted(octaves, np.arange(0.0, octaves[-1], 1.0 / BANDS_PER_OCTAVE)))
+        self.starts = np.unique(
+            np.searchsorted(octaves, np.arange(0.0, octaves[-1], 1.0 / BANDS_PER_OCTAVE))
+        )
         measured = record.spectra(bench.valid(bench.signals.response[lowest]))
-        self.noise = (bench.signals.noise_in_band**2 / len(self.frequency))[:, None] * np.diff([*self.starts, len(self.frequency)])
+        self.noise = (bench.signals.noise_in_band**2 / len(self.frequency))[:, None] * np.diff(
+            [*self.starts, len(self.frequency)]
+        )
         self.measured = self._bands(measured)
 
     def distance(self, model):
-        """Return the RMS over bands and channels in dB by which the steady response of a linear ModalModel to the measured force differs from the record."""
+        """Return the RMS over bands and channels in dB by which the steady response of a linear
+        ModalModel to the measured force differs from the record.
+        """
         omega = 2.0 * np.pi * self.frequency
         near = np.flatnonzero(model.omega < 3.0 * omega[-1])
-        modal = (model.drive_shapes[near] @ self.force) / (model.omega[near, None] ** 2 - omega**2 + 1j * model.damping[near, None] * omega)
+        modal = (model.drive_shapes[near] @ self.force) / (
+            model.omega[near, None] ** 2 - omega**2 + 1j * model.damping[near, None] * omega
+        )
         response = model.sensor_shapes[near].T @ modal * (omega**2 if self.acceleration else 1.0)
         difference = 10.0 * np.log10(self.measured / (self._bands(response) + self.noise))
         return float(np.sqrt(np.mean(np.clip(difference, -FARTHEST_DB, FARTHEST_DB) ** 2)))

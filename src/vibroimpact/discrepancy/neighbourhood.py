@@ -1,4 +1,6 @@
-"""Points of a normalised parameter space near each other: stars, images, boxes; an angle wraps round."""
+"""Points of a normalised parameter space near each other: stars, images, boxes; an angle wraps
+round.
+"""
 
 import itertools
 
@@ -9,9 +11,13 @@ NEW = 0.003  # of the searched range: nearer points are the same
 
 
 def offset(one, other, periodic):
-    """Return (parameter,) one minus other of two points, the short way round where an angle wraps."""
+    """Return (parameter,) one minus other of two points, the short way round where an angle
+    wraps.
+    """
     difference = one - other
-    return np.where(np.isin(np.arange(len(one)), periodic), (difference + 0.5) % 1.0 - 0.5, difference)
+    return np.where(
+        np.isin(np.arange(len(one)), periodic), (difference + 0.5) % 1.0 - 0.5, difference
+    )
 
 
 def apart(one, other, periodic):
@@ -38,17 +44,31 @@ def nearest(path, unit, periodic):
 
 def unknown(points, path, periodic):
     """Return those of points (point, parameter) that a path does not hold."""
-    return np.array([unit for unit in points if not any(np.all(apart(unit, other, periodic) < NEW) for other in path.parameters)])
+    return np.array(
+        [
+            unit
+            for unit in points
+            if not any(np.all(apart(unit, other, periodic) < NEW) for other in path.parameters)
+        ]
+    )
 
 
 def within_simulated(unit, path, best, periodic):
-    """Return unit (parameter,) no farther out than the points of a path near `best` (parameter,) are, an angle as it is: outside them nothing was simulated."""
+    """Return unit (parameter,) no farther out than the points of a path near `best` (parameter,)
+    are, an angle as it is: outside them nothing was simulated.
+    """
     known = path.parameters[near(path, best, periodic)]
-    return np.where(np.isin(np.arange(len(unit)), periodic), unit, np.clip(unit, known.min(axis=0), known.max(axis=0)))
+    return np.where(
+        np.isin(np.arange(len(unit)), periodic),
+        unit,
+        np.clip(unit, known.min(axis=0), known.max(axis=0)),
+    )
 
 
 def images(unit, signed):
-    """Return [(parameter,)]: unit with other signs of the parameters that have one. Powers are alike there, and only what is odd tells them apart: a star does not reach them."""
+    """Return [(parameter,)]: unit with other signs of the parameters that have one. Powers are
+    alike there, and only what is odd tells them apart: a star does not reach them.
+    """
     points = []
     for sides in itertools.product((False, True), repeat=len(signed)):
         turned = np.array(unit)
@@ -58,12 +78,18 @@ def images(unit, signed):
 
 
 def around(unit, step, periodic):
-    """Return (point, parameter): unit and its neighbours along each parameter, within 0 to 1 (an angle wraps round)."""
+    """Return (point, parameter): unit and its neighbours along each parameter, within 0 to 1 (an
+    angle wraps round).
+    """
     points = [unit]
     for number in range(len(unit)):
         for side in (-step, step):
             moved = np.array(unit)
-            moved[number] = (moved[number] + side) % 1.0 if number in periodic else np.clip(moved[number] + side, 0.0, 1.0)
+            moved[number] = (
+                (moved[number] + side) % 1.0
+                if number in periodic
+                else np.clip(moved[number] + side, 0.0, 1.0)
+            )
             if not np.allclose(moved, unit):
                 points.append(moved)
     return np.array(points)

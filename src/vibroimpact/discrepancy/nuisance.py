@@ -1,7 +1,8 @@
-"""The linear stage: what the lowest record says of modes and sensors, and how far a model, with or without an effect, is from it.
+"""The linear stage: what the lowest record says of modes and sensors, and how far a model, with or
+without an effect, is from it.
 
-Frequencies, damping and gains scatter in any test; their priors are in priors.py. The most probable nuisance is corrected in the model, never beyond
-its limit, and the rest is left to be explained.
+Frequencies, damping and gains scatter in any test; their priors are in priors.py. The most probable
+nuisance is corrected in the model, never beyond its limit, and the rest is left to be explained.
 """
 
 from dataclasses import dataclass, replace
@@ -9,15 +10,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.linearised import same_modes
+from . import priors
+from .linearised import same_modes
 
-SEEN = 0.05  # of a mode's largest participation among the channels: below it a channel says nothing of the mode
+# of a mode's largest participation among the channels: below it a channel says nothing of the mode
+SEEN = 0.05
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What a fit of the lowest record reads: ln frequency and ln damping (mode,), participation (channel, mode), residual over noise (channel,)."""
+    """What a fit of the lowest record reads: ln frequency and ln damping (mode,), participation
+    (channel, mode), residual over noise (channel,).
+    """
 
     modes: np.ndarray
     log_frequency: np.ndarray
@@ -28,7 +32,9 @@ class Reading:
 
 @dataclass(frozen=True)
 class Nuisance:
-    """The corrections: factors of frequency and damping of modes (mode,) with indices `modes`, gain (channel,) of each channel."""
+    """The corrections: factors of frequency and damping of modes (mode,) with indices `modes`, gain
+    (channel,) of each channel.
+    """
 
     modes: np.ndarray
     frequency: np.ndarray
@@ -40,45 +46,82 @@ def reading_of_fit(fit, model):
     """Return the Reading of a ModalFit of responses to the force on `model`."""
     omega, damping = model.omega[fit.modes], model.damping[fit.modes]
     driven = fit.drive[:, 0]
-    return Reading(fit.modes, np.log(omega) + fit.log_frequency, np.log(damping / (2.0 * omega)) + fit.log_damping, fit.participation * driven, fit.residual)
+    return Reading(
+        fit.modes,
+        np.log(omega) + fit.log_frequency,
+        np.log(damping / (2.0 * omega)) + fit.log_damping,
+        fit.participation * driven,
+        fit.residual,
+    )
 
 
 def reading_of_model(model, modes):
     """Return the Reading that a linear model gives without noise, for the first force channel."""
     omega = model.omega[modes]
     participation = model.sensor_shapes[modes].T * model.drive_shapes[modes, 0]
-    return Reading(modes, np.log(omega), np.log(model.damping[modes] / (2.0 * omega)), participation, np.ones(participation.shape[0]))
+    return Reading(
+        modes,
+        np.log(omega),
+        np.log(model.damping[modes] / (2.0 * omega)),
+        participation,
+        np.ones(participation.shape[0]),
+    )
 
 
 def gained(reading, measuring):
     """Return a Reading as a measuring chain (Measuring, None for a perfect one) shows it."""
-    return reading if measuring is None else replace(reading, participation=reading.participation * (measuring.gain / measuring.force_gain)[:, None])
+    return (
+        reading
+        if measuring is None
+        else replace(
+            reading,
+            participation=reading.participation * (measuring.gain / measuring.force_gain)[:, None],
+        )
+    )
 
 
 def seen_by(measured, simulated):
-    """Return (channel, mode) bool: whether a channel sees a mode, in one of two Readings at least."""
+    """Return (channel, mode) bool: whether a channel sees a mode, in one of two Readings at
+    least.
+    """
     size = np.maximum(np.abs(simulated.participation), np.abs(measured.participation))
     return size > SEEN * size.max(axis=0)
 
 
 def difference(measured, simulated, error, seen=None, bare=None):
-    """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus simulated Reading.
+    """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus
+    simulated Reading.
 
-    error: (2 mode, 2 mode) covariance of the fit's logarithms. Nuisances: mode frequencies, mode dampings, channel gains, each in units of its
-    prior's sigma; the covariance is of what is not nuisance. seen (channel, mode) bool: the participations that are compared, see seen_by; bare:
+    error: (2 mode, 2 mode) covariance of the fit's logarithms. Nuisances: mode frequencies, mode
+    dampings, channel gains, each in units of its prior's sigma; the covariance is of what is not
+    nuisance. seen (channel, mode) bool: the participations that are compared, see seen_by; bare:
     Reading without the effect, of whose change of the shapes two codes differ by a share.
     """
     count, channels = len(measured.log_frequency), len(measured.participation)
-    scale = np.abs(measured.participation).max(axis=0)  # of the measured alone: a gain that inflates what is simulated must not shrink its errors
+    scale = np.abs(measured.participation).max(
+        axis=0
+    )  # of the measured alone: a gain that inflates what is simulated must not shrink its errors
     seen = seen_by(measured, simulated) if seen is None else seen
-    ratio = (measured.participation - simulated.participation)[seen] / np.broadcast_to(scale, seen.shape)[seen]
+    ratio = (measured.participation - simulated.participation)[seen] / np.broadcast_to(
+        scale, seen.shape
+    )[seen]
     level = (simulated.participation / scale)[seen]
     residual = np.log(np.hypot(1.0, measured.residual)) - np.log(np.hypot(1.0, simulated.residual))
-    values = np.concatenate([measured.log_frequency - simulated.log_frequency, measured.log_damping - simulated.log_damping, ratio, residual])
+    values = np.concatenate(
+        [
+            measured.log_frequency - simulated.log_frequency,
+            measured.log_damping - simulated.log_damping,
+            ratio,
+            residual,
+        ]
+    )
     change = 0.0 if bare is None else ((simulated.participation - bare.participation) / scale)[seen]
     shape = np.eye(len(ratio)) * (priors.SHAPE_SD**2 + (priors.SHAPE_LAW_SD * change) ** 2)
-    covariance = linalg.block_diag(error + np.diag([1.0e-10] * count + [1.0e-4] * count), shape,
-                                   np.eye(channels) * priors.RESIDUAL_SD**2)  # fmt: skip
+    covariance = linalg.block_diag(
+        error + np.diag([1.0e-10] * count + [1.0e-4] * count),
+        shape,
+        np.eye(channels) * priors.RESIDUAL_SD**2,
+    )
     sensitivity = np.zeros((len(values), 2 * count + channels))
     sensitivity[:count, :count] = np.eye(count) * priors.FREQUENCY_SD
     sensitivity[count : 2 * count, count : 2 * count] = np.eye(count) * priors.DAMPING_SD
@@ -89,21 +132,31 @@ def difference(measured, simulated, error, seen=None, bare=None):
 
 
 def likelihood(measured, simulated, error, bare=None):
-    """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances marginalised, pulls in sigma. bare: see difference."""
+    """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances
+    marginalised, pulls in sigma. bare: see difference.
+    """
     values, covariance, sensitivity = difference(measured, simulated, error, bare=bare)
     total = covariance + sensitivity @ sensitivity.T
     factor = linalg.cho_factor(total, lower=True)
     solved = linalg.cho_solve(factor, values)
     chi_square = float(values @ solved)
-    return -0.5 * chi_square - np.sum(np.log(np.diag(factor[0]))), chi_square, sensitivity.T @ solved
+    return (
+        -0.5 * chi_square - np.sum(np.log(np.diag(factor[0]))),
+        chi_square,
+        sensitivity.T @ solved,
+    )
 
 
 def nuisance_of(pulls, modes, channels):
     """Return the Nuisance of pulls in sigma, limited."""
     limited = np.clip(pulls, -priors.CORRECTION_LIMIT, priors.CORRECTION_LIMIT)
     count = len(modes)
-    return Nuisance(modes, np.exp(priors.FREQUENCY_SD * limited[:count]), np.exp(priors.DAMPING_SD * limited[count : 2 * count]),
-                    1.0 + priors.GAIN_SD * limited[2 * count : 2 * count + channels])  # fmt: skip
+    return Nuisance(
+        modes,
+        np.exp(priors.FREQUENCY_SD * limited[:count]),
+        np.exp(priors.DAMPING_SD * limited[count : 2 * count]),
+        1.0 + priors.GAIN_SD * limited[2 * count : 2 * count + channels],
+    )
 
 
 def neutral(modes, channels):
@@ -112,34 +165,61 @@ def neutral(modes, channels):
 
 
 def cost(nuisance):
-    """Return what a Nuisance costs in log likelihood: half the squares of its corrections in sigma of their priors."""
-    pulls = np.concatenate([np.log(nuisance.frequency) / priors.FREQUENCY_SD, np.log(nuisance.damping) / priors.DAMPING_SD, (nuisance.gain - 1.0) / priors.GAIN_SD])
+    """Return what a Nuisance costs in log likelihood: half the squares of its corrections in sigma
+    of their priors.
+    """
+    pulls = np.concatenate(
+        [
+            np.log(nuisance.frequency) / priors.FREQUENCY_SD,
+            np.log(nuisance.damping) / priors.DAMPING_SD,
+            (nuisance.gain - 1.0) / priors.GAIN_SD,
+        ]
+    )
     return 0.5 * float(pulls @ pulls)
 
 
 def plausible(pulls):
-    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the limit of a correction, as a faulty channel's gain may be."""
+    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the
+    limit of a correction, as a faulty channel's gain may be.
+    """
     return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= priors.FEW_PULLED
 
 
 def credible(measured, simulated, error, times=1.0):
-    """Return whether a Reading is so near to another that nuisances may be what they differ by, or within so many times that; error: see difference."""
-    return likelihood(measured, simulated, error)[1] < times * priors.CREDIBLE * len(difference(measured, simulated, error)[0])
+    """Return whether a Reading is so near to another that nuisances may be what they differ by, or
+    within so many times that; error: see difference.
+    """
+    return likelihood(measured, simulated, error)[1] < times * priors.CREDIBLE * len(
+        difference(measured, simulated, error)[0]
+    )
 
 
 def without(reading, nuisance):
     """Return the Reading of a corrected model as that of the model without the corrections."""
-    return replace(reading, log_frequency=reading.log_frequency - np.log(nuisance.frequency), log_damping=reading.log_damping - np.log(nuisance.damping))
+    return replace(
+        reading,
+        log_frequency=reading.log_frequency - np.log(nuisance.frequency),
+        log_damping=reading.log_damping - np.log(nuisance.damping),
+    )
 
 
 def corrected(model, nuisance, bare=None):
-    """Return the ModalModel with the frequencies and damping of a Nuisance; bare: the model whose modes that numbers, where it is another."""
+    """Return the ModalModel with the frequencies and damping of a Nuisance; bare: the model whose
+    modes that numbers, where it is another.
+    """
     if nuisance is None or not len(nuisance.modes):
         return model
     omega, damping = model.omega.copy(), model.damping.copy()
     modes = nuisance.modes if bare is None else same_modes(model, nuisance.modes, bare)
     omega[modes] *= nuisance.frequency
     damping[modes] *= nuisance.damping * nuisance.frequency
-    seen = np.isin(np.arange(len(omega)), modes)  # a mode that was seen is where it was seen, its neighbours make room
-    lower, upper = np.maximum.accumulate(np.where(seen, omega, 0.0)), np.minimum.accumulate(np.where(seen, omega, np.inf)[::-1])[::-1]
-    return replace(model, omega=np.maximum.accumulate(np.where(seen, omega, np.clip(omega, lower, upper))), damping=damping)
+    seen = np.isin(
+        np.arange(len(omega)), modes
+    )  # a mode that was seen is where it was seen, its neighbours make room
+    lower = np.maximum.accumulate(np.where(seen, omega, 0.0))
+    upper = np.minimum.accumulate(np.where(seen, omega, np.inf)[::-1])[::-1]
+    return replace(
+        model,
+        omega=np.maximum.accumulate(np.where(seen, omega, np.clip(omega, lower, upper))),
+        damping=damping,
+    )

@@ -1,4 +1,6 @@
-"""The first job of a discrepancy run: checks, the linear stage, the linear effects that are adopted before contact is looked at."""
+"""The first job of a discrepancy run: checks, the linear stage, the linear effects that are adopted
+before contact is looked at.
+"""
 
 import json
 from dataclasses import asdict, dataclass, field, replace
@@ -6,36 +8,43 @@ from functools import partial
 
 import numpy as np
 
-from vibroimpact.campaign import CampaignError, read_campaign
-from vibroimpact.campaign_checks import check_file, refused, usable_signals
-from vibroimpact.campaign_model_checks import compare_with_model
-from vibroimpact.campaign_signals import measured_signals, transfer
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named, local_candidates, not_testable
-from vibroimpact.discrepancy.in_place import in_place
-from vibroimpact.discrepancy.linear_fit import LinearChanges
-from vibroimpact.discrepancy.linear_rows import held, linear_rows, nameable, nearest_linear
-from vibroimpact.discrepancy.linear_stage import left
-from vibroimpact.discrepancy.measuring import Measuring
-from vibroimpact.discrepancy.modal_fit import ModalFit
-from vibroimpact.discrepancy.nearest_model import fit_from_nearest, translated
-from vibroimpact.discrepancy.nuisance import neutral, plausible
-from vibroimpact.discrepancy.null import driven_channels
-from vibroimpact.discrepancy.scales import scales
-from vibroimpact.discrepancy.windows import compared_s, screened_s
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
+from vibroimpact.campaign.checks.against_model import compare_with_model
+from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
+from vibroimpact.campaign.file import CampaignError, read_campaign
+from vibroimpact.campaign.signals import measured_signals, transfer
 from vibroimpact.records import read_text, write_text
+
+from . import priors
+from .candidates import candidate_named, local_candidates, not_testable
+from .in_place import in_place
+from .linear_fit import LinearChanges
+from .linear_rows import held, linear_rows, nameable, nearest_linear
+from .linear_stage import left
+from .measuring import Measuring
+from .modal_fit import ModalFit
+from .nearest_model import fit_from_nearest, translated
+from .nuisance import neutral, plausible
+from .null import driven_channels
+from .scales import scales
+from .windows import compared_s, screened_s
+from .workbench import Workbench, corrected_nuisance
 
 
 @dataclass
 class Prepared:
     """What the first job hands on, in plain values.
 
-    checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can be tested; scales {name: value}; adopted: None or
-    {name, unit, gain, interval} of the linear effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every linear candidate,
-    best first; screened: names of the candidates that only simulation tells of; in_place: those that may be what the lowest record took for what is adopted; linear_stage: whether the lowest record tells of the linear structure; still_linear: whether it does with what is adopted, or touches then; nonlinear_low: the lowest record is not that of a linear structure; chi_square of the lowest record; residual (channel,) over
-    noise; delays {channel: s}; longest_s: records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them, see windows; fit: the ModalFit of the lowest record on
-    the model with what was adopted; for_all, draw: see prepare.
+    checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can
+    be tested; scales {name: value}; adopted: None or {name, unit, gain, interval} of the linear
+    effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every
+    linear candidate, best first; screened: names of the candidates that only simulation tells of;
+    in_place: those that may be what the lowest record took for what is adopted; linear_stage:
+    whether the lowest record tells of the linear structure; still_linear: whether it does with what
+    is adopted, or touches then; nonlinear_low: the lowest record is not that of a linear structure;
+    chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; longest_s:
+    records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them,
+    see windows; fit: the ModalFit of the lowest record on the model with what was adopted; for_all,
+    draw: see prepare.
     """
 
     checks: list
@@ -60,13 +69,23 @@ class Prepared:
     draw: int = 0
 
     def room(self, candidate, more=0):
-        """Return whether a Candidate or Pair, with so many more effects, may be missing beside what was adopted, or in its place: no more than priors.MOST_EFFECTS are named."""
-        adopted = [] if self.adopted is None or candidate.alone else candidate_named(self.adopted["name"]).ids
+        """Return whether a Candidate or Pair, with so many more effects, may be missing beside what
+        was adopted, or in its place: no more than priors.MOST_EFFECTS are named.
+        """
+        adopted = (
+            []
+            if self.adopted is None or candidate.alone
+            else candidate_named(self.adopted["name"]).ids
+        )
         return len(adopted) + len(candidate.ids) + more <= priors.MOST_EFFECTS
 
     def beside_or_in_place(self, candidate):
-        """Return the Candidates that one is simulated as: beside what was adopted where there is room, in its place where it may be what that was taken for."""
-        return [candidate] * self.room(candidate) + [replace(candidate, alone=True)] * (candidate.name in self.in_place)
+        """Return the Candidates that one is simulated as: beside what was adopted where there is
+        room, in its place where it may be what that was taken for.
+        """
+        return [candidate] * self.room(candidate) + [replace(candidate, alone=True)] * (
+            candidate.name in self.in_place
+        )
 
     def write(self, path):
         """Write as JSON."""
@@ -79,7 +98,9 @@ class Prepared:
 
 
 def usable_campaign(path, checks):
-    """Return (campaign Dataset, sentence or None): without the channels and records that the checks leave out, and why that is too little."""
+    """Return (campaign Dataset, sentence or None): without the channels and records that the checks
+    leave out, and why that is too little.
+    """
     if refused(checks):
         return None, next(row["message"] for row in checks if row["level"] == "refuse")
     try:
@@ -89,10 +110,22 @@ def usable_campaign(path, checks):
     force, response = usable_signals(campaign, checks)
     records = np.flatnonzero(force)
     channels = np.flatnonzero(response[records].all(axis=0)) if len(records) else []
-    contradicted = {row["channel"] for row in checks if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None}
-    channels = np.array([channel for channel in channels if str(campaign["channel_name"].values[channel]) not in contradicted], int)
+    contradicted = {
+        row["channel"]
+        for row in checks
+        if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None
+    }
+    channels = np.array(
+        [
+            channel
+            for channel in channels
+            if str(campaign["channel_name"].values[channel]) not in contradicted
+        ],
+        int,
+    )
     if len(records) < 2 or len(channels) < 1:
-        # a channel that fails in one record alone costs the record where that leaves more to look at
+        # a channel that fails in one record alone costs the record where that leaves more to look
+        # at
         records = np.flatnonzero(force & response.all(axis=1))
         channels = np.arange(response.shape[1])
     if len(records) < 2:
@@ -101,7 +134,9 @@ def usable_campaign(path, checks):
 
 
 def workbench(config, campaign_path, prepared, seconds):
-    """Return the Workbench of a campaign, each record cut to so many seconds, as the first job left it: nuisances corrected, the linear effects adopted."""
+    """Return the Workbench of a campaign, each record cut to so many seconds, as the first job left
+    it: nuisances corrected, the linear effects adopted.
+    """
     campaign, refusal = usable_campaign(campaign_path, prepared.checks)
     if refusal:
         raise CampaignError(refusal)
@@ -114,17 +149,25 @@ def workbench(config, campaign_path, prepared, seconds):
         adopt(bench, prepared, prepared.still_linear)
     elif prepared.linear_stage:
         if prepared.fit is not None:
-            bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
+            bench.measured_fit = ModalFit(
+                **{name: np.array(value) for name, value in prepared.fit.items()}
+            )
         bench.nuisance, _, _, pulls = corrected_nuisance(bench)
-        if bench.nonlinear_low and not plausible(pulls):  # what bends the record would be taken for nuisances: they are told beside a candidate alone
-            bench.nuisance, bench.modes_told = neutral(bench.measured_fit.modes, len(bench.signals.names)), False
+        # what bends the record would be taken for nuisances: they are told beside a candidate alone
+        if bench.nonlinear_low and not plausible(pulls):
+            bench.nuisance, bench.modes_told = (
+                neutral(bench.measured_fit.modes, len(bench.signals.names)),
+                False,
+            )
     return bench
 
 
 def adopt(bench, prepared, linear_stage=None):
-    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from here on, nuisances are those beside it.
+    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from
+    here on, nuisances are those beside it.
 
-    linear_stage: whether the lowest record tells of the linear structure with them; looked for where it is None.
+    linear_stage: whether the lowest record tells of the linear structure with them; looked for
+    where it is None.
     """
     candidate = candidate_named(prepared.adopted["name"])
     physical = candidate.physical(prepared.adopted["unit"], prepared.scales)
@@ -134,24 +177,40 @@ def adopt(bench, prepared, linear_stage=None):
     if linear_stage is not None:
         bench.linear_stage = linear_stage
     if prepared.fit is not None:
-        bench.measured_fit = ModalFit(**{name: np.array(value) for name, value in prepared.fit.items()})
+        bench.measured_fit = ModalFit(
+            **{name: np.array(value) for name, value in prepared.fit.items()}
+        )
     bench.measuring = candidate.measuring(physical, bench.signals.names)
     bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
-def prepare(config, campaign_path, longest_s=None, tables=None, without=frozenset(), asked_s=None, for_all=False, draw=0, quick=False):
+def prepare(
+    config,
+    campaign_path,
+    longest_s=None,
+    tables=None,
+    without=frozenset(),
+    asked_s=None,
+    for_all=False,
+    draw=0,
+    quick=False,
+):
     """Return the Prepared of a campaign file and a checked Config.
 
-    tables {candidate name: LinearTable}: known from another campaign of the same model, extended; without: ids of effects that are not in the
-    catalogue this time; asked_s: compare so many seconds of each record; for_all: look at every candidate and record, for campaigns of the same model that need them; draw: number of the
-    draw of seeds, of which verdicts shall not depend; quick: look for effects at fewer places.
+    tables {candidate name: LinearTable}: known from another campaign of the same model, extended;
+    without: ids of effects that are not in the catalogue this time; asked_s: compare so many
+    seconds of each record; for_all: look at every candidate and record, for campaigns of the same
+    model that need them; draw: number of the draw of seeds, of which verdicts shall not depend;
+    quick: look for effects at fewer places.
     """
     _, checks = check_file(campaign_path)
     campaign, refusal = usable_campaign(campaign_path, checks)
     if refusal is None:
         try:
             whole_s = campaign.sizes["time"] / float(campaign.attrs["sampling_frequency"])
-            seconds = compared_s(campaign.sizes["record"], min(whole_s, longest_s or whole_s), asked_s)
+            seconds = compared_s(
+                campaign.sizes["record"], min(whole_s, longest_s or whole_s), asked_s
+            )
             bench = Workbench(config, campaign, seconds)
             mixed = mixed_up(bench)
             if mixed:
@@ -160,38 +219,74 @@ def prepare(config, campaign_path, longest_s=None, tables=None, without=frozense
                 if refusal is None and campaign.sizes != before:  # something was left out
                     bench = Workbench(config, campaign, seconds)
         except CampaignError as error:
-            checks = [*checks, {"check": "places", "level": "refuse", "record": None, "channel": None, "message": str(error)}]
+            checks = [
+                *checks,
+                {
+                    "check": "places",
+                    "level": "refuse",
+                    "record": None,
+                    "channel": None,
+                    "message": str(error),
+                },
+            ]
             refusal = str(error)
     if refusal is not None:
         return Prepared(checks, refusal)
-    out = Prepared(checks, longest_s=longest_s, compared_s=seconds, screened_s=screened_s(seconds), not_testable=not_testable(held(campaign)), for_all=for_all, draw=draw)
+    out = Prepared(
+        checks,
+        longest_s=longest_s,
+        compared_s=seconds,
+        screened_s=screened_s(seconds),
+        not_testable=not_testable(held(campaign)),
+        for_all=for_all,
+        draw=draw,
+    )
     gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
-    reach = float(gap.max()) if len(gap) else float(np.nanstd(bench.signals.response[bench.signals.load.argmax()]) / (2.0 * np.pi * bench.signals.band_Hz[0]) ** 2)
+    reach = (
+        float(gap.max())
+        if len(gap)
+        else float(
+            np.nanstd(bench.signals.response[bench.signals.load.argmax()])
+            / (2.0 * np.pi * bench.signals.band_Hz[0]) ** 2
+        )
+    )
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
-    out.scales = {name: float(value) for name, value in scales(bench.bare, bench.signals, {"displacement": reach, "speed": reach * 2.0 * np.pi * first}).items()}
+    out.scales = {
+        name: float(value)
+        for name, value in scales(
+            bench.bare, bench.signals, {"displacement": reach, "speed": reach * 2.0 * np.pi * first}
+        ).items()
+    }
     out.linear_stage = bool(bench.linear_stage)
     fresh = partial(Workbench, config, campaign, seconds)
     if out.linear_stage:
         bench = read_lowest(bench, fresh, out, {} if tables is None else tables, without)
     shown = out.fit["modes"] if out.fit else bench.measured_fit.modes if out.linear_stage else None
-    candidates = local_candidates(bench.given, held(campaign), telling_modes(out, shown, for_all, quick), quick)
+    candidates = local_candidates(
+        bench.given, held(campaign), telling_modes(out, shown, for_all, quick), quick
+    )
     out.still_linear = bool(bench.linear_stage)
     candidates = [candidate for candidate in candidates if not without & set(candidate.ids)]
     out.in_place = taken_for_linear(bench, fresh, out, candidates)
     out.screened = [candidate.name for candidate in candidates if out.beside_or_in_place(candidate)]
-    if out.linear_stage and out.nonlinear_low:  # a linear effect may be what makes it touch: those that come nearest are simulated where they look best
+    # a linear effect may be what makes it touch: those that come nearest are simulated where they
+    # look best
+    if out.linear_stage and out.nonlinear_low:
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
 
 
 def taken_for_linear(bench, fresh, prepared, candidates):
-    """Return the names of the Candidates that may stand in the place of what a Prepared adopts, none where that is nothing, or a fault of the measuring chain.
+    """Return the names of the Candidates that may stand in the place of what a Prepared adopts,
+    none where that is nothing, or a fault of the measuring chain.
 
     bench: Workbench with what is adopted; fresh() gives another one.
     """
     if prepared.adopted is None or candidate_named(prepared.adopted["name"]).effect.measured:
         return []
-    if not bench.linear_stage:  # it touches with what is adopted, or shows no modes then: there is nothing to rule a place out by
+    # it touches with what is adopted, or shows no modes then: there is nothing to rule a place out
+    # by
+    if not bench.linear_stage:
         return [candidate.name for candidate in candidates if candidate.effect.below_contact]
     bare = fresh()
     bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
@@ -199,35 +294,71 @@ def taken_for_linear(bench, fresh, prepared, candidates):
 
 
 def telling_modes(prepared, shown, for_all=False, quick=False):
-    """Return those of the modes that the lowest record shows by which it tells of linear effects, None where these are candidates as the others are.
+    """Return those of the modes that the lowest record shows by which it tells of linear effects,
+    None where these are candidates as the others are.
 
-    A record that something bends shows modes, yet tells wrong which linear effect there is beside it: a press that holds the tube hid nine times its damping.
+    A record that something bends shows modes, yet tells wrong which linear effect there is beside
+    it: a press that holds the tube hid nine times its damping.
     """
-    return shown if prepared.linear_stage and not for_all and (quick or not prepared.nonlinear_low) else None
+    return (
+        shown
+        if prepared.linear_stage and not for_all and (quick or not prepared.nonlinear_low)
+        else None
+    )
 
 
 def read_lowest(bench, fresh, out, tables, without):
-    """Return the Workbench with what the lowest record tells: linear stage, delays, linear effects, what is adopted; Prepared out and tables are changed.
+    """Return the Workbench with what the lowest record tells: linear stage, delays, linear effects,
+    what is adopted; Prepared out and tables are changed.
 
     bench: Workbench; fresh() gives another one; tables, without: see prepare.
     """
     driven, begun = driven_channels(bench), ()
-    if left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL:  # modes that moved too far to be followed: begin from the effects that come nearest
-        (bench.measured_fit, begun), tables = fit_from_nearest(bench, LinearChanges(bench), out.scales, held(bench.campaign), without), {}
+    if (
+        left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL
+    ):  # modes that moved too far to be followed: begin from the effects that come nearest
+        (bench.measured_fit, begun), tables = (
+            fit_from_nearest(
+                bench, LinearChanges(bench), out.scales, held(bench.campaign), without
+            ),
+            {},
+        )
         bench.__dict__.pop("measured_reading", None)
     fit = bench.measured_fit
     if np.median(fit.share[driven]) > priors.UNREAD:
         out.linear_stage = False
-        out.checks.append({"check": "lowest level", "level": "warn", "record": None, "channel": None, "message": UNREAD_MESSAGE})
+        out.checks.append(
+            {
+                "check": "lowest level",
+                "level": "warn",
+                "record": None,
+                "channel": None,
+                "message": UNREAD_MESSAGE,
+            }
+        )
         return bench
     _, _, out.chi_square, _ = corrected_nuisance(bench)
     out.residual = fit.residual.tolist()
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
-    out.delays = {name: float(lag) for name, lag in zip(bench.signals.names, fit.delay, strict=True) if lag != 0.0}
+    out.delays = {
+        name: float(lag)
+        for name, lag in zip(bench.signals.names, fit.delay, strict=True)
+        if lag != 0.0
+    }
     out.linear = linear_rows(bench, out.scales, tables, without, begun)
     for name, lag in out.delays.items():
-        out.checks.append({"check": "delay", "level": "warn", "record": None, "channel": name,
-                           "message": f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the force; what is simulated is made as late."})  # fmt: skip
+        out.checks.append(
+            {
+                "check": "delay",
+                "level": "warn",
+                "record": None,
+                "channel": name,
+                "message": (
+                    f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the"
+                    " force; what is simulated is made as late."
+                ),
+            }
+        )
     singles = [row for row in out.linear if "+" not in row["name"]]
     for row in (*singles[:1], *(row for row in out.linear[:1] if row not in singles)):
         if not nameable(row, out.scales):
@@ -235,30 +366,45 @@ def read_lowest(bench, fresh, out, tables, without):
         out.adopted, bench = row, fresh()
         bench.measured_fit = fit
         adopt(bench, out)
-        # modes that moved far are fitted well only from the model that moved them: what is left there tells whether the structure is linear
-        if bench.linear_stage and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL:
+        # modes that moved far are fitted well only from the model that moved them: what is left
+        # there tells whether the structure is linear
+        if (
+            bench.linear_stage
+            and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL
+        ):
             out.nonlinear_low = False
             bench = read_again(bench, fresh, out, tables, without, begun)
             break
     if out.nonlinear_low:
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
-    out.fit = {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()} if bench.measured_fit is not None else None
+    out.fit = (
+        {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()}
+        if bench.measured_fit is not None
+        else None
+    )
     return bench
 
 
-UNREAD_MESSAGE = ("No modes explain the lowest record: it touches already, or the structure is another one. Linear effects are tried by simulation, beside the others. "
-                  "A record at a lower load would tell them by itself.")  # fmt: skip
+UNREAD_MESSAGE = (
+    "No modes explain the lowest record: it touches already, or the structure is another one."
+    " Linear effects are tried by simulation, beside the others. A record at a lower load would"
+    " tell them by itself."
+)
 
 
 def read_again(moved, fresh, out, tables, without, begun):
-    """Return the Workbench with what the lowest record tells once its modes are fitted from the model that moved them; Prepared out is changed.
+    """Return the Workbench with what the lowest record tells once its modes are fitted from the
+    model that moved them; Prepared out is changed.
 
-    moved: Workbench with effects adopted; fresh() gives another one, whose own fit may be percents off where a mode moved far: half a kilogram was read as 3 %
-    more, and a second effect made of the difference. Where that tells of other effects, once more.
+    moved: Workbench with effects adopted; fresh() gives another one, whose own fit may be percents
+    off where a mode moved far: half a kilogram was read as 3 % more, and a second effect made of
+    the difference. Where that tells of other effects, once more.
     """
     for _ in range(AGAIN):
-        if moved.values is moved.given or moved.measured_fit is None:  # a fault of the chain moves no mode
+        if (
+            moved.values is moved.given or moved.measured_fit is None
+        ):  # a fault of the chain moves no mode
             return moved
         bare, before = fresh(), out.adopted["name"]
         bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
@@ -278,7 +424,9 @@ AGAIN = 3  # times at most
 
 
 def mixed_up(bench):
-    """Return the rows of checks for channels that the bare linear model contradicts at the lowest level: swapped, reversed, in another unit."""
+    """Return the rows of checks for channels that the bare linear model contradicts at the lowest
+    level: swapped, reversed, in another unit.
+    """
     if not bench.linear_stage:
         return []
     measured = measured_signals(bench.campaign)
@@ -286,10 +434,25 @@ def mixed_up(bench):
     if spectra is None:
         return []
     omega, model = 2.0 * np.pi * spectra.frequency, bench.bare
-    receptance = np.einsum("mc,m,ml->cl", model.sensor_shapes, model.drive_shapes[:, 0],
-                           1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega))  # fmt: skip
-    power = np.where(np.array([kind == "acceleration" for kind in measured.kinds])[:, None], -(omega**2), 1.0)
-    return compare_with_model(spectra, power * receptance, measured.channels, measured.kinds, measured.records[bench.signals.lowest])
+    receptance = np.einsum(
+        "mc,m,ml->cl",
+        model.sensor_shapes,
+        model.drive_shapes[:, 0],
+        1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega),
+    )
+    power = np.where(
+        np.array([kind == "acceleration" for kind in measured.kinds])[:, None], -(omega**2), 1.0
+    )
+    return compare_with_model(
+        spectra,
+        power * receptance,
+        measured.channels,
+        measured.kinds,
+        measured.records[bench.signals.lowest],
+    )
 
 
-CONTRADICTED = ("swapped channels", "directions")  # of the rows of mixed_up: these channels are left out
+CONTRADICTED = (
+    "swapped channels",
+    "directions",
+)  # of the rows of mixed_up: these channels are left out

@@ -1,7 +1,9 @@
-"""Where the resonances of a record are when the model does not tell: one after the other, each where it explains most of what is left.
+"""Where the resonances of a record are when the model does not tell: one after the other, each
+where it explains most of what is left.
 
-Orthogonal matching pursuit (Y.C. Pati, R. Rezaiifar, P.S. Krishnaprasad, Asilomar Conf., 1993) over single-mode responses to the measured force; the modes found
-are then given to those of the model by shape and frequency.
+Orthogonal matching pursuit (Y.C. Pati, R. Rezaiifar, P.S. Krishnaprasad, Asilomar Conf., 1993) over
+single-mode responses to the measured force; the modes found are then given to those of the model by
+shape and frequency.
 """
 
 import numpy as np
@@ -14,32 +16,56 @@ FAR = 0.3  # of ln frequency: as bad a match as another shape altogether
 
 
 def pursued(record, measured, weights, count, zeta, kind):
-    """Return (ln rad/s (count,), shapes (channel, count)) of the resonances of measured (channel, line), weighted by weights of the same shape.
+    """Return (ln rad/s (count,), shapes (channel, count)) of the resonances of measured (channel,
+    line), weighted by weights of the same shape.
 
     record: LinearRecord; count: how many; zeta: damping ratio of the resonances that are tried.
     """
-    logs = np.arange(np.log(2.0 * np.pi * record.frequency[0]), np.log(2.0 * np.pi * record.frequency[-1]), SPACING)
+    logs = np.arange(
+        np.log(2.0 * np.pi * record.frequency[0]),
+        np.log(2.0 * np.pi * record.frequency[-1]),
+        SPACING,
+    )
     omega = np.exp(logs)
     drive = np.eye(1, record.spectrum.shape[0])
-    # the largest array of the linear stage: in single precision, and not at once from one of double precision and several times its length
-    basis = np.concatenate([record.responses(part, 2.0 * zeta * part, drive, kind).astype(np.complex64) for part in np.array_split(omega, len(omega) // AT_ONCE + 1)])
+    # the largest array of the linear stage: in single precision, and not at once from one of double
+    # precision and several times its length
+    basis = np.concatenate(
+        [
+            record.responses(part, 2.0 * zeta * part, drive, kind).astype(np.complex64)
+            for part in np.array_split(omega, len(omega) // AT_ONCE + 1)
+        ]
+    )
     power = (np.abs(basis) ** 2 @ (weights**2).astype(np.float32).T).T.astype(float)
     open_, chosen, rest = np.ones(len(omega), bool), [], measured
     shapes = np.zeros((len(measured), 0))
     for _ in range(count):
-        gain = np.sum(np.real(basis @ (weights**2 * rest).conj().T.astype(np.complex64)).T.astype(float) ** 2 / power, axis=0)
+        gain = np.sum(
+            np.real(basis @ (weights**2 * rest).conj().T.astype(np.complex64)).T.astype(float) ** 2
+            / power,
+            axis=0,
+        )
         best = int(np.argmax(np.where(open_, gain, -1.0)))
         chosen.append(best)
         open_[max(0, best - BESIDE) : best + BESIDE + 1] = False
-        shapes = np.array([linalg.lstsq(_real(row * basis[chosen]).T, _real(row * values))[0] for row, values in zip(weights, measured, strict=True)])
+        shapes = np.array(
+            [
+                linalg.lstsq(_real(row * basis[chosen]).T, _real(row * values))[0]
+                for row, values in zip(weights, measured, strict=True)
+            ]
+        )
         rest = measured - shapes @ basis[chosen]
     return logs[chosen], shapes
 
 
 def assigned(logs, shapes, model, modes):
-    """Return (mode,) ln of found over the model's frequency, for modes (mode,) of a ModalModel that pursued found as logs, shapes, in any order."""
+    """Return (mode,) ln of found over the model's frequency, for modes (mode,) of a ModalModel that
+    pursued found as logs, shapes, in any order.
+    """
     own = model.sensor_shapes[modes]
-    match = (own @ shapes) ** 2 / np.maximum(np.outer(np.sum(own**2, axis=1), np.sum(shapes**2, axis=0)), 1.0e-300)
+    match = (own @ shapes) ** 2 / np.maximum(
+        np.outer(np.sum(own**2, axis=1), np.sum(shapes**2, axis=0)), 1.0e-300
+    )
     distance = logs - np.log(model.omega[modes])[:, None]
     _, found = optimize.linear_sum_assignment(1.0 - match + np.abs(distance) / FAR)
     return distance[np.arange(len(modes)), found]

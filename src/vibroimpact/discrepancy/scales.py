@@ -1,11 +1,16 @@
-"""The sizes that an effect's parameters are measured by, so that its bounds mean the same on any tube, load and gap."""
+"""The sizes that an effect's parameters are measured by, so that its bounds mean the same on any
+tube, load and gap.
+"""
 
 import numpy as np
 
 from vibroimpact.effects.places import STOP
 
+
 def scales(model, signals, null):
-    """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at the drive of the highest fit record, m and m/s."""
+    """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at
+    the drive of the highest fit record, m and m/s.
+    """
     drive = model.drive_shapes[:, 0]
     elastic = model.omega > 0.0
     flexibility = np.sum(drive[elastic] ** 2 / model.omega[elastic] ** 2)
@@ -13,27 +18,57 @@ def scales(model, signals, null):
     first = driven[0] if len(driven) else 0
     mass = 1.0 / max(drive[first] ** 2, 1.0e-300)
     stiffness = 1.0 / flexibility
-    load, gap = float(np.max(signals.load)), float(np.nanmax(signals.gap)) if np.isfinite(signals.gap).any() else float(null["displacement"])
-    contact = np.bincount(model.support_of_point, model.contact_stiffness).max() if len(model.support_of_point) else stiffness
+    load = float(np.max(signals.load))
+    gap = (
+        float(np.nanmax(signals.gap))
+        if np.isfinite(signals.gap).any()
+        else float(null["displacement"])
+    )
+    contact = (
+        np.bincount(model.support_of_point, model.contact_stiffness).max()
+        if len(model.support_of_point)
+        else stiffness
+    )
     points = max(np.bincount(model.support_of_point).max(), 1) if len(model.support_of_point) else 1
     displacement, speed = max(null["displacement"], 1.0e-12), max(null["speed"], 1.0e-12)
     damping = model.damping[first] * mass
-    known = np.vstack([model.sensor_positions, np.reshape(model.contact_position, (-1, 3))])  # sensors may all sit in one place
+    known = np.vstack(
+        [model.sensor_positions, np.reshape(model.contact_position, (-1, 3))]
+    )  # sensors may all sit in one place
     length = max(float(np.ptp(known, axis=0).max()), 1.0e-3) * 3.0
     at_contact = model.contact_shapes.reshape(model.modes, -1)
-    held = np.sum(at_contact[elastic] ** 2 / model.omega[elastic][:, None] ** 2, axis=0).max() if at_contact.size else flexibility
+    held = (
+        np.sum(at_contact[elastic] ** 2 / model.omega[elastic][:, None] ** 2, axis=0).max()
+        if at_contact.size
+        else flexibility
+    )
     return {
-        "one": 1.0, "gap": gap, "load": load, "displacement": displacement, "contact_stiffness": contact,
-        "hertz": contact / points / np.sqrt(0.03 * gap), "gap_force": gap / held, "mass": mass,
-        "mass_per_length": mass / length, "tube_translation": stiffness, "tube_rotation": stiffness * length**2 / 100.0, "tube_damping": damping,
-        "damping_per_length": damping / length, "cubic": stiffness / displacement**2, "quadratic": stiffness / displacement,
+        "one": 1.0,
+        "gap": gap,
+        "load": load,
+        "displacement": displacement,
+        "contact_stiffness": contact,
+        "hertz": contact / points / np.sqrt(0.03 * gap),
+        "gap_force": gap / held,
+        "mass": mass,
+        "mass_per_length": mass / length,
+        "tube_translation": stiffness,
+        "tube_rotation": stiffness * length**2 / 100.0,
+        "tube_damping": damping,
+        "damping_per_length": damping / length,
+        "cubic": stiffness / displacement**2,
+        "quadratic": stiffness / displacement,
         "drag": damping / length / speed,
-    }  # fmt: skip
+    }
 
 
 def clearance(model, gap, location):
-    """Return the radial clearance in m that a model's supports at a location (a name, or all) have at a nominal gap, None where they differ."""
+    """Return the radial clearance in m that a model's supports at a location (a name, or all) have
+    at a nominal gap, None where they differ.
+    """
     names = np.array(model.support_names)[model.support_of_point]
     there = names == location if location != "all" else names != STOP
-    own = np.where(np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap)[there]
+    own = np.where(
+        np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap
+    )[there]
     return float(own[0]) if own.size and np.allclose(own, own[0], rtol=1.0e-6) else None

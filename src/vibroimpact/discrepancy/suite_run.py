@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vibroimpact.discrepancy.whole import run_campaign
+from .whole import run_campaign
 
 
 def left_out(plan_effects, arm):
@@ -11,10 +11,20 @@ def left_out(plan_effects, arm):
 
 
 def run_sealed(values, folder, bank, tables, without=frozenset(), draw=0):
-    """Run the campaign in a folder against a configuration with the candidates of a bank, those of some ids left out; the campaign file is then dropped.
+    """Run the campaign in a folder against a configuration with the candidates of a bank, those of
+    some ids left out; the campaign file is then dropped.
 
     draw: number of the draw of seeds.
     """
     folder = Path(folder)
-    run_campaign(values, folder / "campaign.nc", folder, {}, bank=bank, tables=tables, without=without, draw=draw)
+    run_campaign(
+        values,
+        folder / "campaign.nc",
+        folder,
+        {},
+        bank=bank,
+        tables=tables,
+        without=without,
+        draw=draw,
+    )
     (folder / "campaign.nc").unlink()

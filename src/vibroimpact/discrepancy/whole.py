@@ -1,31 +1,52 @@
-"""A whole discrepancy run without the workflow, for campaigns by the dozen or in a hurry: the files are those of the workflow, and what exists is kept."""
+"""A whole discrepancy run without the workflow, for campaigns by the dozen or in a hurry: the files
+are those of the workflow, and what exists is kept.
+"""
 
 import multiprocessing
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from vibroimpact.config import check_config
-from vibroimpact.discrepancy import jobs
-from vibroimpact.discrepancy.bank import lacking
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.conclusion import conclude
-from vibroimpact.discrepancy.dag import NULL_PARTS, screened_files
-from vibroimpact.discrepancy.prepared import Prepared, prepare
-from vibroimpact.discrepancy.run import Run
+from vibroimpact.config.reading import check_config
+
+from . import jobs
+from .bank import lacking
+from .candidates import candidate_named
+from .conclusion import conclude
+from .dag import NULL_PARTS, screened_files
+from .prepared import Prepared, prepare
+from .run import Run
 
 
-def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, longest_s=None, quick=False, workers=1, without=frozenset(), for_all=False, draw=0):
-    """Run a campaign file against a configuration in plain values; results as the workflow's in the folder.
+def run_campaign(
+    values,
+    campaign,
+    folder,
+    provenance,
+    bank=None,
+    tables=None,
+    longest_s=None,
+    quick=False,
+    workers=1,
+    without=frozenset(),
+    for_all=False,
+    draw=0,
+):
+    """Run a campaign file against a configuration in plain values; results as the workflow's in the
+    folder.
 
-    bank: folder of another campaign of the same model, loads and gaps, whose candidates' simulations serve this one if it holds all that is looked at; tables {name: LinearTable}, likewise
-    of its linear candidates, extended here; workers: processes; without: ids of effects that are not in the catalogue this time; for_all: this is to be such a bank,
-    of every candidate and record that any campaign may ask for; draw: number of the draw of seeds.
+    bank: folder of another campaign of the same model, loads and gaps, whose candidates'
+    simulations serve this one if it holds all that is looked at; tables {name: LinearTable},
+    likewise of its linear candidates, extended here; workers: processes; without: ids of effects
+    that are not in the catalogue this time; for_all: this is to be such a bank, of every candidate
+    and record that any campaign may ask for; draw: number of the draw of seeds.
     """
     folder, config = Path(folder), check_config(values, "model")
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
-        prepare(config, campaign, longest_s, tables, without, for_all=for_all, draw=draw, quick=quick).write(prepared_file)
+        prepare(
+            config, campaign, longest_s, tables, without, for_all=for_all, draw=draw, quick=quick
+        ).write(prepared_file)
     prepared = Prepared.read(prepared_file)
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
     run = Run(config, str(campaign), folder, prepared, (), tuple(nulls), ())
@@ -42,8 +63,18 @@ def run_campaign(values, campaign, folder, provenance, bank=None, tables=None, l
     screened = _kept(folder / "screening.json", lambda file: jobs.screening(run, file, quick))
     files = []
     for kind in ("finalists", "pairs"):
-        chosen = screened if kind == "finalists" else _kept(folder / "pairs.json", lambda file: jobs.pairs(run, list(files), screened, file, quick))
-        made = {folder / kind / f"{name}.npz": partial(_finalist, run, name, chosen, quick) for name in chosen[kind]}
+        chosen = (
+            screened
+            if kind == "finalists"
+            else _kept(
+                folder / "pairs.json",
+                lambda file, files=files: jobs.pairs(run, list(files), screened, file, quick),
+            )
+        )
+        made = {
+            folder / kind / f"{name}.npz": partial(_finalist, run, name, chosen, quick)
+            for name in chosen[kind]
+        }
         _make(workers, made)
         files += made
     conclude(run, screened, files, provenance, quick)
@@ -57,11 +88,15 @@ def _finalist(run, name, chosen, quick, file):
     jobs.finalist(run, name, chosen, file, quick)
 
 
-SHARED = {}  # {file: function}: inherited by forked processes, since what the functions hold is too large to be sent
+# {file: function}: inherited by forked processes, since what the functions hold is too large to be
+# sent
+SHARED = {}
 
 
 def _make(workers, makers):
-    """Call every function of {file: function} whose file is not there yet with it, `workers` at a time."""
+    """Call every function of {file: function} whose file is not there yet with it, `workers` at a
+    time.
+    """
     SHARED.clear()
     SHARED.update({file: make for file, make in makers.items() if not file.is_file()})
     if workers == 1 or len(SHARED) < 2:

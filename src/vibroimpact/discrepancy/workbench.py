@@ -1,4 +1,6 @@
-"""All that a campaign and a model give to every job: signals, features of the measurement, the corrected model, and runs of any variant of it."""
+"""All that a campaign and a model give to every job: signals, features of the measurement, the
+corrected model, and runs of any variant of it.
+"""
 
 from copy import copy
 from dataclasses import replace
@@ -6,27 +8,32 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.config import check_config
-from vibroimpact.contraction import CONTRACTION_LIMIT, contact_contraction
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach, with_channel_points
-from vibroimpact.discrepancy.features import feature_layout, record_features
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.linear_record import LinearRecord
-from vibroimpact.discrepancy.linear_stage import fit_modes
-from vibroimpact.discrepancy.linearised import linearised
-from vibroimpact.discrepancy.signals import signals_of
-from vibroimpact.kernels import LANES
+from vibroimpact.config.reading import check_config
+from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
+from vibroimpact.integration.kernels import LANES
+
+from . import nuisance as linear
+from .attach import attach, with_channel_points
+from .features import feature_layout, record_features
+from .forward import Forces, schedule_of, simulate_records
+from .linear_record import LinearRecord
+from .linear_stage import fit_modes
+from .linearised import linearised
+from .signals import signals_of
 
 FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
-TOUCHES = 0.98  # of the gap: a linear response that comes that near is not taken for free of contact
+TOUCHES = (
+    0.98  # of the gap: a linear response that comes that near is not taken for free of contact
+)
 SETTLING_S = 4.0  # until a run from rest has forgotten it
 DRAW = 1000000  # seeds from the first of a draw to that of the next
 SAME = 1.0e-5  # relative difference of two responses without contact
 
 
 class Workbench:
-    """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s where given; draw: number of the draw of seeds."""
+    """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s
+    where given; draw: number of the draw of seeds.
+    """
 
     def __init__(self, config, campaign, longest_s=None, draw=0):
         config = with_channel_points(config, campaign)
@@ -34,17 +41,23 @@ class Workbench:
         self.signals = signals_of(campaign, longest_s)
         self.bare = attach(config, campaign)
         self.layout = feature_layout(self.signals, campaign["channel_point"].values)
-        self.schedule = schedule_of(campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate)
+        self.schedule = schedule_of(
+            campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate
+        )
         self.forces = Forces(self.signals.force, self.schedule)
         self._finer = {1: (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
-        self.nonlinear_low = False  # whether the lowest record, though its modes are seen, is not that of a linear structure
+        # whether the lowest record, though its modes are seen, is not that of a linear structure
+        self.nonlinear_low = False
         self.modes_told = True  # whether its modes tell nuisances all the same
-        self.followed = False  # whether the model holds what moved its modes: no resonances are looked for without it then
+        # whether the model holds what moved its modes: no resonances are looked for without it then
+        self.followed = False
         self.values = self.given = config.model_dump(mode="json")
 
     def corrected_by(self, nuisance):
-        """Return a Workbench of the same campaign with the corrections of a Nuisance, which the lowest record's modes tell; itself where it is None."""
+        """Return a Workbench of the same campaign with the corrections of a Nuisance, which the
+        lowest record's modes tell; itself where it is None.
+        """
         if nuisance is None:
             return self
         out = copy(self)
@@ -53,22 +66,30 @@ class Workbench:
         return out
 
     def rebase(self, values):
-        """Take another configuration, in plain values, for the bare model: an effect that was found belongs to it from here on."""
+        """Take another configuration, in plain values, for the bare model: an effect that was found
+        belongs to it from here on.
+        """
         self.values, self.followed = values, True
         self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
         for name in ("measured_fit", "measured_reading", "low_response", "linear_stage"):
             self.__dict__.pop(name, None)
 
     def variant(self, candidate, physical):
-        """Return the configuration in plain values with a candidate: on what was adopted, or in its place."""
+        """Return the configuration in plain values with a candidate: on what was adopted, or in its
+        place.
+        """
         return candidate.variant(self._without(candidate), physical)
 
     def other_laws(self, candidate, physical):
-        """Return [configuration in plain values] of a candidate by other laws than its own, see effects.effect.Effect."""
+        """Return [configuration in plain values] of a candidate by other laws than its own, see
+        effects.effect.Effect.
+        """
         return candidate.other_laws(self._without(candidate), physical)
 
     def _without(self, candidate):
-        """Return the configuration that a candidate changes: with what was adopted, or in its place."""
+        """Return the configuration that a candidate changes: with what was adopted, or in its
+        place.
+        """
         return self.given if candidate.alone else self.values
 
     @property
@@ -78,31 +99,53 @@ class Workbench:
 
     @cached_property
     def settled(self):
-        """Return (sample,) bool: what is compared. A record that was cut out of a steady state is simulated from rest, and its first seconds are not compared."""
+        """Return (sample,) bool: what is compared. A record that was cut out of a steady state is
+        simulated from rest, and its first seconds are not compared.
+        """
         samples = self.signals.force.shape[-1]
-        return np.arange(samples) >= (0 if self.signals.from_rest else min(round(SETTLING_S * self.signals.rate), samples // 4))
+        return np.arange(samples) >= (
+            0
+            if self.signals.from_rest
+            else min(round(SETTLING_S * self.signals.rate), samples // 4)
+        )
 
     @cached_property
     def linear_stage(self):
-        """Return True where the lowest record tells of the linear structure: a mode is seen and the bare model does not touch."""
+        """Return True where the lowest record tells of the linear structure: a mode is seen and the
+        bare model does not touch.
+        """
         return not self.touches(self.bare) and self.measured_fit is not None
 
     @property
     def reads_lowest(self):
-        """Return True where the lowest record is compared by its modes alone: that of a linear structure. By its features, as the others, where it is not."""
+        """Return True where the lowest record is compared by its modes alone: that of a linear
+        structure. By its features, as the others, where it is not.
+        """
         return self.linear_stage and not self.nonlinear_low
 
     @cached_property
     def linear_record(self):
         """Return the LinearRecord of the lowest record."""
         record = self.signals.lowest
-        return LinearRecord(self.valid(self.signals.force[record]), self.signals.rate, self.signals.band_Hz, self.signals.from_rest)
+        return LinearRecord(
+            self.valid(self.signals.force[record]),
+            self.signals.rate,
+            self.signals.band_Hz,
+            self.signals.from_rest,
+        )
 
     @cached_property
     def measured_fit(self):
         """Return the ModalFit of the lowest measured record, None where no mode is seen."""
         response = self.valid(self.signals.response[self.signals.lowest])
-        return fit_modes(self.linear_record, response, self.bare, self.signals.kinds, self.signals.noise_in_band, search=not self.followed)
+        return fit_modes(
+            self.linear_record,
+            response,
+            self.bare,
+            self.signals.kinds,
+            self.signals.noise_in_band,
+            search=not self.followed,
+        )
 
     @cached_property
     def measured_reading(self):
@@ -111,8 +154,12 @@ class Workbench:
 
     @property
     def bare_reading(self):
-        """Return the Reading that the bare model gives of the modes of the lowest record, as the measuring chain shows it."""
-        return linear.gained(linear.reading_of_model(self.bare, self.measured_fit.modes), self.measuring)
+        """Return the Reading that the bare model gives of the modes of the lowest record, as the
+        measuring chain shows it.
+        """
+        return linear.gained(
+            linear.reading_of_model(self.bare, self.measured_fit.modes), self.measuring
+        )
 
     @cached_property
     def measured_features(self):
@@ -120,14 +167,26 @@ class Workbench:
         out = []
         for record in range(len(self.signals.load)):
             keep = np.isfinite(self.signals.response[record]).all(axis=0) & self.settled
-            out.append(record_features(self.layout, self.signals.force[record][0, keep], self.signals.response[record][:, keep]))
+            out.append(
+                record_features(
+                    self.layout,
+                    self.signals.force[record][0, keep],
+                    self.signals.response[record][:, keep],
+                )
+            )
         return np.array(out)
 
     def model(self, values=None):
-        """Return the attached model of a configuration in plain values, with the nuisance corrections."""
+        """Return the attached model of a configuration in plain values, with the nuisance
+        corrections.
+        """
         if values is None or values is self.values:
             return linear.corrected(self.bare, self.nuisance)
-        return linear.corrected(attach(check_config(values, "variant of the model"), self.campaign), self.nuisance, self.bare)
+        return linear.corrected(
+            attach(check_config(values, "variant of the model"), self.campaign),
+            self.nuisance,
+            self.bare,
+        )
 
     def touches(self, model=None):
         """Return True where the lowest record already brings the bare model into contact."""
@@ -136,43 +195,78 @@ class Workbench:
         if not points.size:
             return False
         record, model = self.linear_record, linearised(model)
-        transfer = 1.0 / (model.omega[:, None] ** 2 - record.omega**2 + 1j * model.damping[:, None] * record.omega + 1.0e-9)
-        modal = np.fft.irfft((model.drive_shapes @ record.spectrum) * transfer, record.length // record.every, axis=-1) / record.every
+        transfer = 1.0 / (
+            model.omega[:, None] ** 2
+            - record.omega**2
+            + 1j * model.damping[:, None] * record.omega
+            + 1.0e-9
+        )
+        modal = (
+            np.fft.irfft(
+                (model.drive_shapes @ record.spectrum) * transfer,
+                record.length // record.every,
+                axis=-1,
+            )
+            / record.every
+        )
         largest = np.abs(points.T @ modal).max(axis=-1).reshape(-1, 2).max(axis=1)
         gap = self.signals.gap[self.signals.lowest]
-        clearance = np.where(np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap)
+        clearance = np.where(
+            np.isnan(model.contact_laws.gap), model.gap_factor * gap, model.contact_laws.gap
+        )
         return bool(np.isfinite(gap) and np.any(largest > TOUCHES * clearance))
 
     def runs(self, records, seeds, first_seed=0):
         """Return [(record, gap, seed)] of `seeds` runs of every record."""
         first = first_seed + DRAW * self.draw
-        return [(int(record), float(self.signals.gap[record]), first + seed) for record in records for seed in range(seeds)]
+        return [
+            (int(record), float(self.signals.gap[record]), first + seed)
+            for record in records
+            for seed in range(seeds)
+        ]
 
     def noisy_features(self, runs, responses):
-        """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each cut to the valid samples of its record; NaN of one that diverged."""
+        """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each
+        cut to the valid samples of its record; NaN of one that diverged.
+        """
         out = []
         for (record, _, seed), response in zip(runs, responses, strict=True):
             if np.isnan(response).any():  # it was thrown off
                 out.append(np.full(len(self.layout.kind), np.nan))
                 continue
             keep = np.isfinite(self.signals.force[record][0]) & self.settled
-            noise = np.random.default_rng([7, seed, record]).standard_normal((len(self.signals.noise), int(keep.sum())), dtype=np.float32)
-            noisy = response[:, : keep.size][:, keep] + noise * self.signals.noise[:, None].astype(np.float32)
+            noise = np.random.default_rng([7, seed, record]).standard_normal(
+                (len(self.signals.noise), int(keep.sum())), dtype=np.float32
+            )
+            noisy = response[:, : keep.size][:, keep] + noise * self.signals.noise[:, None].astype(
+                np.float32
+            )
             out.append(record_features(self.layout, self.signals.force[record][0, keep], noisy))
         return np.array(out)
 
     def stepped(self, model):
-        """Return (Schedule, Forces) with as many steps as the contact of a model needs, up to FINER times the usual; the usual ones where that is too few."""
+        """Return (Schedule, Forces) with as many steps as the contact of a model needs, up to FINER
+        times the usual; the usual ones where that is too few.
+        """
         for finer in (1, *FINER):
-            if contact_contraction(model, 1.0 / (finer * self.schedule.steps_per_second), self.schedule.scheme) < CONTRACTION_LIMIT:
+            if (
+                contact_contraction(
+                    model, 1.0 / (finer * self.schedule.steps_per_second), self.schedule.scheme
+                )
+                < CONTRACTION_LIMIT
+            ):
                 if finer not in self._finer:
-                    schedule = replace(self.schedule, steps_per_second=finer * self.schedule.steps_per_second)
+                    schedule = replace(
+                        self.schedule, steps_per_second=finer * self.schedule.steps_per_second
+                    )
                     self._finer[finer] = schedule, Forces(self.signals.force, schedule)
                 return self._finer[finer]
         return self.schedule, self.forces
 
     def respond(self, model, runs, measuring=None):
-        """Return (run, channel, sample) responses with the gains of the nuisance and the faults of the measuring chain (Measuring)."""
+        """Return (run, channel, sample) responses with the gains of the nuisance and the faults of
+        the measuring chain (Measuring).
+        """
         schedule, forces = self.stepped(model)
         chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
         factor = np.prod([fault.force_gain for fault in chain])
@@ -185,24 +279,43 @@ class Workbench:
         return responses * gain[:, None].astype(np.float32)
 
     def features(self, model, runs, measuring=None):
-        """Return (run, feature): the features of runs with the measuring noise, each cut to the valid samples of its record."""
+        """Return (run, feature): the features of runs with the measuring noise, each cut to the
+        valid samples of its record.
+        """
         return self.noisy_features(runs, self.respond(model, runs, measuring))
 
     @cached_property
     def low_response(self):
-        """Return (channel, sample): the simulated lowest record of the corrected bare model, without the gains of the nuisance."""
-        return self.respond(self.model(), self.runs([self.signals.lowest], 1))[0] / self.gains[:, None]
+        """Return (channel, sample): the simulated lowest record of the corrected bare model,
+        without the gains of the nuisance.
+        """
+        return (
+            self.respond(self.model(), self.runs([self.signals.lowest], 1))[0] / self.gains[:, None]
+        )
 
     def low_reading(self, response):
-        """Return the Reading, nuisances taken out, of a variant's lowest record (channel, sample), None where it answers as the bare model does."""
-        change = np.sqrt(np.mean((response - self.low_response) ** 2)) / np.sqrt(np.mean(self.low_response**2))
+        """Return the Reading, nuisances taken out, of a variant's lowest record (channel, sample),
+        None where it answers as the bare model does.
+        """
+        change = np.sqrt(np.mean((response - self.low_response) ** 2)) / np.sqrt(
+            np.mean(self.low_response**2)
+        )
         if not change > SAME:
             return None
         if self.late is not None:  # the fit of the measured record took the delays out
-            response = replace(self.late, delay=-self.late.delay).delayed(response, self.signals.rate)
+            response = replace(self.late, delay=-self.late.delay).delayed(
+                response, self.signals.rate
+            )
         keep = np.isfinite(self.signals.force[self.signals.lowest][0])
         start = linear.corrected(self.bare, self.nuisance)
-        fit = fit_modes(self.linear_record, response[:, keep], start, self.signals.kinds, self.signals.noise_in_band, self.measured_fit.modes)
+        fit = fit_modes(
+            self.linear_record,
+            response[:, keep],
+            start,
+            self.signals.kinds,
+            self.signals.noise_in_band,
+            self.measured_fit.modes,
+        )
         return linear.without(linear.reading_of_fit(fit, start), self.nuisance)
 
     def seeds_of_a_batch(self, records):
@@ -216,9 +329,13 @@ class Workbench:
 
 
 def corrected_nuisance(bench, reading=None):
-    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record under a Reading; that of the bare model where None."""
+    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record under a
+    Reading; that of the bare model where None.
+    """
     fit = bench.measured_fit
     if fit is None:
         return None, 0.0, 0.0, np.zeros(0)
-    score, chi_square, pulls = linear.likelihood(bench.measured_reading, bench.bare_reading if reading is None else reading, fit.covariance)
+    score, chi_square, pulls = linear.likelihood(
+        bench.measured_reading, bench.bare_reading if reading is None else reading, fit.covariance
+    )
     return linear.nuisance_of(pulls, fit.modes, len(bench.signals.names)), score, chi_square, pulls

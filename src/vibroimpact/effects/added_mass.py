@@ -1,23 +1,26 @@
 """A mass at a point of the structure."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with a point mass at a named point."""
     if parameters["mass"] == 0.0:
         return values
-    return values | {"masses": [*values["masses"], {"name": "added_mass", "point": location, "mass_kg": parameters["mass"]}]}
+    return values | {
+        "masses": [
+            *values["masses"],
+            {"name": "added_mass", "point": location, "mass_kg": parameters["mass"]},
+        ]
+    }
 
 
 EFFECT = Effect(
     id="added_mass",
     explanation="the structure carries a mass that the model lacks",
     source="rigid point mass",
-    parameters=(
-        Parameter("mass", "kg", 0.002, 2.0, 0.0, per="mass"),
-    ),
+    parameters=(Parameter("mass", "kg", 0.002, 2.0, 0.0, per="mass"),),
     apply=apply,
     linear=True,
     broken=("T1",),

@@ -1,14 +1,23 @@
 """A stop behind a clearance, at a point that the model leaves free."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with a pair of flat stops at a point, across the tube along the force."""
+    """Return the configuration with a pair of flat stops at a point, across the tube along the
+    force.
+    """
     along = places.across_deg(values, location)
-    support = {"name": places.STOP, "at_m": list(values["points"][location]), "height_m": 0.002, "points": 1, "stiffness_N_per_m": parameters["stiffness"],
-               "gap_m": parameters["half_gap"], "profile": {"kind": "planes", "normals_deg": [along, along - 180.0]}}  # fmt: skip
+    support = {
+        "name": places.STOP,
+        "at_m": list(values["points"][location]),
+        "height_m": 0.002,
+        "points": 1,
+        "stiffness_N_per_m": parameters["stiffness"],
+        "gap_m": parameters["half_gap"],
+        "profile": {"kind": "planes", "normals_deg": [along, along - 180.0]},
+    }
     return values | {"supports": [*values["supports"], support]}
 
 
@@ -17,8 +26,19 @@ EFFECT = Effect(
     explanation="a stop behind a clearance that the model lacks",
     source="dead zone: stiffness (|u| - half_gap) beyond half_gap",
     parameters=(
-        Parameter("half_gap", "m", 0.05, 3.0, None, per="displacement", design=(0.3, 0.55, 0.8), gain_power=1.0),
-        Parameter("stiffness", "N/m", 0.1, 1000.0, None, per="tube_translation", design=(0.12, 0.35, 0.7)),
+        Parameter(
+            "half_gap",
+            "m",
+            0.05,
+            3.0,
+            None,
+            per="displacement",
+            design=(0.3, 0.55, 0.8),
+            gain_power=1.0,
+        ),
+        Parameter(
+            "stiffness", "N/m", 0.1, 1000.0, None, per="tube_translation", design=(0.12, 0.35, 0.7)
+        ),
     ),
     apply=apply,
     below_contact=True,

@@ -1,21 +1,21 @@
 """Kelvin-Voigt damping of a support: it pushes, and never pulls."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with the total damping of the supports of a location."""
-    return places.with_supports(values, location, lambda support: {"damping_N_s_per_m": parameters["damping"]})
+    return places.with_supports(
+        values, location, lambda support: {"damping_N_s_per_m": parameters["damping"]}
+    )
 
 
 EFFECT = Effect(
     id="contact_damping",
     explanation="the contact dissipates with the speed of the indentation",
     source="Kelvin-Voigt: max(0, k p + c dp/dt)",
-    parameters=(
-        Parameter("damping", "N s/m", 2.0e-6, 3.0e-3, 0.0, per="contact_stiffness"),
-    ),
+    parameters=(Parameter("damping", "N s/m", 2.0e-6, 3.0e-3, 0.0, per="contact_stiffness"),),
     apply=apply,
     locations=places.supports,
     aliases=("hunt_crossley",),

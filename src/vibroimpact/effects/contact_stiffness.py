@@ -1,21 +1,21 @@
 """The stiffness of a support."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with the total stiffness of the supports of a location."""
-    return places.with_supports(values, location, lambda support: {"stiffness_N_per_m": parameters["stiffness"]})
+    return places.with_supports(
+        values, location, lambda support: {"stiffness_N_per_m": parameters["stiffness"]}
+    )
 
 
 EFFECT = Effect(
     id="contact_stiffness",
     explanation="the contact is softer or stiffer than assumed",
     source="linear spring of the contact, total of its points",
-    parameters=(
-        Parameter("stiffness", "N/m", 0.03, 10.0, None, per="contact_stiffness"),
-    ),
+    parameters=(Parameter("stiffness", "N/m", 0.03, 10.0, None, per="contact_stiffness"),),
     apply=apply,
     locations=places.supports,
     aliases=("hertz", "plate_flexibility"),

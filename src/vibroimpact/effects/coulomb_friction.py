@@ -1,38 +1,54 @@
 """Dry friction of constant force at a point."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
-
+from . import places
+from .effect import Effect, Parameter
 
 STICK_PER_FORCE = 1.0e5  # 1/m: it slips after 10 micrometres
 
 
 def apply(values, parameters, location):
     """Return the configuration with a slider between a point and the ground, along the force."""
-    laws = {"slip_limit_N": parameters["force"], "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"]}
-    return places.with_element(values, "coulomb_friction", location, places.across(values, location), **laws)
+    laws = {
+        "slip_limit_N": parameters["force"],
+        "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"],
+    }
+    return places.with_element(
+        values, "coulomb_friction", location, places.across(values, location), **laws
+    )
 
 
 def stiff(values, parameters, location):
-    """Return the configuration with a slider that sticks to a spring twice as stiff: how far a joint gives before it slips is its own matter."""
-    laws = {"slip_limit_N": parameters["force"], "stick_stiffness_N_per_m": 2.0 * STICK_PER_FORCE * parameters["force"]}
-    return places.with_element(values, "coulomb_friction", location, places.across(values, location), **laws)
+    """Return the configuration with a slider that sticks to a spring twice as stiff: how far a
+    joint gives before it slips is its own matter.
+    """
+    laws = {
+        "slip_limit_N": parameters["force"],
+        "stick_stiffness_N_per_m": 2.0 * STICK_PER_FORCE * parameters["force"],
+    }
+    return places.with_element(
+        values, "coulomb_friction", location, places.across(values, location), **laws
+    )
 
 
 def gradual(values, parameters, location):
-    """Return the configuration with sliders that give way one after another, as stiff and as strong in all: a joint slips here before it slips there, and loses energy
-    before it slips as a whole (W.D. Iwan, J. Appl. Mech. 33 (1966) 893-900)."""
-    laws = {"slip_limit_N": parameters["force"], "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"]}
-    return places.side_by_side(values, "coulomb_friction", location, places.across(values, location), **laws)
+    """Return the configuration with sliders that give way one after another, as stiff and as strong
+    in all: a joint slips here before it slips there, and loses energy before it slips as a whole
+    (W.D. Iwan, J. Appl. Mech. 33 (1966) 893-900).
+    """
+    laws = {
+        "slip_limit_N": parameters["force"],
+        "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"],
+    }
+    return places.side_by_side(
+        values, "coulomb_friction", location, places.across(values, location), **laws
+    )
 
 
 EFFECT = Effect(
     id="coulomb_friction",
     explanation="something rubs with a constant force",
     source="Coulomb with an elastic stick spring (Jenkins element)",
-    parameters=(
-        Parameter("force", "N", 0.003, 2.0, 0.0, per="load", gain_power=1.0),
-    ),
+    parameters=(Parameter("force", "N", 0.003, 2.0, 0.0, per="load", gain_power=1.0),),
     apply=apply,
     below_contact=True,
     broken=("T1", "T2", "T5"),

@@ -1,7 +1,7 @@
 """Coulomb friction of the contact, in proportion to its force."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
@@ -13,9 +13,7 @@ EFFECT = Effect(
     id="dry_friction",
     explanation="the contact rubs",
     source="Coulomb; elastic stick spring of the contact stiffness",
-    parameters=(
-        Parameter("mu", "1", 0.01, 1.0, 0.0),
-    ),
+    parameters=(Parameter("mu", "1", 0.01, 1.0, 0.0),),
     apply=apply,
     locations=places.supports,
     broken=("T5",),

@@ -2,20 +2,27 @@
 
 import math
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with the mass as density of the wall and the drag as damping in proportion to the mass."""
+    """Return the configuration with the mass as density of the wall and the drag as damping in
+    proportion to the mass.
+    """
     structure, section = values["structure"], values["structure"]["section"]
     inner = section["outer_diameter_m"] - 2.0 * section["wall_thickness_m"]
     area = 0.25 * math.pi * (section["outer_diameter_m"] ** 2 - inner**2)
     material = structure["material"]
     density = material["density_kg_per_m3"] + parameters["mass"] / area
     damping = dict(values["damping"])
-    damping["mass_coefficient_per_s"] = damping.get("mass_coefficient_per_s", 0.0) + parameters["damping"] / (density * area)
-    return values | {"structure": structure | {"material": material | {"density_kg_per_m3": density}}, "damping": damping}
+    damping["mass_coefficient_per_s"] = damping.get("mass_coefficient_per_s", 0.0) + parameters[
+        "damping"
+    ] / (density * area)
+    return values | {
+        "structure": structure | {"material": material | {"density_kg_per_m3": density}},
+        "damping": damping,
+    }
 
 
 EFFECT = Effect(
@@ -24,7 +31,9 @@ EFFECT = Effect(
     source="added mass and linear drag per length",
     parameters=(
         Parameter("mass", "kg/m", 0.005, 2.0, 0.0, per="mass_per_length"),
-        Parameter("damping", "N s/m^2", 0.0, 20.0, 0.0, per="damping_per_length", log=False, design=(0.1,)),
+        Parameter(
+            "damping", "N s/m^2", 0.0, 20.0, 0.0, per="damping_per_length", log=False, design=(0.1,)
+        ),
     ),
     apply=apply,
     linear=True,

@@ -2,24 +2,32 @@
 
 import math
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
-from vibroimpact.effects.foliate_obstacle import LOBES
+from . import places
+from .effect import Effect, Parameter
+from .foliate_obstacle import LOBES
 
 
 def apply(values, parameters, location):
-    """Return the configuration with four flat lands at the supports of a location, as far from the centre as the circle was."""
+    """Return the configuration with four flat lands at the supports of a location, as far from the
+    centre as the circle was.
+    """
     normals = [math.degrees(parameters["angle"]) + 360.0 / LOBES * land for land in range(LOBES)]
-    return places.with_supports(values, location, lambda support: {"profile": {"kind": "planes", "normals_deg": normals}})
+    return places.with_supports(
+        values, location, lambda support: {"profile": {"kind": "planes", "normals_deg": normals}}
+    )
 
 
 EFFECT = Effect(
     id="foliate_lands",
     law_of="foliate_obstacle",
     explanation="the hole is not circular: four flat lands, the limit of its lobes",
-    source="distance of each land from the centre = gap; force along its normal, one of them at angle",
+    source=(
+        "distance of each land from the centre = gap; force along its normal, one of them at angle"
+    ),
     parameters=(
-        Parameter("angle", "rad", 0.0, 1.5707963267948966, None, log=False, design=(0.0, 0.25, 0.5, 0.75)),
+        Parameter(
+            "angle", "rad", 0.0, 1.5707963267948966, None, log=False, design=(0.0, 0.25, 0.5, 0.75)
+        ),
     ),
     apply=apply,
     locations=places.supports,

@@ -2,13 +2,18 @@
 
 import math
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with four lobes at the supports of a location."""
-    profile = {"kind": "lobes", "count": LOBES, "depth_m": parameters["depth"], "angle_deg": math.degrees(parameters["angle"])}
+    profile = {
+        "kind": "lobes",
+        "count": LOBES,
+        "depth_m": parameters["depth"],
+        "angle_deg": math.degrees(parameters["angle"]),
+    }
     return places.with_supports(values, location, lambda support: {"profile": profile})
 
 
@@ -18,10 +23,17 @@ LOBES = 4
 EFFECT = Effect(
     id="foliate_obstacle",
     explanation="the hole is not circular: lobes, or flat lands as their limit",
-    source="r(theta) = gap + depth (1 - cos(4 (theta - angle))) / 2; force along the normal of the profile",
+    source=(
+        "r(theta) = gap + depth (1 - cos(4 (theta - angle))) / 2; force along the normal of the"
+        " profile"
+    ),
     parameters=(
-        Parameter("depth", "m", 0.03, 1.5, 0.0, per="gap", design=(0.25, 0.65, 1.0), gain_power=1.0),
-        Parameter("angle", "rad", 0.0, 1.5707963267948966, 0.0, log=False, design=(0.0, 0.25, 0.5, 0.75)),
+        Parameter(
+            "depth", "m", 0.03, 1.5, 0.0, per="gap", design=(0.25, 0.65, 1.0), gain_power=1.0
+        ),
+        Parameter(
+            "angle", "rad", 0.0, 1.5707963267948966, 0.0, log=False, design=(0.0, 0.25, 0.5, 0.75)
+        ),
     ),
     apply=apply,
     locations=places.supports,

@@ -2,25 +2,35 @@
 
 import math
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with the force turned by an angle, about_z or about_tube: the tangent where it acts."""
+    """Return the configuration with the force turned by an angle, about_z or about_tube: the
+    tangent where it acts.
+    """
     turned = values["excitation"].get("turn_deg", 0.0) + math.degrees(parameters["angle"])
-    return values | {"excitation": values["excitation"] | {"turn_deg": turned, "turn_about": location.removeprefix("about_")}}
+    return values | {
+        "excitation": (
+            values["excitation"]
+            | {
+                "turn_deg": turned,
+                "turn_about": location.removeprefix("about_"),
+            }
+        )
+    }
 
 
 EFFECT = Effect(
     id="force_misalignment",
     explanation="the force is not along its stated direction",
     source="geometry",
-    parameters=(
-        Parameter("angle", "rad", -1.2, 1.2, 0.0, log=False),
-    ),
+    parameters=(Parameter("angle", "rad", -1.2, 1.2, 0.0, log=False),),
     apply=apply,
     linear=True,
     broken=("T1", "T4"),
-    locations=lambda values: ["about_z", "about_tube"] if values["structure"]["kind"] in places.TUBES else ["about_z"],
+    locations=lambda values: (
+        ["about_z", "about_tube"] if values["structure"]["kind"] in places.TUBES else ["about_z"]
+    ),
 )

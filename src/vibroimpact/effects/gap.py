@@ -1,7 +1,7 @@
 """A support whose clearance is not the nominal one."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
@@ -17,7 +17,9 @@ def apply(values, parameters, location):
 
 def _times(given, factor):
     """A number, or a list of them, times a factor."""
-    return [factor * value for value in given] if isinstance(given, (list, tuple)) else factor * given
+    return (
+        [factor * value for value in given] if isinstance(given, (list, tuple)) else factor * given
+    )
 
 
 EFFECT = Effect(
@@ -25,7 +27,15 @@ EFFECT = Effect(
     explanation="the radial clearance differs from the nominal one",
     source="scaling: q/gap depends on force/gap alone",
     parameters=(
-        Parameter("gap_factor", "1", 0.4, 2.5, 1.0, design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9), gain_power=1.0),
+        Parameter(
+            "gap_factor",
+            "1",
+            0.4,
+            2.5,
+            1.0,
+            design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9),
+            gain_power=1.0,
+        ),
     ),
     apply=apply,
     locations=places.supports,

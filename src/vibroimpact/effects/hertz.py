@@ -1,12 +1,16 @@
 """A contact that stiffens with the indentation."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with Hertz contacts, the coefficient that of one contact point."""
-    return places.with_supports(values, location, lambda support: {"hertz_N_per_m15": parameters["coefficient"] * support["points"]})
+    return places.with_supports(
+        values,
+        location,
+        lambda support: {"hertz_N_per_m15": parameters["coefficient"] * support["points"]},
+    )
 
 
 EFFECT = Effect(

@@ -1,6 +1,6 @@
 """Damping of the modes other than assumed."""
 
-from vibroimpact.effects.effect import Effect, Parameter
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
@@ -10,7 +10,9 @@ def apply(values, parameters, location):
         if key in damping:
             damping[key] = parameters["factor"] * damping[key]
     if "first_ratios" in damping:
-        damping["first_ratios"] = [parameters["factor"] * ratio for ratio in damping["first_ratios"]]
+        damping["first_ratios"] = [
+            parameters["factor"] * ratio for ratio in damping["first_ratios"]
+        ]
     return values | {"damping": damping}
 
 
@@ -18,9 +20,7 @@ EFFECT = Effect(
     id="modal_damping",
     explanation="the modes are damped otherwise than assumed",
     source="viscous modal damping",
-    parameters=(
-        Parameter("factor", "1", 0.08, 12.0, 1.0),
-    ),
+    parameters=(Parameter("factor", "1", 0.08, 12.0, 1.0),),
     apply=apply,
     linear=True,
     broken=("T1", "T5"),

@@ -1,12 +1,15 @@
 """A mode whose frequency is not the computed one."""
 
-from vibroimpact.effects.effect import Effect, Parameter
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with the frequency of mode_<n> multiplied by a factor."""
     mode = int(location.removeprefix("mode_"))
-    factors = [*values["mode_frequency_factors"], *[1.0] * (mode - len(values["mode_frequency_factors"]))]
+    factors = [
+        *values["mode_frequency_factors"],
+        *[1.0] * (mode - len(values["mode_frequency_factors"])),
+    ]
     factors[mode - 1] *= parameters["factor"]
     return values | {"mode_frequency_factors": factors}
 
@@ -15,9 +18,7 @@ EFFECT = Effect(
     id="mode_frequency_error",
     explanation="a mode has another frequency than computed",
     source="model error of the linear structure",
-    parameters=(
-        Parameter("factor", "1", 0.7, 1.4, 1.0, log=True),
-    ),
+    parameters=(Parameter("factor", "1", 0.7, 1.4, 1.0, log=True),),
     apply=apply,
     linear=True,
     broken=("T1",),

@@ -1,12 +1,16 @@
 """A plate that gives way: a mass on a spring carries the support."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with the supports of a location on a plate of mass and stiffness."""
-    plate = {"mass_kg": parameters["mass"], "stiffness_N_per_m": parameters["stiffness"], "damping_ratio": DAMPING_RATIO}
+    plate = {
+        "mass_kg": parameters["mass"],
+        "stiffness_N_per_m": parameters["stiffness"],
+        "damping_ratio": DAMPING_RATIO,
+    }
     return places.with_supports(values, location, lambda support: {"plate": plate})
 
 
@@ -18,7 +22,16 @@ EFFECT = Effect(
     explanation="the support plate moves",
     source="mass on a spring in both transverse directions",
     parameters=(
-        Parameter("stiffness", "N/m", 0.002, 8.0, None, per="contact_stiffness", design=(0.15, 0.4, 0.65, 0.8), over="mass"),  # the plate's own frequency
+        Parameter(
+            "stiffness",
+            "N/m",
+            0.002,
+            8.0,
+            None,
+            per="contact_stiffness",
+            design=(0.15, 0.4, 0.65, 0.8),
+            over="mass",
+        ),  # the plate's own frequency
         Parameter("mass", "kg", 0.01, 3.0, None, per="mass", design=(0.2, 0.6, 1.0)),
     ),
     apply=apply,

@@ -1,21 +1,39 @@
 """A constant force that presses the tube towards one side."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with a constant force along x and y at the middle of a support, or of each of them."""
-    chosen = [support for support in values["supports"] if support["at_m"] is not None and places.sits_at(support, location)]
-    loads = [{"point": f"at_{support['name']}", "direction": direction, "force_N": parameters[name]} for support in chosen
-             for name, direction in (("force_x", [1.0, 0.0, 0.0]), ("force_y", [0.0, 1.0, 0.0]))]  # fmt: skip
+    """Return the configuration with a constant force along x and y at the middle of a support, or
+    of each of them.
+    """
+    chosen = [
+        support
+        for support in values["supports"]
+        if support["at_m"] is not None and places.sits_at(support, location)
+    ]
+    loads = [
+        {"point": f"at_{support['name']}", "direction": direction, "force_N": parameters[name]}
+        for support in chosen
+        for name, direction in (("force_x", [1.0, 0.0, 0.0]), ("force_y", [0.0, 1.0, 0.0]))
+    ]
     excitation = values["excitation"] | {"constant": [*values["excitation"]["constant"], *loads]}
-    return values | {"excitation": excitation, "points": values["points"] | {f"at_{support['name']}": support["at_m"] for support in chosen}}
+    return values | {
+        "excitation": excitation,
+        "points": (
+            values["points"] | {f"at_{support['name']}": support["at_m"] for support in chosen}
+        ),
+    }
 
 
 def locations(values):
     """Return all supports together, then one by one."""
-    names = [support["name"] for support in values["supports"] if support["at_m"] is not None and support["name"] != places.STOP]
+    names = [
+        support["name"]
+        for support in values["supports"]
+        if support["at_m"] is not None and support["name"] != places.STOP
+    ]
     return ["all", *names] if len(names) > 1 else names
 
 
@@ -24,8 +42,28 @@ EFFECT = Effect(
     explanation="a constant force presses the tube to one side",
     source="statics",
     parameters=(
-        Parameter("force_x", "N", -2.0, 2.0, 0.0, per="gap_force", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
-        Parameter("force_y", "N", -2.0, 2.0, 0.0, per="gap_force", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
+        Parameter(
+            "force_x",
+            "N",
+            -2.0,
+            2.0,
+            0.0,
+            per="gap_force",
+            log=False,
+            design=(0.1, 0.5, 0.9),
+            gain_power=1.0,
+        ),
+        Parameter(
+            "force_y",
+            "N",
+            -2.0,
+            2.0,
+            0.0,
+            per="gap_force",
+            log=False,
+            design=(0.1, 0.5, 0.9),
+            gain_power=1.0,
+        ),
     ),
     apply=apply,
     locations=locations,

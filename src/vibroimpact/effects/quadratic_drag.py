@@ -1,27 +1,40 @@
 """A fluid whose drag grows with the square of the speed."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
-
+from . import places
+from .effect import Effect, Parameter
 
 STATIONS = 8
 
 
 def apply(values, parameters, location):
-    """Return the configuration with drag at evenly spaced stations of the tube, in the two directions across x-y."""
+    """Return the configuration with drag at evenly spaced stations of the tube, in the two
+    directions across x-y.
+    """
     points, length = places.stations(values, STATIONS)
     values = values | {"points": values["points"] | points}
     for name in points:
         for axis, across, direction in (("x", "y", (1.0, 0.0, 0.0)), ("y", "x", (0.0, 1.0, 0.0))):
-            drag = {"drag_N_s2_per_m2": parameters["coefficient"] * length, "drag_partner": f"drag_{name}_{across}"}
-            values = places.with_element(values, f"drag_{name}_{axis}", name, direction, **drag if parameters["coefficient"] else {})
+            drag = {
+                "drag_N_s2_per_m2": parameters["coefficient"] * length,
+                "drag_partner": f"drag_{name}_{across}",
+            }
+            values = places.with_element(
+                values,
+                f"drag_{name}_{axis}",
+                name,
+                direction,
+                **drag if parameters["coefficient"] else {},
+            )
     return values
 
 
 EFFECT = Effect(
     id="quadratic_drag",
     explanation="a fluid at rest brakes the tube with the square of its speed",
-    source="J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v, v the vector across z",
+    source=(
+        "J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v, v the vector"
+        " across z"
+    ),
     parameters=(
         Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag", gain_power=-1.0),
     ),

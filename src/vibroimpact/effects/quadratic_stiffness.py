@@ -1,12 +1,20 @@
 """A spring that is stiffer on one side."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with a quadratic spring between a point and the ground, along the force."""
-    return places.with_element(values, "quadratic_stiffness", location, places.across(values, location), quadratic_N_per_m2=parameters["coefficient"])
+    """Return the configuration with a quadratic spring between a point and the ground, along the
+    force.
+    """
+    return places.with_element(
+        values,
+        "quadratic_stiffness",
+        location,
+        places.across(values, location),
+        quadratic_N_per_m2=parameters["coefficient"],
+    )
 
 
 EFFECT = Effect(
@@ -14,7 +22,17 @@ EFFECT = Effect(
     explanation="a spring is stiffer to one side",
     source="force = coefficient u^2",
     parameters=(
-        Parameter("coefficient", "N/m^2", -0.15, 0.15, 0.0, per="quadratic", log=False, design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0), gain_power=-1.0),
+        Parameter(
+            "coefficient",
+            "N/m^2",
+            -0.15,
+            0.15,
+            0.0,
+            per="quadratic",
+            log=False,
+            design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
+            gain_power=-1.0,
+        ),
     ),
     apply=apply,
     below_contact=True,

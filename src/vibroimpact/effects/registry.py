@@ -1,6 +1,6 @@
 """The one list of effects."""
 
-from vibroimpact.effects import (
+from . import (
     added_mass,
     clearance,
     contact_damping,
@@ -30,32 +30,35 @@ from vibroimpact.effects import (
     support_offset,
 )
 
-EFFECTS = {module.EFFECT.id: module.EFFECT for module in (
-    added_mass,
-    clearance,
-    contact_damping,
-    contact_stiffness,
-    coulomb_friction,
-    cubic_stiffness,
-    dry_friction,
-    fluid_added_mass_damping,
-    foliate_lands,
-    foliate_obstacle,
-    force_misalignment,
-    gap,
-    hertz,
-    hunt_crossley,
-    lateral_stinger,
-    modal_damping,
-    mode_frequency_error,
-    plate_flexibility,
-    preload,
-    quadratic_drag,
-    quadratic_stiffness,
-    root_stiffness,
-    saturation_stiffness,
-    sensor_delay,
-    sensor_gain,
-    shaker_interaction,
-    support_offset,
-)}  # fmt: skip
+EFFECTS = {
+    module.EFFECT.id: module.EFFECT
+    for module in (
+        added_mass,
+        clearance,
+        contact_damping,
+        contact_stiffness,
+        coulomb_friction,
+        cubic_stiffness,
+        dry_friction,
+        fluid_added_mass_damping,
+        foliate_lands,
+        foliate_obstacle,
+        force_misalignment,
+        gap,
+        hertz,
+        hunt_crossley,
+        lateral_stinger,
+        modal_damping,
+        mode_frequency_error,
+        plate_flexibility,
+        preload,
+        quadratic_drag,
+        quadratic_stiffness,
+        root_stiffness,
+        saturation_stiffness,
+        sensor_delay,
+        sensor_gain,
+        shaker_interaction,
+        support_offset,
+    )
+}

@@ -1,14 +1,18 @@
 """Ends that give way: springs in place of clamps."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
     """Return the configuration with both ends of the tube on springs."""
-    ends = {"kind": "springs", "translation_N_per_m": parameters["translation"], "rotation_N_m_per_rad": parameters["rotation"]}
+    ends = {
+        "kind": "springs",
+        "translation_N_per_m": parameters["translation"],
+        "rotation_N_m_per_rad": parameters["rotation"],
+    }
     keys = ("root",) if values["structure"]["kind"] == "u_tube" else ("start", "end")
-    return values | {"structure": values["structure"] | {key: ends for key in keys}}
+    return values | {"structure": values["structure"] | dict.fromkeys(keys, ends)}
 
 
 EFFECT = Effect(
@@ -16,8 +20,12 @@ EFFECT = Effect(
     explanation="the roots are not clamped",
     source="springs against translation and rotation at both ends",
     parameters=(
-        Parameter("translation", "N/m", 30.0, 3.0e5, None, per="tube_translation", design=(0.3, 0.6, 1.0)),
-        Parameter("rotation", "N m/rad", 1.0, 1.0e3, None, per="tube_rotation", design=(0.2, 0.5, 0.8)),
+        Parameter(
+            "translation", "N/m", 30.0, 3.0e5, None, per="tube_translation", design=(0.3, 0.6, 1.0)
+        ),
+        Parameter(
+            "rotation", "N m/rad", 1.0, 1.0e3, None, per="tube_rotation", design=(0.2, 0.5, 0.8)
+        ),
     ),
     apply=apply,
     linear=True,

@@ -1,20 +1,34 @@
 """A spring whose force saturates."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
-from vibroimpact.effects.lateral_stinger import along_the_force
+from . import places
+from .effect import Effect, Parameter
+from .lateral_stinger import along_the_force
 
 
 def apply(values, parameters, location):
-    """Return the configuration with a saturating spring between a point and the ground, along the force."""
-    laws = {"saturation_stiffness_N_per_m": parameters["stiffness"], "saturation_limit_N": parameters["limit"]}
-    return places.with_element(values, "saturation_stiffness", location, places.across(values, location), **laws)
+    """Return the configuration with a saturating spring between a point and the ground, along the
+    force.
+    """
+    laws = {
+        "saturation_stiffness_N_per_m": parameters["stiffness"],
+        "saturation_limit_N": parameters["limit"],
+    }
+    return places.with_element(
+        values, "saturation_stiffness", location, places.across(values, location), **laws
+    )
 
 
 def rounded(values, parameters, location):
-    """Return the configuration with a spring that saturates little by little: the limit of a grip, or of a clamp that opens, has no corner."""
-    laws = {"saturation_stiffness_N_per_m": parameters["stiffness"], "saturation_limit_N": parameters["limit"]}
-    return places.side_by_side(values, "saturation_stiffness", location, places.across(values, location), **laws)
+    """Return the configuration with a spring that saturates little by little: the limit of a grip,
+    or of a clamp that opens, has no corner.
+    """
+    laws = {
+        "saturation_stiffness_N_per_m": parameters["stiffness"],
+        "saturation_limit_N": parameters["limit"],
+    }
+    return places.side_by_side(
+        values, "saturation_stiffness", location, places.across(values, location), **laws
+    )
 
 
 EFFECT = Effect(
@@ -22,8 +36,12 @@ EFFECT = Effect(
     explanation="a spring holds up to a limit only",
     source="force = clip(stiffness u, +-limit)",
     parameters=(
-        Parameter("stiffness", "N/m", 0.05, 50.0, 0.0, per="tube_translation", design=(0.2, 0.5, 0.8)),
-        Parameter("limit", "N", 0.02, 10.0, 0.0, per="load", design=(0.2, 0.5, 0.8), gain_power=1.0),
+        Parameter(
+            "stiffness", "N/m", 0.05, 50.0, 0.0, per="tube_translation", design=(0.2, 0.5, 0.8)
+        ),
+        Parameter(
+            "limit", "N", 0.02, 10.0, 0.0, per="load", design=(0.2, 0.5, 0.8), gain_power=1.0
+        ),
     ),
     apply=apply,
     below_contact=True,

@@ -1,14 +1,12 @@
 """A sensor that reads late."""
 
-from vibroimpact.effects.effect import Effect, Parameter
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="sensor_delay",
     explanation="a sensor reads late",
     source="filters, wireless links, separate recorders",
-    parameters=(
-        Parameter("delay", "s", -0.01, 0.01, 0.0, log=False),
-    ),
+    parameters=(Parameter("delay", "s", -0.01, 0.01, 0.0, log=False),),
     linear=True,
     measured=True,
     broken=("T1",),

@@ -1,12 +1,18 @@
 """A support whose centre is not where the tube is."""
 
-from vibroimpact.effects import places
-from vibroimpact.effects.effect import Effect, Parameter
+from . import places
+from .effect import Effect, Parameter
 
 
 def apply(values, parameters, location):
-    """Return the configuration with the centres of a location moved; x and y are the support's two transverse directions."""
-    return places.with_supports(values, location, lambda support: {"centre_offset_m": [parameters["offset_x"], parameters["offset_y"]]})
+    """Return the configuration with the centres of a location moved; x and y are the support's two
+    transverse directions.
+    """
+    return places.with_supports(
+        values,
+        location,
+        lambda support: {"centre_offset_m": [parameters["offset_x"], parameters["offset_y"]]},
+    )
 
 
 EFFECT = Effect(
@@ -14,8 +20,28 @@ EFFECT = Effect(
     explanation="the support is not centred on the tube",
     source="geometry",
     parameters=(
-        Parameter("offset_x", "m", -1.5, 1.5, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
-        Parameter("offset_y", "m", -1.5, 1.5, 0.0, per="gap", log=False, design=(0.1, 0.5, 0.9), gain_power=1.0),
+        Parameter(
+            "offset_x",
+            "m",
+            -1.5,
+            1.5,
+            0.0,
+            per="gap",
+            log=False,
+            design=(0.1, 0.5, 0.9),
+            gain_power=1.0,
+        ),
+        Parameter(
+            "offset_y",
+            "m",
+            -1.5,
+            1.5,
+            0.0,
+            per="gap",
+            log=False,
+            design=(0.1, 0.5, 0.9),
+            gain_power=1.0,
+        ),
     ),
     apply=apply,
     locations=places.supports,

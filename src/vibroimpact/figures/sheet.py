@@ -1,4 +1,6 @@
-"""A figure and its data: whatever is drawn through a Sheet is also a row of its CSV, in SI units under the column's name."""
+"""A figure and its data: whatever is drawn through a Sheet is also a row of its CSV, in SI units
+under the column's name.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +13,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 
-from vibroimpact.figures.style import label_of, shown, tidy_log_axis
 from vibroimpact.records import write_cells
+
+from .style import label_of, shown, tidy_log_axis
 
 DIGITS = 7  # significant digits in the CSV
 WIDTH_IN, PNG_DPI = 7.6, 160
@@ -21,9 +24,11 @@ WIDTH_IN, PNG_DPI = 7.6, 160
 class Sheet:
     """A figure with a title, a caption, and the table of what it shows.
 
-    name: stem of its files. caption: what is seen and how to read it, without the paper at hand. mosaic: rows of names of the axes, as
-    matplotlib takes it; axes: {name: axes}; the name stands in the table's column panel. size: (width, height) in inches.
-    The table has the columns panel and curve, then one per plotted quantity, named with its SI unit; cells that do not apply are empty.
+    name: stem of its files. caption: what is seen and how to read it, without the paper at hand.
+    mosaic: rows of names of the axes, as matplotlib takes it; axes: {name: axes}; the name stands
+    in the table's column panel. size: (width, height) in inches. The table has the columns panel
+    and curve, then one per plotted quantity, named with its SI unit; cells that do not apply are
+    empty.
     """
 
     def __init__(self, name, title, caption, mosaic=(("main",),), size=None, **gridspec):
@@ -35,15 +40,21 @@ class Sheet:
         self.figure.suptitle(title, x=0.01, ha="left")
 
     def record(self, axes, curve, **values):
-        """Add rows to the table: each value an array of equal length or a single value, in SI, under the name of its column.
+        """Add rows to the table: each value an array of equal length or a single value, in SI,
+        under the name of its column.
 
-        Returns the text "rows FIRST:LAST", the place of these rows in the table, that artists carry as their gid.
+        Returns the text "rows FIRST:LAST", the place of these rows in the table, that artists carry
+        as their gid.
         """
         lengths = {np.size(value) for value in values.values() if np.ndim(value)}
         if len(lengths) > 1:
-            raise ValueError(f"{self.name}, {curve}: columns of different lengths {sorted(lengths)}")
+            raise ValueError(
+                f"{self.name}, {curve}: columns of different lengths {sorted(lengths)}"
+            )
         length = lengths.pop() if lengths else 1
-        table = {column: np.ravel(np.broadcast_to(value, length)) for column, value in values.items()}
+        table = {
+            column: np.ravel(np.broadcast_to(value, length)) for column, value in values.items()
+        }
         first = sum(length_of(other) for _, _, other in self.tables)
         self.tables.append((axes.get_label(), curve, table))
         return f"rows {first}:{first + length}"
@@ -51,27 +62,50 @@ class Sheet:
     def line(self, axes, x, y, curve, low=None, high=None, tags=None, **style):
         """Draw y over x, and the band from low to high where given; return the line.
 
-        x, y: (column, values) with values (point,) in SI. tags: {column: value} that identify the curve, recorded with each point.
+        x, y: (column, values) with values (point,) in SI. tags: {column: value} that identify the
+        curve, recorded with each point.
         """
         (x_column, x_values), (y_column, y_values) = x, y
         if low is not None:
-            axes.fill_between(shown(x_column, x_values), shown(y_column, low), shown(y_column, high),
-                              color=style.get("color"), alpha=0.18, linewidth=0)
+            axes.fill_between(
+                shown(x_column, x_values),
+                shown(y_column, low),
+                shown(y_column, high),
+                color=style.get("color"),
+                alpha=0.18,
+                linewidth=0,
+            )
             tags = {**(tags or {}), f"{y_column}_low": low, f"{y_column}_high": high}
         place = self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
-        line, = axes.plot(shown(x_column, x_values), shown(y_column, y_values), gid=place, **style)
+        (line,) = axes.plot(
+            shown(x_column, x_values), shown(y_column, y_values), gid=place, **style
+        )
         self._label(axes, x_column, y_column)
         return line
 
     def bars(self, axes, x, y, curve, low, high, tags=None, **style):
         """Draw points with bars from low to high, (point,) each, in SI; return the container."""
         (x_column, x_values), (y_column, y_values) = x, y
-        place = self.record(axes, curve, **(tags or {}),
-                            **{x_column: x_values, y_column: y_values, f"{y_column}_low": low, f"{y_column}_high": high})
+        place = self.record(
+            axes,
+            curve,
+            **(tags or {}),
+            **{
+                x_column: x_values,
+                y_column: y_values,
+                f"{y_column}_low": low,
+                f"{y_column}_high": high,
+            },
+        )
         middle = shown(y_column, y_values)
         spread = np.array([middle - shown(y_column, low), shown(y_column, high) - middle])
         self._label(axes, x_column, y_column)
-        container = axes.errorbar(shown(x_column, x_values), middle, np.maximum(spread, 0.0), **{"capsize": 2, "linewidth": 1, **style})
+        container = axes.errorbar(
+            shown(x_column, x_values),
+            middle,
+            np.maximum(spread, 0.0),
+            **{"capsize": 2, "linewidth": 1, **style},
+        )
         container.lines[0].set_gid(place)
         return container
 
@@ -82,12 +116,24 @@ class Sheet:
         return axes.axvline(place, **style) if vertical else axes.axhline(place, **style)
 
     def map(self, axes, x, y, z, curve, **style):
-        """Draw z (y, x) as colours over x and y, logarithmic y in even steps of its own; return the mesh. Rasterised in PDF."""
+        """Draw z (y, x) as colours over x and y, logarithmic y in even steps of its own; return the
+        mesh. Rasterised in PDF.
+        """
         (x_column, x_values), (y_column, y_values), (z_column, z_values) = x, y, z
         grid = np.meshgrid(x_values, y_values)
-        place = self.record(axes, curve, **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)})
-        mesh = axes.pcolormesh(edges(shown(x_column, x_values)), np.exp(edges(np.log(shown(y_column, y_values)))),
-                               shown(z_column, z_values), rasterized=True, gid=place, **style)
+        place = self.record(
+            axes,
+            curve,
+            **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)},
+        )
+        mesh = axes.pcolormesh(
+            edges(shown(x_column, x_values)),
+            np.exp(edges(np.log(shown(y_column, y_values)))),
+            shown(z_column, z_values),
+            rasterized=True,
+            gid=place,
+            **style,
+        )
         axes.set_yscale("log")
         axes.grid(False)
         self._label(axes, x_column, y_column)
@@ -110,22 +156,39 @@ class Sheet:
         return bar
 
     def save(self, folder):
-        """Write name.png, name.pdf and name.csv, and the caption as name.txt, into a folder (made where missing)."""
+        """Write name.png, name.pdf and name.csv, and the caption as name.txt, into a folder (made
+        where missing).
+        """
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        for axis in (axis for axes in self.figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
+        for axis in (
+            axis
+            for axes in self.figure.axes
+            for axis in (axes.xaxis, axes.yaxis)
+            if axis.get_scale() == "log"
+        ):
             tidy_log_axis(axis)
-        # The canvases are called directly: savefig would draw each file twice, and place the axes again for the second one.
+        # The canvases are called directly: savefig would draw each file twice, and place the axes
+        # again for the second one.
         self.figure.set_dpi(PNG_DPI)
-        self._write(folder, "png", FigureCanvasAgg(self.figure).print_png, metadata={"Software": None})
+        self._write(
+            folder, "png", FigureCanvasAgg(self.figure).print_png, metadata={"Software": None}
+        )
         self.figure.set_layout_engine("none")
-        self._write(folder, "pdf", FigureCanvasPdf(self.figure).print_pdf, metadata={"CreationDate": None, "Title": self.name})
+        self._write(
+            folder,
+            "pdf",
+            FigureCanvasPdf(self.figure).print_pdf,
+            metadata={"CreationDate": None, "Title": self.name},
+        )
         columns = self.columns()
         write_cells(columns, self.cells(columns), folder / f"{self.name}.csv")
         (folder / f"{self.name}.txt").write_text(self.caption + "\n", encoding="utf-8")
 
     def _write(self, folder, suffix, write, **options):
-        """Write one file under a temporary name, then rename it, so that no half-written file is left."""
+        """Write one file under a temporary name, then rename it, so that no half-written file is
+        left.
+        """
         temporary = folder / f".{self.name}.{os.getpid()}.{suffix}"
         try:
             write(temporary, **options)
@@ -135,12 +198,20 @@ class Sheet:
 
     def columns(self):
         """Return the names of the table's columns."""
-        return ["panel", "curve", *dict.fromkeys(column for _, _, table in self.tables for column in table)]
+        return [
+            "panel",
+            "curve",
+            *dict.fromkeys(column for _, _, table in self.tables for column in table),
+        ]
 
     def cells(self, columns):
-        """Yield the rows of the table, tuples in the order of columns (as columns() gives); cells that do not apply are empty texts."""
+        """Yield the rows of the table, tuples in the order of columns (as columns() gives); cells
+        that do not apply are empty texts.
+        """
         for panel, curve, table in self.tables:
-            values = [rounded(table[column]) if column in table else repeat("") for column in columns[2:]]
+            values = [
+                rounded(table[column]) if column in table else repeat("") for column in columns[2:]
+            ]
             yield from zip(repeat(panel, length_of(table)), repeat(curve), *values)
 
     def rows(self):
@@ -156,7 +227,9 @@ class Sheet:
 
 
 def edges(centres):
-    """Return (n + 1,) cell edges half-way between (n,) ascending centres; the outer cells are symmetric about theirs."""
+    """Return (n + 1,) cell edges half-way between (n,) ascending centres; the outer cells are
+    symmetric about theirs.
+    """
     centres = np.asarray(centres, dtype=float)
     if centres.size == 1:
         return centres[0] + np.array([-0.5, 0.5])
@@ -170,7 +243,9 @@ def length_of(table):
 
 
 def rounded(values):
-    """Return a list of the values, numbers to DIGITS significant digits: the noise of later digits would triple the file."""
+    """Return a list of the values, numbers to DIGITS significant digits: the noise of later digits
+    would triple the file.
+    """
     values = np.asarray(values)
     if values.dtype.kind not in "f":
         return values.tolist()
@@ -178,5 +253,9 @@ def rounded(values):
     usable = np.isfinite(values) & (values != 0.0)
     size = np.floor(np.log10(np.abs(values[usable])))
     scale = 10.0 ** np.abs(DIGITS - 1 - size)
-    values[usable] = np.where(size < DIGITS, np.round(values[usable] * np.where(size < DIGITS, scale, 1.0)) / scale, values[usable])
+    values[usable] = np.where(
+        size < DIGITS,
+        np.round(values[usable] * np.where(size < DIGITS, scale, 1.0)) / scale,
+        values[usable],
+    )
     return values.tolist()

@@ -1,18 +1,22 @@
-"""Polyreference least-squares complex frequency estimator: poles of a right matrix fraction fitted to spectra, for many orders at once.
+"""Polyreference least-squares complex frequency estimator: poles of a right matrix fraction fitted
+to spectra, for many orders at once.
 
-Source: Verboven, PhD thesis, Vrije Universiteit Brussel 2002; Peeters, Van der Auweraer, Guillaume, Leuridan, Shock and Vibration 11
-(2004) 395. Both fit frequency response functions; here the spectra may also be half spectra of the output alone.
+Source: Verboven, PhD thesis, Vrije Universiteit Brussel 2002; Peeters, Van der Auweraer, Guillaume,
+Leuridan, Shock and Vibration 11 (2004) 395. Both fit frequency response functions; here the spectra
+may also be half spectra of the output alone.
 """
 
 import numpy as np
 
 
 class NormalEquations:
-    """The normal equations of the estimator up to one order, of which those of every lower order are a leading part.
+    """The normal equations of the estimator up to one order, of which those of every lower order
+    are a leading part.
 
-    The model is values_o(f) A(z) = B_o(z) for every output o, z = exp(i pi f / f_max), with real polynomials: A (reference, reference),
-    B_o (reference,). frequency: (frequency,) Hz, ascending; values: (output, reference, frequency) complex half spectra or frequency
-    responses. time_step = 1 / (2 f_max) in s.
+    The model is values_o(f) A(z) = B_o(z) for every output o, z = exp(i pi f / f_max), with real
+    polynomials: A (reference, reference), B_o (reference,). frequency: (frequency,) Hz, ascending;
+    values: (output, reference, frequency) complex half spectra or frequency responses. time_step =
+    1 / (2 f_max) in s.
     """
 
     def __init__(self, frequency, values, max_order):
@@ -29,7 +33,9 @@ class NormalEquations:
             self._denominator += (weighted.conj() @ weighted.T).real
 
     def reduced(self, order):
-        """Return the matrix ((order+1) reference, (order+1) reference) left for A once every B_o is eliminated."""
+        """Return the matrix ((order+1) reference, (order+1) reference) left for A once every B_o is
+        eliminated.
+        """
         rows, columns = order + 1, (order + 1) * self.references
         cross = np.concatenate([part[:rows, :columns] for part in self._cross], axis=1)
         solved = np.linalg.solve(self._numerator[:rows, :rows], cross)
@@ -40,16 +46,21 @@ class NormalEquations:
         return matrix
 
     def poles(self, order):
-        """Return (poles, participation) of one order: complex (pole,) in rad/s with positive imaginary part, and (pole, reference).
+        """Return (poles, participation) of one order: complex (pole,) in rad/s with positive
+        imaginary part, and (pole, reference).
 
-        The highest coefficient of A is held at one, which keeps physical poles stable and makes spurious ones decay fast.
+        The highest coefficient of A is held at one, which keeps physical poles stable and makes
+        spurious ones decay fast.
         """
         matrix = self.reduced(order)
         inner = order * self.references
         companion = np.zeros((inner, inner))
         companion[: inner - self.references, self.references :] = np.eye(inner - self.references)
-        # The participation v of a pole solves v^T A(z) = 0: the companion matrix is that of the transposed polynomial.
-        companion[inner - self.references :] = np.linalg.solve(matrix[:inner, :inner], matrix[:inner, inner:]).T
+        # The participation v of a pole solves v^T A(z) = 0: the companion matrix is that of the
+        # transposed polynomial.
+        companion[inner - self.references :] = np.linalg.solve(
+            matrix[:inner, :inner], matrix[:inner, inner:]
+        ).T
         roots, vectors = np.linalg.eig(companion)
         kept = roots.imag > 0.0
         return np.log(roots[kept]) / self.time_step, vectors[: self.references, kept].T

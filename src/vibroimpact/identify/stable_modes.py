@@ -1,10 +1,12 @@
-"""The poles of a band from measured frequency responses: those of the stabilisation chart that stay put over many orders."""
+"""The poles of a band from measured frequency responses: those of the stabilisation chart that stay
+put over many orders.
+"""
 
 import numpy as np
 
-from vibroimpact.identify.lscf import NormalEquations
-from vibroimpact.identify.stabilisation import stabilisation_chart
-from vibroimpact.identify.update import frequency_of
+from .lscf import NormalEquations
+from .stabilisation import stabilisation_chart
+from .update import frequency_of
 
 HIGHEST_ORDER = 40
 CLUSTER_HZ = 0.012  # relative width in frequency of one pole's column
@@ -13,13 +15,25 @@ LARGEST_RATIO = 0.15  # a pole with more damping is background
 
 
 def stable_poles(frequency, response, highest_order=HIGHEST_ORDER):
-    """Return (frequency (pole,) Hz ascending, damping_ratio (pole,), chart): medians over the orders in which each pole is stable.
+    """Return (frequency (pole,) Hz ascending, damping_ratio (pole,), chart): medians over the
+    orders in which each pole is stable.
 
-    frequency (line,) Hz; response (output, line) complex, of one force; the noise of a line may have been weighted in.
+    frequency (line,) Hz; response (output, line) complex, of one force; the noise of a line may
+    have been weighted in.
     """
-    chart = stabilisation_chart(NormalEquations(frequency, response[:, None, :], highest_order), 0.0, range(2, highest_order + 1))
+    chart = stabilisation_chart(
+        NormalEquations(frequency, response[:, None, :], highest_order),
+        0.0,
+        range(2, highest_order + 1),
+    )
     place, ratio = frequency_of(chart.pole)
-    usable = chart.stable & (ratio > 0.0) & (ratio < LARGEST_RATIO) & (place > frequency[0]) & (place < frequency[-1])
+    usable = (
+        chart.stable
+        & (ratio > 0.0)
+        & (ratio < LARGEST_RATIO)
+        & (place > frequency[0])
+        & (place < frequency[-1])
+    )
     place, ratio, order = place[usable], ratio[usable], chart.order[usable]
     found = []
     while place.size:

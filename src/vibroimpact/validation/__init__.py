@@ -1,1 +1,3 @@
-"""Verification and validation: our results beside closed forms, published numbers, other codes and the paper's claims."""
+"""Verification and validation: our results beside closed forms, published numbers, other codes and
+the paper's claims.
+"""

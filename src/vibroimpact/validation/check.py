@@ -9,9 +9,10 @@ COLUMNS = ("case", "quantity", "unit", "reference", "source", "ours", "error", "
 class Check:
     """A quantity computed by the project beside its reference value.
 
-    case: name of the reference case, such as "R3"; unit: of reference and ours, "1" for a pure number; source: where the reference
-    comes from; scale: what the difference is divided by to give the error, in the same unit (default: the reference itself; 1.0 makes
-    the error absolute); tolerance: the largest error that passes.
+    case: name of the reference case, such as "R3"; unit: of reference and ours, "1" for a pure
+    number; source: where the reference comes from; scale: what the difference is divided by to give
+    the error, in the same unit (default: the reference itself; 1.0 makes the error absolute);
+    tolerance: the largest error that passes.
     """
 
     case: str
@@ -26,7 +27,9 @@ class Check:
     @property
     def error(self) -> float:
         """Return |ours - reference| / scale."""
-        return abs(self.ours - self.reference) / abs(self.reference if self.scale is None else self.scale)
+        return abs(self.ours - self.reference) / abs(
+            self.reference if self.scale is None else self.scale
+        )
 
     @property
     def passed(self) -> bool:
@@ -35,5 +38,14 @@ class Check:
 
     def row(self) -> dict:
         """Return the check as a row of validation.csv."""
-        return {"case": self.case, "quantity": self.quantity, "unit": self.unit, "reference": self.reference, "source": self.source,
-                "ours": self.ours, "error": self.error, "tolerance": self.tolerance, "pass": self.passed}
+        return {
+            "case": self.case,
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "reference": self.reference,
+            "source": self.source,
+            "ours": self.ours,
+            "error": self.error,
+            "tolerance": self.tolerance,
+            "pass": self.passed,
+        }

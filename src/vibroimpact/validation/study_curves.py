@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.cases import Case, load_values
 from vibroimpact.records import read_record, read_table
+from vibroimpact.study.cases import Case, load_values
 
 POLES = ("peak_half", "peak_quarter", "peak_25th", "lscf")
 STIFFNESS = ("lscf", "ods", "broadband")
@@ -16,10 +16,13 @@ STIFFNESS = ("lscf", "ods", "broadband")
 class StudyCurves:
     """Results at one gap. gap_m; load (load,) N RMS; NaN where a method resolves nothing.
 
-    pole_frequency, pole_damping {method: (load, seed)} Hz, fraction; stiffness, support_damping {method: (load, seed)} N/m, N s/m;
-    frequency (frequency,) Hz and psd {sensor: (load, seed, frequency)} displacement m²/Hz; shape (load, seed, line_point) complex, the
-    operational deflection shape at arc_length (line_point,) m; singular (load, seed, value); contact (load,) mean fraction of time;
-    band_width_Hz of the drive, whose PSD is flat; top_frequency {gap m: Hz} of the lscf pole at the largest load; collapse: rows of consistency_collapse.csv; summary: rows of consistency_summary.csv.
+    pole_frequency, pole_damping {method: (load, seed)} Hz, fraction; stiffness, support_damping
+    {method: (load, seed)} N/m, N s/m; frequency (frequency,) Hz and psd {sensor: (load, seed,
+    frequency)} displacement m²/Hz; shape (load, seed, line_point) complex, the operational
+    deflection shape at arc_length (line_point,) m; singular (load, seed, value); contact (load,)
+    mean fraction of time; band_width_Hz of the drive, whose PSD is flat; top_frequency {gap m: Hz}
+    of the lscf pole at the largest load; collapse: rows of consistency_collapse.csv; summary: rows
+    of consistency_summary.csv.
     """
 
     gap_m: float
@@ -46,7 +49,9 @@ class StudyCurves:
 
 
 def read_curves(config, model, results: Path, gap: float) -> StudyCurves:
-    """Return the StudyCurves at one gap in m of a finished study (config, its ModalModel, the folder of its results). Raises RecordError."""
+    """Return the StudyCurves at one gap in m of a finished study (config, its ModalModel, the
+    folder of its results). Raises RecordError.
+    """
     loads, seeds = load_values(config.grid), range(config.grid.seeds)
     every = read_table(results / "consistency.csv")
     rows = [row for row in every if row["gap_m"] == gap]
@@ -59,15 +64,32 @@ def read_curves(config, model, results: Path, gap: float) -> StudyCurves:
         curves = [read_record(results / "estimates" / f"{name}.nc") for name in names]
         shapes.append([each["ods_re"].values + 1j * each["ods_im"].values for each in curves])
         singular.append([each["singular_value"].values for each in curves])
-        contact.append(np.mean([read_record(results / "records" / f"{name}.nc")["contact_fraction"].values for name in names]))
+        contact.append(
+            np.mean(
+                [
+                    read_record(results / "records" / f"{name}.nc")["contact_fraction"].values
+                    for name in names
+                ]
+            )
+        )
     psd = np.array(spectra, dtype=float)
     return StudyCurves(
         gap_m=float(gap),
         load=np.array(loads),
-        pole_frequency={method: _table(rows, loads, seeds, method, "frequency_Hz") for method in POLES},
-        pole_damping={method: _table(rows, loads, seeds, method, "damping_ratio") for method in POLES},
-        stiffness={method: _table(rows, loads, seeds, method, "k_N_per_m") for method in (*STIFFNESS, *POLES[:3])},
-        support_damping={method: _table(rows, loads, seeds, method, "c_N_s_per_m") for method in (*STIFFNESS, *POLES[:3])},
+        pole_frequency={
+            method: _table(rows, loads, seeds, method, "frequency_Hz") for method in POLES
+        },
+        pole_damping={
+            method: _table(rows, loads, seeds, method, "damping_ratio") for method in POLES
+        },
+        stiffness={
+            method: _table(rows, loads, seeds, method, "k_N_per_m")
+            for method in (*STIFFNESS, *POLES[:3])
+        },
+        support_damping={
+            method: _table(rows, loads, seeds, method, "c_N_s_per_m")
+            for method in (*STIFFNESS, *POLES[:3])
+        },
         frequency=found[0]["frequency"].values,
         psd={name: psd[:, :, index] for index, name in enumerate(sensors)},
         shape=np.array(shapes),
@@ -75,27 +97,54 @@ def read_curves(config, model, results: Path, gap: float) -> StudyCurves:
         singular=np.array(singular),
         contact=np.array(contact),
         band_width_Hz=config.excitation.band_Hz[1] - config.excitation.band_Hz[0],
-        top_frequency={gap_m: float(np.nanmedian([row["frequency_Hz"] for row in every if row["gap_m"] == gap_m and row["load_rms_N"] == loads[-1]
-                                                  and row["method"] == "lscf"])) for gap_m in config.grid.gap_m},
+        top_frequency={
+            gap_m: float(
+                np.nanmedian(
+                    [
+                        row["frequency_Hz"]
+                        for row in every
+                        if row["gap_m"] == gap_m
+                        and row["load_rms_N"] == loads[-1]
+                        and row["method"] == "lscf"
+                    ]
+                )
+            )
+            for gap_m in config.grid.gap_m
+        },
         collapse=read_table(results / "consistency_collapse.csv"),
         summary=read_table(results / "consistency_summary.csv"),
     )
 
 
 def _table(rows, loads, seeds, method, column):
-    values = {(row["load_rms_N"], row["seed"]): row[column] for row in rows if row["method"] == method}
-    return np.array([[values.get((load, seed), np.nan) for seed in seeds] for load in loads], dtype=float)
+    values = {
+        (row["load_rms_N"], row["seed"]): row[column] for row in rows if row["method"] == method
+    }
+    return np.array(
+        [[values.get((load, seed), np.nan) for seed in seeds] for load in loads], dtype=float
+    )
 
 
 def median(values):
-    """Return (load,) medians over seeds of (load, seed), NaN where fewer than half the seeds have a value."""
+    """Return (load,) medians over seeds of (load, seed), NaN where fewer than half the seeds have a
+    value.
+    """
     values = np.asarray(values, dtype=float)
     enough = 2 * np.isfinite(values).sum(axis=1) >= values.shape[1]
-    return np.array([np.nanmedian(row) if kept else np.nan for row, kept in zip(values, enough, strict=True)])
+    return np.array(
+        [np.nanmedian(row) if kept else np.nan for row, kept in zip(values, enough, strict=True)]
+    )
 
 
 def standard_error(values):
-    """Return (load,) standard errors of the mean over seeds of (load, seed), NaN where there are fewer than two."""
+    """Return (load,) standard errors of the mean over seeds of (load, seed), NaN where there are
+    fewer than two.
+    """
     values = np.asarray(values, dtype=float)
     count = np.isfinite(values).sum(axis=1)
-    return np.array([np.nanstd(row, ddof=1) / np.sqrt(number) if number > 1 else np.nan for row, number in zip(values, count, strict=True)])
+    return np.array(
+        [
+            np.nanstd(row, ddof=1) / np.sqrt(number) if number > 1 else np.nan
+            for row, number in zip(values, count, strict=True)
+        ]
+    )

@@ -1,12 +1,14 @@
 """A configuration with some keys changed, as a user would write it."""
 
-from vibroimpact.config import check_config
+from vibroimpact.config.reading import check_config
 
 
 def changed(config, values):
-    """Return the checked Config with the dotted keys of `values` changed: changed(config, {"record.duration_s": 24.0}).
+    """Return the checked Config with the dotted keys of `values` changed: changed(config,
+    {"record.duration_s": 24.0}).
 
-    "supports.points" changes the key in every support. Raises ConfigError as check_config does, KeyError for a section that is not there.
+    "supports.points" changes the key in every support. Raises ConfigError as check_config does,
+    KeyError for a section that is not there.
     """
     data = config.model_dump(mode="json")
     for key, value in values.items():

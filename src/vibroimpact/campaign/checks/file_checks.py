@@ -1,0 +1,483 @@
+"""The validator of campaigns: every check a row {check, level, record, channel, message}, the
+message a sentence.
+
+level: pass; warn, a signal or a record is left out or to be read with care; refuse, no verdict is
+possible. record and channel are names, None where a row speaks of all. A file is refused only where
+what remains holds no measured force, no response or no two levels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.campaign.file import CampaignError, contract_problems, decoded, filled
+from vibroimpact.campaign.signals import excited_band, measured_signals, transfer
+from vibroimpact.records import RecordError, read_dataset
+
+from .linear_record import NO_CAUSE, alignment, delays, mean_coherence, reversed_hint, swap_hints
+from .signal_faults import clipped, drifting, dropped_out, level_trend, missing
+
+COLUMNS = ("check", "level", "record", "channel", "message")
+CHECKS = (
+    "contract",
+    "units",
+    "time",
+    "gaps in time",
+    "clipping",
+    "drop-outs",
+    "load_rms",
+    "coherence",
+    "delay",
+    "swapped channels",
+    "directions",
+    "stationarity",
+    "record length",
+    "content",
+)
+LEAVING_OUT = (
+    "units",
+    "gaps in time",
+    "clipping",
+    "drop-outs",
+)  # a warning of these leaves its signal out of every comparison
+LOAD_TOLERANCE, LEVELS_APART = 0.01, 1.05
+BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
+FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
+
+
+def check_file(path):
+    """Return (campaign Dataset or None, rows) of a campaign file of any state; a file that can not
+    be read is one refusing row.
+    """
+    try:
+        campaign = decoded(read_dataset(path))
+    except (RecordError, ValueError) as error:
+        return None, [_row("contract", "refuse", f"The file can not be read: {error}.")]
+    rows = check_campaign(campaign)
+    if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
+        return None, rows
+    return filled(campaign), rows
+
+
+def check_campaign(campaign):
+    """Return the rows of all checks of a campaign Dataset, in the order of CHECKS; a check without
+    complaint is one passing row.
+    """
+    campaign = decoded(campaign)
+    problems = [*contract_problems(campaign)]
+    if problems:
+        return [_row("contract", "refuse", f"The file {problem}.") for problem in problems]
+    try:
+        campaign = filled(campaign)
+    except CampaignError as error:  # the load can not be computed from a force of unknown unit
+        return [_row("units", "refuse", f"The {error}.")]
+    measured = measured_signals(campaign)
+    rows = [
+        *_assumed(campaign),
+        *_units(measured),
+        *_time(campaign, measured),
+        *_signal_faults(measured),
+    ]
+    usable = usable_signals(campaign, rows)
+    spectra, record = _lowest_spectra(measured)
+    rows += [
+        *_load_rms(measured),
+        *_linear(measured, spectra, record),
+        *_directions(measured),
+        *_stationarity(measured, usable),
+        *_length(measured),
+        *_content(measured, usable),
+    ]
+    complained = {row["check"] for row in rows}
+    rows += [_row(check, "pass", PASSED[check]) for check in CHECKS if check not in complained]
+    return sorted(rows, key=lambda row: CHECKS.index(row["check"]))
+
+
+PASSED = {
+    "contract": "The file holds every variable of the contract.",
+    "units": "Every channel has a unit of its kind.",
+    "time": "Samples are even in time and agree with sampling_frequency.",
+    "gaps in time": "No sample is missing.",
+    "clipping": "No signal has flat tops.",
+    "drop-outs": "No signal is held or vanishes for a while.",
+    "load_rms": "load_rms is the RMS of the first force channel.",
+    "coherence": "At the lowest level the responses follow the force.",
+    "delay": "No channel lags the others at the lowest level.",
+    "swapped channels": "Nothing hints at swapped or reversed channels.",
+    "directions": "Every channel has a place and a unit direction.",
+    "stationarity": "No band level drifts within a record.",
+    "record length": "Every record is long enough for the lowest excited band.",
+    "content": "There are a force, a response and two levels or more.",
+}
+
+
+def refused(rows):
+    """Whether the rows of a campaign refuse it."""
+    return any(row["level"] == "refuse" for row in rows)
+
+
+def usable_signals(campaign, rows):
+    """Return (force (record,), response (record, channel)): whether the warnings leave the first
+    force and each response usable.
+    """
+    names = {
+        key: [str(name) for name in campaign[key].values]
+        for key in ("record_name", "channel_name", "force_channel_name")
+    }
+    force = np.ones(len(names["record_name"]), bool)
+    response = np.ones((force.size, len(names["channel_name"])), bool)
+    for row in rows:
+        if row["check"] not in LEAVING_OUT or row["level"] == "pass" or row["channel"] is None:
+            continue
+        which = slice(None) if row["record"] is None else names["record_name"].index(row["record"])
+        if row["channel"] in names["channel_name"]:
+            response[which, names["channel_name"].index(row["channel"])] = False
+        elif row["channel"] == names["force_channel_name"][0]:
+            force[which] = False
+    return force, response
+
+
+def _row(check, level, message, record=None, channel=None):
+    return {
+        "check": check,
+        "level": level,
+        "record": record,
+        "channel": channel,
+        "message": message,
+    }
+
+
+def _assumed(campaign):
+    for sentence in filter(None, campaign.attrs.get("assumed", "").split("\n")):
+        yield _row("contract", "warn", sentence[0].upper() + sentence[1:] + ".")
+
+
+def _units(measured):
+    for faults, names in (
+        (measured.unit_faults, measured.channels),
+        (measured.force_unit_faults, measured.forces),
+    ):
+        for index, sentence in faults.items():
+            yield _row(
+                "units",
+                "warn",
+                f"{sentence[0].upper()}{sentence[1:]}. It is left out.",
+                channel=names[index],
+            )
+
+
+def _time(campaign, measured):
+    if (
+        "time" not in campaign
+        or campaign["time"].dtype.kind not in "fiu"
+        or campaign.sizes["time"] < 2
+    ):
+        return
+    steps = np.diff(campaign["time"].values.astype(float))
+    typical = float(np.median(steps))
+    off = np.flatnonzero(~(np.abs(steps - typical) < 0.01 * abs(typical)))
+    if not typical > 0.0 or off.size:
+        place = int(off[0]) if off.size else 0
+        yield _row(
+            "time",
+            "refuse",
+            f"The time between samples {place} and {place + 1} is {steps[place]:.4g} s, elsewhere"
+            f" {typical:.4g} s: resample all channels to even steps.",
+        )
+    elif abs(typical * measured.rate - 1.0) > 1e-3:
+        yield _row(
+            "time",
+            "refuse",
+            f"sampling_frequency is {measured.rate:g} Hz but the time steps say {1.0 / typical:g}"
+            " Hz: correct the one that is wrong.",
+        )
+
+
+def _signal_faults(measured):
+    """Yield rows of what single signals suffer from, record by record."""
+    for record, name in enumerate(measured.records):
+        forces = [
+            (measured.forces[index], signal) for index, signal in enumerate(measured.force[record])
+        ]
+        responses = [
+            (measured.channels[index], signal)
+            for index, signal in enumerate(measured.response[record])
+        ]
+        for place, (channel, signal) in enumerate(forces + responses):
+            what = "The record is left out" if place == 0 else "It is left out of this record"
+            yield from _faults_of(signal, measured, name, channel, what)
+
+
+def _faults_of(signal, measured, record, channel, what):
+    holes = missing(signal)
+    if signal.size == 0 or holes:
+        count, first = holes or (0, 0)
+        message = (
+            f"{channel} misses {count} of {signal.size} samples, the first at"
+            f" {first / measured.rate:.3f} s, in record {record}. {what}: repair the gap or shorten"
+            " valid_samples."
+            if signal.size
+            else f"Record {record} has no valid sample."
+        )
+        yield _row("gaps in time", "warn", message, record, channel)
+        return
+    if not signal.any():
+        yield _row(
+            "drop-outs",
+            "warn",
+            f"{channel} is zero throughout record {record}. {what}.",
+            record,
+            channel,
+        )
+        return
+    # Of a periodic signal the last period: every peak comes back in all of them.
+    share = clipped(
+        signal[-measured.period_samples :] if 0 < measured.period_samples < signal.size else signal
+    )
+    if share is not None:
+        yield _row(
+            "clipping",
+            "warn",
+            f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in"
+            f" record {record}, {100 * share:.2g} % of the samples: the range of the amplifier was"
+            f" too small. {what}.",
+            record,
+            channel,
+        )
+    lost = dropped_out(signal, measured.rate, measured.starts_at_rest)
+    if lost is not None:
+        yield _row(
+            "drop-outs",
+            "warn",
+            f"{channel} is held or vanishes at {lost[0]:.2f} s for {lost[1]:.3f} s in record"
+            f" {record}. {what}.",
+            record,
+            channel,
+        )
+
+
+def _load_rms(measured):
+    for record, name in enumerate(measured.records):
+        found = (
+            float(np.sqrt(np.mean(np.square(measured.force[record][0]))))
+            if measured.force[record][0].size
+            else np.nan
+        )
+        stated = float(measured.load_rms[record])
+        if np.isfinite(found) and not abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300):
+            yield _row(
+                "load_rms",
+                "warn",
+                f"load_rms is {stated:.4g} but {measured.forces[0]} has an RMS of {found:.4g} in"
+                f" record {name}: the unit or the valid samples of one of them are wrong; the force"
+                " itself is used.",
+                name,
+                measured.forces[0],
+            )
+
+
+def _lowest_spectra(measured):
+    record = measured.lowest()
+    return (None, None) if record is None else (transfer(measured, record), record)
+
+
+def _linear(measured, spectra, record):
+    """Yield rows of what the lowest level tells: coherence, delays, hints of swapped or reversed
+    channels.
+    """
+    if spectra is None:
+        yield _row(
+            "coherence",
+            "warn",
+            "No record has a force and a response without holes that are long enough to average.",
+        )
+        return
+    name = measured.records[record]
+    coherence = mean_coherence(spectra)
+    finite = measured.finite(record)
+    best = float(coherence[finite].max())
+    if best < NO_CAUSE:
+        yield _row(
+            "coherence",
+            "refuse",
+            f"No response follows {measured.forces[0]} in record {name} (mean coherence {best:.2f}"
+            " at most): it is not the force that drove them, or clocks differ.",
+            name,
+        )
+        return
+    if best < 0.8:
+        yield _row(
+            "coherence",
+            "warn",
+            f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in"
+            f" record {name}: the lowest level is not linear, noisy, or moved by another force as"
+            " well.",
+            name,
+        )
+    apart, common = delays(spectra, measured.kinds, measured.rate, finite)
+    for index, samples in apart.items():
+        yield _row(
+            "delay",
+            "warn",
+            f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by"
+            f" {abs(samples):.1f} samples ({abs(samples) / measured.rate * 1e3:.2f} ms) in record"
+            f" {name}.",
+            name,
+            measured.channels[index],
+        )
+    if common is not None:
+        yield _row(
+            "delay",
+            "warn",
+            f"All responses {'lag' if common > 0 else 'lead'} {measured.forces[0]} by"
+            f" {abs(common):.1f} samples ({abs(common) / measured.rate * 1e3:.2f} ms) in record"
+            f" {name}.",
+            name,
+            measured.forces[0],
+        )
+    yield from _mix_ups(measured, spectra, name)
+
+
+def _mix_ups(measured, spectra, name):
+    for index, other in swap_hints(measured, spectra):
+        partner = "others do: it is dead or wrongly named"
+        if other is not None:
+            partner = (
+                f"{measured.channels[other]}, which lies across the force, does: the two seem"
+                " swapped"
+            )
+        yield _row(
+            "swapped channels",
+            "warn",
+            f"{measured.channels[index]} lies along the force and does not follow it in record"
+            f" {name} while {partner}.",
+            name,
+            measured.channels[index],
+        )
+    against = reversed_hint(measured, spectra)
+    if against is not None:
+        yield _row(
+            "swapped channels",
+            "warn",
+            f"{measured.channels[against]} moves against all other channels below the first"
+            f" resonance in record {name}: its polarity seems reversed.",
+            name,
+            measured.channels[against],
+        )
+
+
+def _directions(measured):
+    for name, point, direction in zip(
+        measured.channels, measured.points, measured.directions, strict=True
+    ):
+        length = float(np.linalg.norm(direction))
+        if not abs(length - 1.0) < 0.01:
+            yield _row(
+                "directions",
+                "warn",
+                f"The direction of {name} has the length {length:.3g}, not 1: write a unit vector.",
+                channel=name,
+            )
+        if not np.isfinite(point).all():
+            yield _row(
+                "directions",
+                "warn",
+                f"The place of {name} is not known: it can not be compared with a model.",
+                channel=name,
+            )
+    if not np.isfinite(alignment(measured)).any():
+        yield _row(
+            "directions",
+            "warn",
+            f"The direction of {measured.forces[0]} is not known.",
+            channel=measured.forces[0],
+        )
+
+
+def _stationarity(measured, usable):
+    band = excited_band(measured)
+    if band is None:
+        return
+    for record, name in enumerate(measured.records):
+        if not usable[0][record]:
+            continue
+        signals = [(measured.forces[0], measured.force[record][0], True)]
+        signals += [
+            (channel, measured.response[record][index], usable[1][record, index])
+            for index, channel in enumerate(measured.channels)
+        ]
+        for channel, signal, kept in signals:
+            trend = (
+                level_trend(signal, measured.rate, band, measured.starts_at_rest) if kept else None
+            )
+            if drifting(trend):
+                yield _row(
+                    "stationarity",
+                    "warn",
+                    f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by"
+                    f" {abs(trend[0]):.1f} dB over record {name} (t = {trend[1]:.1f}).",
+                    name,
+                    channel,
+                )
+
+
+def _length(measured):
+    band, too_short = excited_band(measured), 0
+    if band is None:
+        return
+    width = band[0] * (10.0 ** (1.0 / BANDS_PER_DECADE) - 1.0)
+    for record, name in enumerate(measured.records):
+        duration = measured.force[record].shape[-1] / measured.rate
+        if duration * band[0] < FEWEST_PERIODS:
+            too_short += 1
+        if duration * width < GOOD_AVERAGES:
+            yield _row(
+                "record length",
+                "warn",
+                f"Record {name} of {duration:.3g} s holds {duration * width:.1f} independent"
+                f" averages in a band of {width:.2g} Hz at {band[0]:.3g} Hz: its lowest bands are"
+                f" uncertain; {GOOD_AVERAGES / width:.0f} s would do.",
+                name,
+            )
+    if too_short == len(measured.records):
+        yield _row(
+            "record length",
+            "refuse",
+            f"Every record is shorter than {FEWEST_PERIODS:.0f} periods of the lowest excited"
+            f" frequency, {band[0]:.3g} Hz.",
+        )
+
+
+def _content(measured, usable):
+    """Yield rows of what any verdict needs, on what the other checks have left."""
+    force, response = usable
+    whole = force & response.any(axis=1)
+    if not force.any() or measured.force_unit_faults.get(0):
+        yield _row(
+            "content",
+            "refuse",
+            f"No record has a usable force {measured.forces[0]}: a verdict needs one measured"
+            " force.",
+        )
+        return
+    if not whole.any():
+        yield _row(
+            "content",
+            "refuse",
+            "No response is usable beside a usable force: a verdict needs one response.",
+        )
+        return
+    loads = measured.load_rms[whole]
+    if not loads.max() > LEVELS_APART * loads.min():
+        yield _row(
+            "content",
+            "refuse",
+            f"All usable records have the load {loads.max():.4g}: a verdict needs two levels.",
+        )
+    splits = {measured.splits[record] for record in np.flatnonzero(whole)}
+    for split, why in (
+        ("fit", "nothing can be fitted"),
+        ("holdout", "nothing is left to verify on"),
+    ):
+        if split not in splits:
+            yield _row("content", "warn", f"No usable record has the split '{split}': {why}.")

@@ -1,0 +1,411 @@
+"""The campaign file: measured forces and responses at several levels and gaps, one netCDF-4 file,
+read and written here.
+
+Contract. Dimensions record, channel, force_channel, time. force (record, force_channel, time) in N,
+or in force_channel_units (force_channel); response (record, channel, time) in channel_units
+(channel), any UDUNITS text; channel_kind (channel): acceleration, velocity, displacement,
+contact_force or generic; channel_name (channel); channel_point (channel, xyz) in m and
+channel_direction (channel, xyz), a unit vector, the positive sense; the same for forces. Per
+record: record_name, load_rms (N, of force channel 0 over the valid samples), gap (m, NaN where
+there is none), repeat, split (fit or holdout). Optional: support_gap (record, support) in m,
+voltage (record, time) in V, noise_floor_rms (channel) in the channel's unit, valid_samples
+(record): the rest is NaN. Attributes: sampling_frequency (Hz), antialias, start_up, period_samples,
+transient_periods (0 if not periodic), source. Between samples the force is band-limited, not held.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.records import read_dataset, write_record
+from vibroimpact.units import UnitError, si_factor
+
+KINDS = ("acceleration", "velocity", "displacement", "contact_force", "generic")
+NEEDED = {
+    "force": ("record", "force_channel", "time"),
+    "response": ("record", "channel", "time"),
+    "channel_units": ("channel",),
+    "channel_kind": ("channel",),
+    "channel_name": ("channel",),
+    "channel_point": ("channel", "xyz"),
+    "channel_direction": ("channel", "xyz"),
+    "force_channel_name": ("force_channel",),
+    "force_channel_point": ("force_channel", "xyz"),
+    "force_channel_direction": ("force_channel", "xyz"),
+    "gap": ("record",),
+}
+FILLED = {
+    "record_name": ("record",),
+    "load_rms": ("record",),
+    "repeat": ("record",),
+    "split": ("record",),
+}  # assumed, and told, where missing
+OPTIONAL = {
+    "support_gap": ("record", "support"),
+    "voltage": ("record", "time"),
+    "noise_floor_rms": ("channel",),
+    "valid_samples": ("record",),
+    "force_channel_units": ("force_channel",),
+}
+SPLITS = ("fit", "holdout")
+NEAR_M = 5.0e-3  # a channel farther from a point than this is not at the point
+ALONG = 0.99  # least |cosine| between a channel's direction and the wanted one
+
+
+class CampaignError(Exception):
+    """A campaign file that can not be used; the message holds every problem, with the file's
+    name.
+    """
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A measured channel: name, point (3,) m, direction (3,), units as UDUNITS text, kind."""
+
+    name: str
+    point: tuple
+    direction: tuple
+    units: str
+    kind: str
+
+
+@dataclass(frozen=True)
+class Level:
+    """A record of a campaign: name, gap in m, repeat from 0, split "fit" or "holdout"."""
+
+    name: str
+    gap_m: float
+    repeat: int = 0
+    split: str = "fit"
+
+
+def campaign_dataset(
+    force, response, channels, drives, levels, sampling_frequency, optional=None, **attributes
+):
+    """Return the Dataset of a campaign by the contract.
+
+    force (record, force_channel, time) in the drives' units; response (record, channel, time) in
+    the channels' units; channels, drives: lists of Channel; levels: list of Level;
+    sampling_frequency Hz; optional {name: values} of the contract's optional variables; attributes:
+    source, antialias, start_up, period_samples, transient_periods.
+    """
+    dims = {"units": "channel", "kind": "channel", "name": "channel"}
+    factor = [_factor(f"force channel {drive.name}", drive.units, "excitation") for drive in drives]
+    data = {
+        "force": (
+            ("record", "force_channel", "time"),
+            np.asarray(force, np.float32),
+            {"units": drives[0].units} if len(drives) == 1 else {},
+        ),
+        "response": (("record", "channel", "time"), np.asarray(response, np.float32)),
+        **{
+            f"channel_{key}": (
+                dim,
+                np.array([getattr(channel, key) for channel in channels], dtype=object),
+            )
+            for key, dim in dims.items()
+        },
+        "force_channel_name": (
+            "force_channel",
+            np.array([drive.name for drive in drives], dtype=object),
+        ),
+        "force_channel_units": (
+            "force_channel",
+            np.array([drive.units for drive in drives], dtype=object),
+        ),
+        "record_name": ("record", np.array([level.name for level in levels], dtype=object)),
+        "load_rms": (
+            "record",
+            factor[0] * np.sqrt(np.nanmean(np.square(np.asarray(force, float)[:, 0]), axis=-1)),
+            {"units": "N"},
+        ),
+        "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
+        "repeat": ("record", np.array([level.repeat for level in levels], np.int64)),
+        "split": ("record", np.array([level.split for level in levels], dtype=object)),
+        "time": ("time", np.arange(np.shape(force)[-1]) / sampling_frequency, {"units": "s"}),
+        **{name: (OPTIONAL[name], np.asarray(values)) for name, values in (optional or {}).items()},
+    }
+    for prefix, group, dim in (
+        ("channel", channels, "channel"),
+        ("force_channel", drives, "force_channel"),
+    ):
+        data[f"{prefix}_point"] = (
+            (dim, "xyz"),
+            np.array([item.point for item in group], float),
+            {"units": "m"},
+        )
+        data[f"{prefix}_direction"] = (
+            (dim, "xyz"),
+            np.array([item.direction for item in group], float),
+        )
+    known = {
+        "antialias": "fir80",
+        "start_up": "stationary",
+        "period_samples": 0,
+        "transient_periods": 0,
+        "source": "",
+    }
+    return xr.Dataset(
+        data, attrs={"sampling_frequency": float(sampling_frequency), **known, **attributes}
+    )
+
+
+def write_campaign(campaign, path):
+    """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
+    _require(campaign, path)
+    write_record(campaign.assign_attrs(title="vibroimpact campaign"), path)
+
+
+def read_campaign(path):
+    """Return the campaign Dataset of a file, texts decoded, and what is missing but can be told
+    from the rest filled in.
+
+    The attribute `assumed` holds a sentence per line for whatever was filled in, or is empty.
+    Raises RecordError when there is no such file or it is not netCDF, CampaignError with every
+    breach of the contract.
+    """
+    campaign = decoded(read_dataset(path))
+    _require(campaign, path)
+    return filled(campaign)
+
+
+def decoded(campaign):
+    """Return the Dataset with its texts as str, whichever way netCDF held them (bytes, character
+    arrays, padded).
+    """
+    texts = {
+        name: (
+            variable.dims,
+            np.array([_text(value) for value in variable.values.flat], dtype=object).reshape(
+                variable.shape
+            ),
+            variable.attrs,
+        )
+        for name, variable in campaign.variables.items()
+        if variable.dtype.kind in "SUO"
+    }
+    attributes = {
+        name: _text(value) if isinstance(value, bytes) else value
+        for name, value in campaign.attrs.items()
+    }
+    return campaign.assign(texts).assign_attrs(attributes)
+
+
+def _text(value):
+    return (value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)).strip(
+        "\0 "
+    )
+
+
+def filled(campaign):
+    """Return the Dataset with valid_samples, record_name, load_rms, repeat and split where they are
+    missing; see read_campaign.
+    """
+    told, new, count = [], {}, campaign.sizes["record"]
+    if "valid_samples" not in campaign:
+        valid = _last_finite(campaign)
+        if np.any(valid < campaign.sizes["time"]):
+            new["valid_samples"] = ("record", valid)
+            told.append(
+                "valid_samples is missing: the records end with NaN, their last finite samples"
+                f" were taken as the ends {valid.tolist()}"
+            )
+    whole = campaign.assign(new)
+    if "load_rms" not in campaign:
+        rms = [
+            np.sqrt(np.nanmean(np.square(force_signal(whole, record)))) for record in range(count)
+        ]
+        new["load_rms"] = ("record", np.array(rms), {"units": "N"})
+        told.append("load_rms is missing: it was computed from force channel 0")
+    loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
+    if "repeat" not in campaign:
+        keys = [
+            (f"{load:.2g}", f"{gap:.3g}")
+            for load, gap in zip(loads, campaign["gap"].values, strict=True)
+        ]
+        new["repeat"] = (
+            "record",
+            np.array([keys[:index].count(key) for index, key in enumerate(keys)], np.int64),
+        )
+        told.append("repeat is missing: records of the same load and gap were counted")
+    if "split" not in campaign:
+        new["split"] = ("record", np.array(["fit"] * count, dtype=object))
+        told.append(
+            "split is missing: all records are fitted, so that nothing is left to verify on: mark"
+            " one as holdout"
+        )
+    if "record_name" not in campaign:
+        new["record_name"] = (
+            "record",
+            np.array([f"record {index}" for index in range(count)], dtype=object),
+        )
+        told.append("record_name is missing: records were numbered")
+    known = {
+        "antialias": "",
+        "start_up": "stationary",
+        "period_samples": 0,
+        "transient_periods": 0,
+        "source": "",
+    }
+    return campaign.assign(new).assign_attrs(
+        {**known, **campaign.attrs, "assumed": "\n".join(told)}
+    )
+
+
+def _last_finite(campaign):
+    """Return (record,) the number of samples up to the last one that is finite in any channel."""
+    samples = campaign.sizes["time"]
+    some = np.isfinite(campaign["force"].values).any(axis=1) | np.isfinite(
+        campaign["response"].values
+    ).any(axis=1)
+    return np.where(some.any(axis=1), samples - np.argmax(some[:, ::-1], axis=1), 0)
+
+
+def _require(campaign, path):
+    """Raise CampaignError unless the Dataset keeps the contract."""
+    problems = [*contract_problems(campaign)]
+    if problems:
+        raise CampaignError("\n".join(f"{path}: {problem}" for problem in problems))
+
+
+def contract_problems(campaign):
+    """Yield a sentence for every breach of the contract."""
+    for name, dims in (NEEDED | FILLED | OPTIONAL).items():
+        if name in NEEDED and name not in campaign:
+            yield f"has no variable '{name}' {dims}: see the contract in campaign.py"
+        elif name in campaign and campaign[name].dims != dims:
+            yield f"'{name}' has dimensions {campaign[name].dims}, expected {dims}"
+    if not _number_of(campaign.attrs.get("sampling_frequency", 0.0)) > 0.0:
+        yield "has no attribute sampling_frequency in Hz"
+    if "force" in campaign and "force_channel_units" not in campaign:
+        try:
+            si_factor(str(campaign["force"].attrs.get("units", "N")), "excitation")
+        except UnitError as error:
+            yield f"'force' {error}"
+    if "channel_kind" in campaign:
+        for kind in sorted({str(kind) for kind in campaign["channel_kind"].values} - set(KINDS)):
+            yield f"channel_kind '{kind}' is unknown: use one of {', '.join(KINDS)}"
+    if "split" in campaign:
+        for split in sorted({str(split) for split in campaign["split"].values} - set(SPLITS)):
+            yield f"split '{split}' is unknown: use one of {', '.join(SPLITS)}"
+
+
+def _number_of(value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return 0.0
+
+
+def channel_at(campaign, position, direction, kind):
+    """Return the index of the channel of a kind at position (3,) m along direction (3,), of either
+    sense; the nearest one.
+
+    Raises CampaignError when there is none within 5 mm; the message lists the channels there are.
+    """
+    direction = np.asarray(direction, float) / np.linalg.norm(direction)
+    distance = np.linalg.norm(
+        campaign["channel_point"].values - np.asarray(position, float), axis=1
+    )
+    along = np.abs(campaign["channel_direction"].values @ direction) > ALONG
+    usable = along & (campaign["channel_kind"].values == kind) & (distance < NEAR_M)
+    if not usable.any():
+        known = ", ".join(
+            f"{name} ({kind})"
+            for name, kind in zip(
+                campaign["channel_name"].values, campaign["channel_kind"].values, strict=True
+            )
+        )
+        raise CampaignError(
+            f"the campaign has no channel of kind {kind} within {NEAR_M * 1e3:g} mm of"
+            f" {np.round(position, 4).tolist()} m along {np.round(direction, 3).tolist()}: it has"
+            f" {known}"
+        )
+    return int(np.argmin(np.where(usable, distance, np.inf)))
+
+
+def valid_count(campaign, record):
+    """Return how many samples of a record count, from its start."""
+    samples = campaign.sizes["time"]
+    stated = (
+        float(campaign["valid_samples"].values[record]) if "valid_samples" in campaign else np.nan
+    )
+    return int(min(max(stated, 0), samples)) if np.isfinite(stated) else samples
+
+
+def channel_signal(campaign, record, channel):
+    """Return (time,) the valid samples of a channel of a record, in SI. Raises CampaignError for a
+    unit that is not known.
+    """
+    return campaign["response"].values[record, channel, : valid_count(campaign, record)].astype(
+        float
+    ) * channel_factor(campaign, channel)
+
+
+def channel_factor(campaign, channel):
+    """Return SI units per stored unit of a channel. Raises CampaignError for a unit that is not
+    known or not of the channel's kind.
+    """
+    name, units, kind = (
+        str(campaign[f"channel_{key}"].values[channel]) for key in ("name", "units", "kind")
+    )
+    return _factor(f"channel {name}", units, kind)
+
+
+def force_signal(campaign, record, force_channel=0):
+    """Return (time,) the valid samples of a force of a record, in N (V where volts were recorded).
+    Raises CampaignError as channel_signal.
+    """
+    values = (
+        campaign["force"]
+        .values[record, force_channel, : valid_count(campaign, record)]
+        .astype(float)
+    )
+    return values * force_factor(campaign, force_channel)
+
+
+def force_factor(campaign, force_channel):
+    """Return N per stored unit of a force channel (V per unit where volts were recorded). Raises
+    CampaignError.
+    """
+    return _factor(
+        f"force channel {campaign['force_channel_name'].values[force_channel]}",
+        force_units(campaign, force_channel),
+        "excitation",
+    )
+
+
+def force_units(campaign, force_channel):
+    """Return the unit of a force channel as it is stored; N where the file does not say."""
+    if "force_channel_units" in campaign:
+        return str(campaign["force_channel_units"].values[force_channel])
+    return str(campaign["force"].attrs.get("units", "N"))
+
+
+def _factor(place, units, kind):
+    try:
+        return si_factor(units, kind)
+    except UnitError as error:
+        raise CampaignError(f"{place} {error}") from error
+
+
+def support_ratios(campaign):
+    """Return (support,) the clearance of each support over the record's nominal one, None where
+    support_gap is not given.
+
+    Raises CampaignError when the ratio is not the same in all records.
+    """
+    if "support_gap" not in campaign:
+        return None
+    ratio = (
+        campaign["support_gap"].values.astype(float) / campaign["gap"].values.astype(float)[:, None]
+    )
+    if not np.isfinite(ratio).all() or np.ptp(ratio, axis=0).max(initial=0.0) > 0.01 * ratio.mean():
+        raise CampaignError(
+            "support_gap: its ratio to gap differs from record to record, or has no value in some:"
+            " give one campaign for each setting of the plates"
+        )
+    return ratio.mean(axis=0)

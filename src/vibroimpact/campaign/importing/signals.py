@@ -1,0 +1,85 @@
+"""A recorded signal as a file gives it, and the even sampling that a campaign needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]")
+RATE_NAMES = ("Fs", "fs", "sampling_frequency", "sampling_frequency_Hz", "sample_rate")
+EVEN_WITHIN = 0.05  # of a step: what time stamps may scatter about an even grid
+LOST_SAMPLE = 1.5  # steps: a longer one is a hole, not scatter
+WHOLE_WITHIN = 5.0e-6  # relative: rates printed with six digits are whole numbers of Hz again
+
+
+class ImportProblem(Exception):
+    """Files that can not be made into a campaign; the message holds every problem and its remedy,
+    one per line.
+    """
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One signal of one file: name as the sidecar calls it; values (time,) in `unit`; rate Hz or
+    None where the file does not say.
+
+    unit, kind, direction (3,), point (3,) m, force: what the file itself says, "" or None where it
+    does not; unit_from: where in the file; aliases: other names for it; note: what was done to it.
+    """
+
+    name: str
+    file: str
+    values: np.ndarray
+    rate: float | None
+    unit: str = ""
+    unit_from: str = ""
+    kind: str = ""
+    direction: tuple | None = None
+    point: tuple | None = None
+    force: bool = False
+    aliases: tuple = ()
+    note: str = ""
+
+
+def even_samples(time, values, place):
+    """Return (values (..., time), rate in Hz, note) on an even grid, from time stamps (time,) in s.
+
+    Stamps that scatter by less than a twentieth of a step, or than their own six printed digits,
+    are taken as even; others are interpolated by a cubic spline at the mean step, and the note says
+    so. Raises ImportProblem for a hole or for stamps that do not rise.
+    """
+    time = np.asarray(time, float)
+    steps = np.diff(time)
+    typical = float(np.median(steps)) if steps.size else 0.0
+    printed = 1.05 * 10.0 ** (np.floor(np.log10(max(np.abs(time).max(initial=0.0), 1e-300))) - 5.0)
+    if not (np.all(np.isfinite(time)) and typical > 0.0):
+        raise ImportProblem(
+            f"{place}: the time does not rise: give sampling_frequency_Hz in campaign.yaml, or"
+            " correct the file"
+        )
+    if np.any(steps > LOST_SAMPLE * typical + 2.0 * printed) or np.any(steps < -2.0 * printed):
+        index = int(np.argmax(np.abs(steps - typical)))
+        raise ImportProblem(
+            f"{place}: a step of {steps[index]:.4g} s after {time[index]:.6g} s, elsewhere"
+            f" {typical:.4g} s: samples are lost; cut the record there with from_s and to_s of"
+            " campaign.yaml"
+        )
+    step = (time[-1] - time[0]) / (time.size - 1)
+    grid = time[0] + step * np.arange(time.size)
+    if np.max(np.abs(time - grid)) <= max(EVEN_WITHIN * step, printed):
+        return values, whole_rate(1.0 / step), ""
+    rate = whole_rate(1.0 / step)
+    return (
+        CubicSpline(time, values, axis=-1)(grid),
+        rate,
+        f"unevenly sampled: interpolated to {rate:g} Hz",
+    )
+
+
+def whole_rate(rate):
+    """Return a sampling frequency in Hz, rounded to the whole number that its printed digits stand
+    for.
+    """
+    return float(round(rate)) if abs(rate - round(rate)) < WHOLE_WITHIN * rate else float(rate)

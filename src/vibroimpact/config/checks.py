@@ -1,0 +1,329 @@
+"""The checks between keys of a configuration: geometry, sampling, names, bands.
+
+A check is a generator whose argument names are the top-level sections it reads; it yields a problem
+as (place, value, text). It runs when those sections are valid by themselves, so that one mistake
+elsewhere does not hide the others.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from . import geometry_checks
+from . import name_checks as names
+
+STEPS_PER_EXCITED_PERIOD = 20
+FILTER_RATIO = 5  # kernels.RATIO, which only what integrates may import
+LARGEST_OMEGA_STEP = {
+    "newmark": 1.0,
+    "exact": 2.8,
+}  # rad; exact has no error in a mode alone, but must tell its phase: below pi
+MOST_STEPS_KEPT = 2e6
+TOLERANCE = 1e-9
+
+
+def cross_problems(sections):
+    """Return a list of (place, value, text), one per problem between the given {name: section} that
+    are valid by themselves.
+    """
+    problems = []
+    for check in CHECKS:
+        wanted = list(inspect.signature(check).parameters)
+        if all(sections.get(name) is not None for name in wanted) and _concerns(check, sections):
+            problems += check(*(sections[name] for name in wanted))
+    return problems
+
+
+def _concerns(check, sections):
+    """True unless a check is about tubes and the structure is none."""
+    tube = getattr(sections.get("structure"), "kind", "path") in names.TUBES
+    return (tube or check not in TUBE_CHECKS) and not (tube and check in POINT_CHECKS)
+
+
+def _repeated_values(grid):
+    values = {
+        "gap_m": grid.gap_m,
+        "load_rms_N": grid.load_rms_N if isinstance(grid.load_rms_N, tuple) else (),
+    }
+    for key, row in values.items():
+        for value, times in Counter(row).items():
+            if times > 1:
+                yield (
+                    f"grid.{key}",
+                    value,
+                    f"stands {times} times: a value names a case, give each once",
+                )
+    loads = grid.load_rms_N
+    if not isinstance(loads, tuple) and loads.last <= loads.first and loads.count > 1:
+        yield (
+            "grid.load_rms_N.last",
+            loads.last,
+            f"must be above first = {loads.first}, or the count 1",
+        )
+
+
+def _every_step(record, integration):
+    steps = record.duration_s * integration.steps_per_second
+    if record.every_step and steps > MOST_STEPS_KEPT:
+        yield (
+            "record.every_step",
+            True,
+            (
+                f"would keep {steps:.3g} steps of every contact, at most {MOST_STEPS_KEPT:g}:"
+                " shorten record.duration_s"
+            ),
+        )
+    if record.every_step and integration.start_up_s > 0.0:
+        yield (
+            "integration.start_up_s",
+            integration.start_up_s,
+            "must be 0 where every step is kept: the run starts at its initial state",
+        )
+
+
+def _force(excitation):
+    if hasattr(excitation, "direction") and not np.any(excitation.direction):
+        yield (
+            "excitation.direction",
+            list(excitation.direction),
+            "is not a direction: give three components that are not all 0",
+        )
+    if excitation.kind == "measured" and not Path(excitation.file).is_file():
+        yield (
+            "excitation.file",
+            excitation.file,
+            "is not a file: give its path from the folder where the study is run",
+        )
+
+
+def _overlay(overlay, grid):
+    if overlay.campaign is not None and not Path(overlay.campaign).is_file():
+        yield (
+            "overlay.campaign",
+            overlay.campaign,
+            "is not a file: give its path from the folder where the study is run, or null",
+        )
+    if overlay.seed < grid.seeds:
+        yield (
+            "overlay.seed",
+            overlay.seed,
+            f"is a seed of the study, which has 0 to {grid.seeds - 1}: give a larger one",
+        )
+
+
+def _bands_in_order(excitation, identification):
+    bands = {
+        "identification.peak_search_Hz": identification.peak_search_Hz,
+        "identification.lscf.band_Hz": identification.lscf.band_Hz,
+        "identification.broadband.band_Hz": identification.broadband.band_Hz,
+        "identification.stiffness_range_N_per_m": identification.stiffness_range_N_per_m,
+    }
+    if excitation.kind == "band_limited":
+        bands["excitation.band_Hz"] = excitation.band_Hz
+    for key, (low, high) in bands.items():
+        if low >= high:
+            yield key, [low, high], "is not in ascending order: give the lower end first"
+
+
+def _bands_below_nyquist(record, identification):
+    nyquist = record.sampling_frequency_Hz / 2
+    bands = {
+        "peak_search_Hz": identification.peak_search_Hz,
+        "lscf.band_Hz": identification.lscf.band_Hz,
+        "broadband.band_Hz": identification.broadband.band_Hz,
+    }
+    for key, (low, high) in bands.items():
+        if high > nyquist:
+            yield (
+                f"identification.{key}",
+                [low, high],
+                f"reaches above half the sampling frequency, {nyquist:g} Hz: lower it",
+            )
+
+
+def _broadband_is_excited(excitation, identification):
+    if excitation.kind != "band_limited":
+        return
+    low, high = excitation.band_Hz
+    asked = identification.broadband.band_Hz
+    if asked[0] < low - TOLERANCE or asked[1] > high + TOLERANCE:
+        yield (
+            "identification.broadband.band_Hz",
+            list(asked),
+            (
+                f"reaches beyond the excited band {[low, high]} Hz, where spectra of a tube and of"
+                " its linear equivalent are not comparable"
+            ),
+        )
+
+
+def _main_peak_is_excited(excitation, identification):
+    if excitation.kind != "band_limited":
+        return
+    low, high = excitation.band_Hz
+    for key, asked in (
+        ("peak_search_Hz", identification.peak_search_Hz),
+        ("lscf.band_Hz", identification.lscf.band_Hz),
+    ):
+        if asked[1] <= low or asked[0] >= high:
+            yield (
+                f"identification.{key}",
+                list(asked),
+                f"lies outside the excited band {[low, high]} Hz: nothing is seen there",
+            )
+
+
+def _segments(record, spectra, identification):
+    if spectra.segment_s > record.duration_s:
+        yield (
+            "spectra.segment_s",
+            spectra.segment_s,
+            (
+                f"is longer than the record, {record.duration_s:g} s: shorten the segment or"
+                " lengthen record.duration_s"
+            ),
+        )
+    samples = spectra.segment_s * record.sampling_frequency_Hz
+    if samples < 16:
+        yield (
+            "spectra.segment_s",
+            spectra.segment_s,
+            f"holds only {samples:g} samples: in seconds? give at least 16 samples",
+        )
+
+
+def _bands_resolved(spectra, identification):
+    bands = {
+        "peak_search_Hz": identification.peak_search_Hz,
+        "lscf.band_Hz": identification.lscf.band_Hz,
+        "broadband.band_Hz": identification.broadband.band_Hz,
+    }
+    for key, (low, high) in bands.items():
+        lines = (high - low) * spectra.segment_s
+        if 0 < lines < 8:
+            yield (
+                f"identification.{key}",
+                [low, high],
+                (
+                    f"holds {lines:.0f} lines of {1 / spectra.segment_s:g} Hz: widen it or lengthen"
+                    " spectra.segment_s"
+                ),
+            )
+
+
+def _step_and_force(excitation, integration):
+    source = excitation.signal if excitation.kind == "base_motion" else excitation
+    highest = {
+        "band_limited": lambda: source.band_Hz[1],
+        "measured": lambda: (source.sampling_frequency_Hz or 0) / 2,
+        "harmonic": lambda: source.frequency_Hz,
+    }.get(source.kind, lambda: 0.0)()
+    needed = STEPS_PER_EXCITED_PERIOD * highest
+    if integration.steps_per_second < needed:
+        yield (
+            "integration.steps_per_second",
+            integration.steps_per_second,
+            (
+                f"is fewer than {STEPS_PER_EXCITED_PERIOD} steps per period of the highest excited"
+                f" frequency, {highest:g} Hz: give at least {math.ceil(needed)}"
+            ),
+        )
+
+
+def _step_and_modes(structure, basis, integration):
+    omega_step = 2 * math.pi * basis.free_modes_to_Hz / integration.steps_per_second
+    largest = LARGEST_OMEGA_STEP[integration.scheme]
+    if omega_step > largest:
+        yield (
+            "integration.steps_per_second",
+            integration.steps_per_second,
+            (
+                f"gives omega x step = {omega_step:.3g} for free modes to"
+                f" {basis.free_modes_to_Hz:g} Hz, at most {largest:g}: give at least"
+                f" {math.ceil(2 * math.pi * basis.free_modes_to_Hz / largest)} or keep fewer free"
+                " modes"
+            ),
+        )
+
+
+def _step_and_samples(integration, record):
+    if record.every_step:
+        return
+    ratio = integration.steps_per_second / record.sampling_frequency_Hz
+    stages = ratio / FILTER_RATIO
+    if stages < 1 or abs(stages - round(stages)) > TOLERANCE:
+        nearest = max(1, round(stages)) * FILTER_RATIO * record.sampling_frequency_Hz
+        yield (
+            "integration.steps_per_second",
+            integration.steps_per_second,
+            (
+                f"must be {FILTER_RATIO} times a whole multiple of record.sampling_frequency_Hz ="
+                f" {record.sampling_frequency_Hz:g} (the output filter's first stage divides by"
+                f" {FILTER_RATIO}): {nearest:g} is near"
+            ),
+        )
+
+
+def _whole_samples(record, integration):
+    if record.every_step:
+        return
+    for place, duration in (
+        ("record.duration_s", record.duration_s),
+        ("integration.start_up_s", integration.start_up_s),
+    ):
+        samples = duration * record.sampling_frequency_Hz
+        if abs(samples - round(samples)) > 1e-6 * max(1.0, samples):
+            yield (
+                place,
+                duration,
+                (
+                    f"is {samples:.3f} samples of 1/{record.sampling_frequency_Hz:g} s: give a"
+                    " whole number of samples"
+                ),
+            )
+
+
+TUBE_CHECKS = (
+    geometry_checks.wall,
+    geometry_checks.path_directions,
+    geometry_checks.points_on_the_tube,
+    geometry_checks.supports_on_the_tube,
+    geometry_checks.gaps,
+    geometry_checks.offsets,
+    names.sensors_of_a_tube,
+    _step_and_modes,
+)
+POINT_CHECKS = (names.point_supports,)
+CHECKS = (
+    *TUBE_CHECKS,
+    *POINT_CHECKS,
+    names.chain_names,
+    geometry_checks.support_lists,
+    geometry_checks.gaps_of_supports,
+    names.names_twice,
+    _repeated_values,
+    names.known_points,
+    names.drag_partners,
+    names.identified_points,
+    names.identification_needs,
+    names.initial_points,
+    _every_step,
+    names.sensors,
+    names.driven_direction_is_recorded,
+    _force,
+    _overlay,
+    _bands_in_order,
+    _bands_below_nyquist,
+    _broadband_is_excited,
+    _main_peak_is_excited,
+    _segments,
+    _bands_resolved,
+    _step_and_force,
+    _step_and_samples,
+    _whole_samples,
+)

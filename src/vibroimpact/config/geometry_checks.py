@@ -1,0 +1,183 @@
+"""Checks of a configuration's geometry: the tube, what is on it, and the clearances. Each yields
+(place, value, text), see config_checks.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M, build_centreline
+
+TOLERANCE = 1e-9
+
+
+def wall(structure):
+    """Yield a problem unless the wall is thinner than the radius."""
+    section = structure.section
+    if section.wall_thickness_m >= section.outer_diameter_m / 2:
+        yield (
+            "structure.section.wall_thickness_m",
+            section.wall_thickness_m,
+            f"must be below half the outer diameter {section.outer_diameter_m}: both in metres?",
+        )
+
+
+def path_directions(structure):
+    """Yield a problem unless start and bends of a path have directions."""
+    if structure.kind != "path":
+        return
+    if not np.any(structure.start_direction):
+        yield (
+            "structure.start_direction",
+            list(structure.start_direction),
+            "is not a direction: give three components that are not all 0",
+        )
+        return
+    tangent = np.array(structure.start_direction) / np.linalg.norm(structure.start_direction)
+    for index, segment in enumerate(structure.segments):
+        if segment.kind != "bend":
+            continue
+        toward = np.array(segment.toward) - (np.array(segment.toward) @ tangent) * tangent
+        if np.linalg.norm(toward) < 1e-6 * (1 + np.linalg.norm(segment.toward)):
+            yield (
+                f"structure.segments[{index}].toward",
+                list(segment.toward),
+                (
+                    "is parallel to the tube there: give a direction across the tangent"
+                    f" {np.round(tangent, 4).tolist()}"
+                ),
+            )
+            return
+        angle = math.radians(segment.angle_deg)
+        tangent = math.cos(angle) * tangent + math.sin(angle) * toward / np.linalg.norm(toward)
+
+
+def _centreline(structure):
+    """The centreline, or None where its directions are a problem already reported."""
+    return None if any(path_directions(structure)) else build_centreline(structure)
+
+
+def _off_the_tube(centreline, place, position):
+    """Yield a problem when `position` (3,) m is farther from the centreline than the tolerance."""
+    arc_length = min(
+        (segment.nearest(np.array(position)) for segment in centreline.segments),
+        key=lambda s: np.linalg.norm(centreline.position(s) - position),
+    )
+    nearest = centreline.position(arc_length)
+    distance = float(np.linalg.norm(nearest - position))
+    if distance > LOCATION_TOLERANCE_M:
+        yield (
+            place,
+            list(position),
+            (
+                f"is {distance:.4f} m off the tube (at most {LOCATION_TOLERANCE_M} m): "
+                f"the nearest point of the centreline is {np.round(nearest, 4).tolist()} m"
+            ),
+        )
+
+
+def points_on_the_tube(structure, points):
+    """Yield a problem unless named points are on the tube."""
+    centreline = _centreline(structure)
+    for name, position in points.items() if centreline else ():
+        yield from _off_the_tube(centreline, f"points.{name}", position)
+
+
+def supports_on_the_tube(structure, supports):
+    """Yield a problem unless supports are on one segment of the tube each and do not overlap."""
+    centreline = _centreline(structure)
+    taken = []
+    for index, support in enumerate(supports if centreline else ()):
+        missing = [key for key in ("at_m", "height_m") if getattr(support, key) is None]
+        if missing or support.point is not None:
+            yield (
+                f"supports[{index}]",
+                support.name,
+                "is on a tube: give at_m and height_m, and no point",
+            )
+            continue
+        off = list(_off_the_tube(centreline, f"supports[{index}].at_m", support.at_m))
+        yield from off
+        if off:
+            continue
+        middle = centreline.locate(support.at_m, support.name)
+        segment = centreline.segment_at(middle)
+        low, high = middle - support.height_m / 2, middle + support.height_m / 2
+        if low < segment.begin - TOLERANCE or high > segment.end + TOLERANCE:
+            room = 2 * min(middle - segment.begin, segment.end - middle)
+            yield (
+                f"supports[{index}].height_m",
+                support.height_m,
+                (
+                    f"reaches beyond the segment of the tube that '{support.name}' is on: at most"
+                    f" {room:.4g} m there (in metres?)"
+                ),
+            )
+        for other, other_low, other_high in taken:
+            if low < other_high - TOLERANCE and other_low < high - TOLERANCE:
+                yield (
+                    f"supports[{index}].at_m",
+                    list(support.at_m),
+                    f"'{support.name}' overlaps '{other}': move one or lower its height_m",
+                )
+        taken.append((support.name, low, high))
+
+
+def support_lists(supports):
+    """Yield a problem unless lists of a support have one entry per contact point."""
+    for index, support in enumerate(supports):
+        lists = {"stiffness_N_per_m": support.stiffness_N_per_m, "gap_factor": support.gap_factor}
+        lists["centre_offset_m"] = (
+            support.centre_offset_m if isinstance(support.centre_offset_m[0], tuple) else 0.0
+        )
+        for key, value in lists.items():
+            if isinstance(value, tuple) and len(value) != support.points:
+                yield (
+                    f"supports[{index}].{key}",
+                    list(value),
+                    (
+                        f"has {len(value)} values for {support.points} contact points: give one"
+                        " value, or one per point"
+                    ),
+                )
+
+
+def gaps(structure, grid):
+    """Yield a problem unless gaps are clearances."""
+    radius = structure.section.outer_diameter_m / 2
+    for index, gap in enumerate(grid.gap_m):
+        if gap > radius:
+            yield (
+                f"grid.gap_m[{index}]",
+                gap,
+                (
+                    f"is larger than half the diameter, {radius:g} m: give the radial clearance in"
+                    " metres"
+                ),
+            )
+
+
+def offsets(structure, supports):
+    """Yield a problem unless offsets are smaller than the tube."""
+    radius = structure.section.outer_diameter_m / 2
+    for index, support in enumerate(supports):
+        largest = float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
+        if largest > radius:
+            yield (
+                f"supports[{index}].centre_offset_m",
+                largest,
+                f"is larger than half the diameter, {radius:g} m: in metres?",
+            )
+
+
+def gaps_of_supports(structure, supports):
+    """Yield a problem unless only flat stops touch at rest."""
+    for index, support in enumerate(supports):
+        if support.gap_m is not None and support.gap_m <= 0.0 and support.profile.kind != "planes":
+            yield (
+                f"supports[{index}].gap_m",
+                support.gap_m,
+                "must be > 0 round a centre: only flat stops (profile planes) may touch or press",
+            )

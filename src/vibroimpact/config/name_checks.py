@@ -1,0 +1,198 @@
+"""Checks that what a configuration names is there. Each yields (place, value, text), see
+config_checks.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from difflib import get_close_matches
+
+import numpy as np
+
+TUBES = ("u_tube", "path")
+
+
+def names_twice(supports):
+    """Yield a problem unless supports have names of their own."""
+    for name, times in Counter(support.name for support in supports).items():
+        if times > 1:
+            yield "supports", name, f"names {times} supports: give each a name of its own"
+
+
+def drag_partners(elements):
+    """Yield a problem unless elements that share the speed of a drag are there."""
+    names = [element.name for element in elements]
+    for index, element in enumerate(elements):
+        if element.drag_partner is not None and (
+            element.drag_partner == element.name or names.count(element.drag_partner) != 1
+        ):
+            others = ", ".join(name for name in names if name != element.name)
+            yield (
+                f"elements[{index}].drag_partner",
+                element.drag_partner,
+                f"is not one other element: give one of {others or 'none, there is no other'}",
+            )
+
+
+def known_points(structure, points, excitation, record, supports, elements):
+    """Yield a problem unless points that the configuration names are there."""
+    known = {
+        "chain": lambda: [mass.name for mass in structure.masses],
+        "matrices": lambda: list(structure.points),
+        "identified": lambda: sorted({name for mode in structure.modes for name in mode.shape}),
+    }
+    names = known.get(structure.kind, lambda: list(points))()
+    named = list(_force_points(excitation))
+    named += [
+        (f"record.sensors.points[{i}]", name)
+        for i, name in enumerate(record.sensors.points if record.sensors else ())
+    ]
+    for part, entries in (("supports", supports), ("elements", elements)):
+        named += [
+            (f"{part}[{i}].{key}", getattr(entry, key))
+            for i, entry in enumerate(entries)
+            for key in ("point", "other_point")
+            if getattr(entry, key) is not None
+        ]
+    for place, name in named:
+        if name not in names:
+            close = get_close_matches(name, names, n=1)
+            remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(names)}"
+            yield place, name, f"is not one of the named points: {remedy}"
+
+
+def _force_points(excitation):
+    """Yield (place, point) of everything that the excitation names."""
+    if hasattr(excitation, "point"):
+        yield "excitation.point", excitation.point
+    for key in ("also", "constant"):
+        yield from (
+            (f"excitation.{key}[{i}].point", entry.point)
+            for i, entry in enumerate(getattr(excitation, key, ()))
+        )
+
+
+def identified_points(record, identification):
+    """Yield a problem unless points to identify from are recorded."""
+    named = [
+        ("identification.response_point", identification.response_point),
+        ("identification.broadband.point", identification.broadband.point),
+    ]
+    named += [
+        (f"identification.lscf.references[{i}]", name)
+        for i, name in enumerate(identification.lscf.references)
+    ]
+    for place, name in named:
+        if record.sensors is None or name not in record.sensors.points:
+            yield place, name, "is not recorded: add it to record.sensors.points"
+
+
+def identification_needs(structure, excitation, record, identification):
+    """Yield a problem unless what is identified is a tube under a broadband force."""
+    if structure.kind not in TUBES:
+        yield (
+            "identification",
+            "given",
+            (
+                f"reads the equivalent support of a tube, structure.kind is {structure.kind}: leave"
+                " identification out"
+            ),
+        )
+    elif excitation.kind not in ("band_limited", "measured"):
+        yield (
+            "identification",
+            "given",
+            (
+                f"needs a broadband force, excitation.kind is {excitation.kind}: leave"
+                " identification out"
+            ),
+        )
+    if record.every_step:
+        yield (
+            "record.every_step",
+            True,
+            "keeps no spectra to identify from: leave identification out",
+        )
+
+
+def point_supports(structure, supports):
+    """Yield a problem unless supports of a structure that is no tube are at its points."""
+    for index, support in enumerate(supports):
+        if support.point is None or support.at_m is not None:
+            yield (
+                f"supports[{index}]",
+                support.name,
+                f"is on a structure of kind {structure.kind}: give point, and no at_m",
+            )
+
+
+def chain_names(structure):
+    """Yield a problem unless masses have names, and springs name them."""
+    if structure.kind != "chain":
+        return
+    names = [mass.name for mass in structure.masses]
+    for name, times in Counter(names).items():
+        if times > 1:
+            yield "structure.masses", name, f"names {times} masses: give each a name of its own"
+    for index, spring in enumerate(structure.springs):
+        for end in spring.between:
+            if end not in (*names, "ground"):
+                yield (
+                    f"structure.springs[{index}].between",
+                    end,
+                    f"is no mass: give one of {', '.join(names)}, or ground",
+                )
+
+
+def initial_points(structure, initial):
+    """Yield a problem unless only a chain or matrices start in motion."""
+    if structure.kind in (*TUBES, "identified") and (
+        initial.displacement_m or initial.velocity_m_per_s
+    ):
+        yield (
+            "initial",
+            "given",
+            "sets dofs of a chain or of matrices: a tube and measured modes start at rest",
+        )
+
+
+def sensors(record):
+    """Yield a problem unless sensors are named once."""
+    if record.sensors is None:
+        return
+    for key, row in (("points", record.sensors.points), ("directions", record.sensors.directions)):
+        for name, times in Counter(row).items():
+            if times > 1:
+                yield f"record.sensors.{key}", name, f"stands {times} times: give each once"
+
+
+def sensors_of_a_tube(structure, record):
+    """Yield a problem unless a tube has sensors, the shape line among their directions."""
+    if record.sensors is None:
+        yield (
+            "record.sensors",
+            None,
+            "is needed on a tube: name the points and directions to record",
+        )
+    elif record.shape_line.direction not in record.sensors.directions:
+        yield (
+            "record.shape_line.direction",
+            record.shape_line.direction,
+            (
+                "is not a direction of the sensors: add it to record.sensors.directions"
+                f" {list(record.sensors.directions)}"
+            ),
+        )
+
+
+def driven_direction_is_recorded(excitation, record):
+    """Yield a problem unless the direction of the force is recorded."""
+    if record.sensors is None or not hasattr(excitation, "direction"):
+        return
+    driven = "xyz"[int(np.argmax(np.abs(excitation.direction)))]
+    if driven not in record.sensors.directions:
+        yield (
+            "record.sensors.directions",
+            list(record.sensors.directions),
+            f"lacks '{driven}', the direction of the force, which the identifications need: add it",
+        )

@@ -1,0 +1,157 @@
+"""Which keys of the configuration each stage of the workflow uses.
+
+The rules put stage_params into `params:` and a stage sees nothing else of the configuration
+(settings.Settings), so that a changed key reruns just the stages that use it, and a stage can not
+come to use a key in secret.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .schema import Config
+
+STAGE_KEYS: dict[str, tuple[str, ...]] = {
+    "targets": (
+        "study",
+        "grid",
+        "identification",
+        "record.every_step",
+        "record.keep_time_series",
+        "overlay.load_rms_N",
+        "overlay.campaign",
+    ),
+    "basis": (
+        "structure",
+        "damping",
+        "supports",
+        "elements",
+        "masses",
+        "mode_frequency_factors",
+        "initial",
+        "points",
+        "excitation",
+        "basis",
+        "record.sensors",
+        "record.shape_line",
+    ),
+    "simulate": (
+        "study",
+        "seed",
+        "excitation",
+        "integration",
+        "grid.gap_m",
+        "grid.seeds",
+        "record.duration_s",
+        "record.sampling_frequency_Hz",
+        "record.stress_limit_Pa",
+        "record.every_step",
+    ),
+    "simulate_to_spectra": (
+        "study",
+        "seed",
+        "excitation",
+        "integration",
+        "grid.gap_m",
+        "grid.seeds",
+        "record.duration_s",
+        "record.sampling_frequency_Hz",
+        "record.stress_limit_Pa",
+        "record.every_step",
+        "spectra",
+        "identification.lscf",
+        "identification.broadband",
+    ),
+    "statistics": ("study",),
+    "spectra": (
+        "study",
+        "excitation.direction",
+        "record.sampling_frequency_Hz",
+        "spectra",
+        "identification.lscf",
+        "identification.broadband",
+    ),
+    "identify": ("excitation", "identification"),
+    "consistency": ("study", "grid", "identification"),
+    "synthetic_campaign": (
+        "study",
+        "seed",
+        "points",
+        "excitation",
+        "integration",
+        "grid.gap_m",
+        "record.duration_s",
+        "record.sampling_frequency_Hz",
+        "record.stress_limit_Pa",
+        "record.every_step",
+        "overlay.gap_ratio",
+        "overlay.noise",
+        "overlay.seed",
+    ),
+    "figures_model": (
+        "structure",
+        "damping",
+        "supports",
+        "elements",
+        "masses",
+        "mode_frequency_factors",
+        "initial",
+        "points",
+        "excitation",
+        "basis",
+        "grid.gap_m",
+        "record.sensors",
+        "record.shape_line",
+    ),
+    "figures_response": (
+        "structure.section",
+        "excitation",
+        "grid.gap_m",
+        "spectra",
+        "identification",
+    ),
+    "figures_identification": (
+        "structure.section",
+        "excitation",
+        "grid.gap_m",
+        "record.shape_line",
+        "spectra",
+        "identification",
+    ),
+    "figures_checks": (
+        "structure.section",
+        "integration.scheme",
+        "integration.steps_per_second",
+        "record.stress_limit_Pa",
+        "identification.stiffness_range_N_per_m",
+    ),
+    "timing": ("study",),
+    "f16": ("f16_data",),
+    "silverbox": ("silverbox_data",),
+    "completion_records": ("f16_data", "silverbox_data"),
+    "completion": (),
+    "validation": tuple(Config.model_fields),
+}
+
+
+def stage_params(config: Config, stage: str) -> dict[str, Any]:
+    """Return {dotted key: value} of the keys that a stage uses, in plain values. Raises KeyError
+    when the stage is unknown.
+    """
+    return select(config.model_dump(mode="json"), STAGE_KEYS[stage])
+
+
+def select(values: dict, keys: tuple[str, ...]) -> dict[str, Any]:
+    """Return {dotted key: value} of nested values."""
+    return {key: _value_at(values, key.split(".")) for key in keys}
+
+
+def _value_at(values: Any, parts: list[str]) -> Any:
+    """Return the value at a dotted key, None inside a section that is left out or of a kind without
+    the key.
+    """
+    for part in parts:
+        if values is None or ("kind" in values and part not in values):
+            return None
+        values = values[part]
+    return values

@@ -1,0 +1,1 @@
+"""Supports and local elements: where they act, and their force laws."""

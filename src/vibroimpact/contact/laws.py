@@ -1,0 +1,163 @@
+"""The local force laws of a model: a column per parameter, a row per contact point or local
+element, neutral values where a term is off.
+
+Contact (radial, unilateral; p penetration in m, a point of the supports): see ContactLaws. Local
+element (bilateral, along one direction between a point and the ground or between two points): see
+LocalLaws. docs/method.md writes the laws out.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLaws:
+    """What a contact has beyond its elastic circular obstacle; every float array is
+    (contact_point,).
+
+    gap m, NaN: the case's gap times the point's gap_factor; damping N s/m, force max(0, k p +
+    damping dp/dt); hunt_crossley s/m, force k p max(0, 1 + hunt_crossley dp/dt); hertz N/m^1.5,
+    force hertz p^1.5 in place of k p where it is not 0; friction: Coulomb coefficient;
+    stick_stiffness N/m of the elastic stick spring of the friction; lobes, lobe_depth m, lobe_angle
+    rad: obstacle r(theta) = gap + lobe_depth (1 - cos(lobes (theta - lobe_angle))) / 2, a circle
+    where lobes is 0. land_point (land,) int and land_normal (land, 2): a point named in land_point
+    meets flat lands, normals pointing away from the centre at the distance of its gap, in place of
+    the circle.
+
+    Raises ValueError for columns of unequal length, values out of range or a land at a point that
+    does not exist.
+    """
+
+    gap: np.ndarray
+    damping: np.ndarray
+    hunt_crossley: np.ndarray
+    hertz: np.ndarray
+    friction: np.ndarray
+    stick_stiffness: np.ndarray
+    lobes: np.ndarray
+    lobe_depth: np.ndarray
+    lobe_angle: np.ndarray
+    land_point: np.ndarray
+    land_normal: np.ndarray
+
+    @classmethod
+    def neutral(cls, points: int):
+        """Return the laws of `points` plain elastic circular contacts."""
+        columns = {field.name: np.zeros(points) for field in fields(cls)}
+        columns |= {
+            "gap": np.full(points, np.nan),
+            "land_point": np.zeros(0, int),
+            "land_normal": np.zeros((0, 2)),
+        }
+        return cls(**columns)
+
+    def __post_init__(self):
+        """Refuse what no contact can be."""
+        points = len(self.gap)
+        for name in POINT_COLUMNS:
+            values = getattr(self, name)
+            if np.shape(values) != (points,):
+                raise ValueError(
+                    f"contact law {name} has shape {np.shape(values)} for {points} contact points:"
+                    " give one value per point"
+                )
+            if (
+                name not in ("gap", "lobe_angle")
+                and not (np.isfinite(values) & (values >= 0.0)).all()
+            ):
+                raise ValueError(
+                    f"contact law {name} = {values.tolist()} must be finite and not negative"
+                )
+        if (self.friction > 0.0)[self.stick_stiffness <= 0.0].any():
+            raise ValueError(
+                "contact law stick_stiffness must be positive where there is friction: give about"
+                " the contact stiffness"
+            )
+        if np.shape(self.land_normal) != (len(self.land_point), 2) or (
+            len(self.land_point) and not np.allclose(np.hypot(*self.land_normal.T), 1.0)
+        ):
+            raise ValueError("land_normal must hold one unit vector (2,) per land")
+        if not set(np.unique(self.land_point)) <= set(range(points)):
+            raise ValueError(
+                f"land_point {self.land_point.tolist()} names a contact point that is not among"
+                f" {points}"
+            )
+
+    @property
+    def plain(self) -> np.ndarray:
+        """Return (contact_point,) True where a point has nothing but the elastic circle."""
+        special = np.isin(np.arange(len(self.gap)), self.land_point)
+        for name in ("damping", "hunt_crossley", "hertz", "friction", "lobes"):
+            special |= getattr(self, name) != 0.0
+        return ~special
+
+    def with_columns(self, **columns):
+        """Return the laws with some columns replaced; a number fills a column."""
+        return replace(
+            self,
+            **{
+                name: (
+                    np.broadcast_to(value, np.shape(getattr(self, name))).copy()
+                    if name in POINT_COLUMNS
+                    else value
+                )
+                for name, value in columns.items()
+            },
+        )
+
+
+POINT_COLUMNS = tuple(
+    field.name for field in fields(ContactLaws) if not field.name.startswith("land")
+)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalLaws:
+    """The terms of local elements; every array is (element,).
+
+    Force on the structure along the element's direction, u the displacement (or the relative one)
+    and v its rate:
+    -(stiffness u + quadratic u² + cubic u³ + damping v + drag |v| v + slider + saturation), with
+    slider an elastic stick spring of
+    stick_stiffness N/m that slips at slip_limit N, and saturation = clip(saturation_stiffness u,
+    +-saturation_limit) N.
+    drag_partner: number of the element whose rate w counts in the speed too, |v| = sqrt(v² + w²),
+    -1 for none: a fluid brakes a motion
+    in its plane, not along each axis by itself. Units: N/m, N/m², N/m³, N s/m, N s²/m².
+
+    Raises ValueError for columns of unequal length or values that are not finite.
+    """
+
+    stiffness: np.ndarray
+    quadratic: np.ndarray
+    cubic: np.ndarray
+    damping: np.ndarray
+    drag: np.ndarray
+    stick_stiffness: np.ndarray
+    slip_limit: np.ndarray
+    saturation_stiffness: np.ndarray
+    saturation_limit: np.ndarray
+    drag_partner: np.ndarray
+
+    @classmethod
+    def neutral(cls, elements: int):
+        """Return the laws of `elements` elements that exert no force."""
+        return cls(
+            **{field.name: np.zeros(elements) for field in fields(cls)}
+            | {"drag_partner": np.full(elements, -1)}
+        )
+
+    def __post_init__(self):
+        """Refuse columns that do not belong together."""
+        for field in fields(self):
+            values = getattr(self, field.name)
+            if np.shape(values) != np.shape(self.stiffness):
+                raise ValueError(
+                    f"element law {field.name} has shape {np.shape(values)}, expected"
+                    f" {np.shape(self.stiffness)}: one per element"
+                )
+            if not np.isfinite(values).all():
+                raise ValueError(
+                    f"element law {field.name} = {np.asarray(values).tolist()} must be finite"
+                )

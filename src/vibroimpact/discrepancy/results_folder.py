@@ -1,0 +1,77 @@
+"""What a discrepancy run leaves in its folder, read back for the figures and the page."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+
+from vibroimpact.records import read_dataset, read_table, read_text
+
+
+@dataclass(frozen=True)
+class Results:
+    """Content of verdict.json, maps before and after (None where there is none), rows of
+    ranking.csv, contents of candidates/*.json, best first.
+    """
+
+    verdict: dict
+    before: xr.Dataset | None
+    after: xr.Dataset | None
+    ranking: list
+    candidates: list
+
+
+def read_results(folder):
+    """Return the Results of a folder. Files other than verdict.json may be missing, and maps empty,
+    where the campaign was refused.
+    """
+    folder = Path(folder)
+    verdict = json.loads(read_text(folder / "verdict.json"))
+    ranking = read_table(folder / "ranking.csv") if (folder / "ranking.csv").is_file() else []
+    order = ["+".join(sorted(str(row["ids"]).split("+"))) for row in ranking]
+    candidates = [
+        json.loads(read_text(file)) for file in sorted((folder / "candidates").glob("*.json"))
+    ]
+    keys = {id(candidate): "+".join(sorted(candidate["ids"])) for candidate in candidates}
+    candidates.sort(
+        key=lambda candidate: (
+            order.index(keys[id(candidate)]) if keys[id(candidate)] in order else len(order)
+        )
+    )
+    return Results(
+        verdict, _map(folder / "map.nc"), _map(folder / "map_after.nc"), ranking, candidates
+    )
+
+
+def shown_effects(verdict):
+    """Return the effects of a verdict; where it can not tell which of several, the most probable
+    ones, which its completed model holds.
+    """
+    return verdict["effects"] or (
+        verdict.get("most_probable", []) if verdict["verdict"] == "ambiguous" else []
+    )
+
+
+NO_VALUE = ("None", "", "nan")
+
+
+def best_places(rows):
+    """Return the rows of a ranking without those that were screened only, of effects that a row
+    before them shows at another place.
+    """
+    shown, kept = set(), []
+    for row in rows:
+        ids = row["ids"] if isinstance(row["ids"], str) else "+".join(row["ids"])
+        if str(row["heldout_score"]) not in NO_VALUE or ids not in shown:
+            kept.append(row)
+        shown.add(ids)
+    return kept
+
+
+def _map(path):
+    """Return the map of a file, None where there is no file or nothing in it."""
+    data = read_dataset(path) if path.is_file() else None
+    return data if data is not None and "D" in data else None

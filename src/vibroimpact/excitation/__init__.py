@@ -1,0 +1,1 @@
+"""Forces: random, measured or of a formula, and where on the structure they act."""

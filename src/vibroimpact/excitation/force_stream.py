@@ -1,0 +1,217 @@
+"""The force of a seed, piece by piece: any stretch of it at the integration step, without the whole
+record ever being held.
+
+A band-limited record is drawn as Fourier lines. Its values at every n-th step are the inverse
+transform of the same lines over a length n times shorter; the steps between follow by
+interpolation, exact to round-off because the short record is sampled several times faster than its
+band asks for. A block of steps always comes from the same arithmetic, so a step has the same bits
+in whatever stretch it is asked for.
+"""
+
+from functools import lru_cache
+from math import fsum, pi
+
+import numpy as np
+
+from .force_files import read_force
+from .random_force import ForceError, noise_lines, resample_measured
+
+OVERSAMPLING = 5  # least rate of the short record, in units of the band's upper edge
+# of the interpolation; with OVERSAMPLING 5 a Kaiser window of this length leaves 1e-14 of the
+# images
+TAPS = 40
+KAISER_BETA = 32.5
+BLOCK_STEPS = 25600  # about as many steps come from one block
+KEPT_BLOCKS = 3
+
+
+class ForceStream:
+    """Force at rate [Hz] of RMS exactly 1 over the recorded samples, but for a sine or white noise,
+    which are 1 by law.
+
+    excitation: the section of the configuration; generator: the seed's random stream (unused by a
+    measured force or a sine); samples: length; recorded: slice of the samples that are recorded;
+    first_time_s: time of the first sample, which a sine needs. Raises ForceError: a measured record
+    is too short or has no force in it.
+    """
+
+    def __init__(
+        self,
+        excitation,
+        generator,
+        samples: int,
+        rate: float,
+        recorded: slice,
+        first_time_s: float = 0.0,
+    ):
+        self._source = _source(excitation, generator, samples, rate, first_time_s)
+        self._blocks: dict[int, np.ndarray] = {}
+        self._scale = 1.0
+        if self._source.exact_rms:
+            start, stop, _ = recorded.indices(samples)
+            pieces = (
+                self.values(first, min(BLOCK_STEPS, stop - first))
+                for first in range(start, stop, BLOCK_STEPS)
+            )
+            rms = np.sqrt(fsum(piece @ piece for piece in pieces) / (stop - start))
+            if not rms > 0.0:
+                raise ForceError("the force is zero over the record: check excitation.variable")
+            self._blocks.clear()
+            self._scale = 1.0 / rms
+
+    def values(self, first: int, count: int) -> np.ndarray:
+        """The samples (count,) from the first one on."""
+        out, size = np.empty(count), self._source.block_steps
+        for index in range(first // size, (first + count - 1) // size + 1):
+            low, high = max(first, index * size), min(first + count, (index + 1) * size)
+            out[low - first : high - first] = self._block(index)[
+                low - index * size : high - index * size
+            ]
+        return out
+
+    def _block(self, index):
+        if index not in self._blocks:
+            while len(self._blocks) >= KEPT_BLOCKS:
+                del self._blocks[min(self._blocks)]
+            self._blocks[index] = self._source.block(index) * self._scale
+        return self._blocks[index]
+
+
+def unit_force(
+    excitation, generator, samples: int, rate: float, recorded: slice, first_time_s: float = 0.0
+) -> np.ndarray:
+    """All samples (sample,) of the ForceStream with these arguments."""
+    return ForceStream(excitation, generator, samples, rate, recorded, first_time_s).values(
+        0, samples
+    )
+
+
+def _source(excitation, generator, samples, rate, first_time_s):
+    """What makes the blocks of a kind of excitation."""
+    source = excitation.signal if excitation.kind == "base_motion" else excitation
+    if source.kind == "none":
+        return _Formula(np.zeros_like, rate, 0.0)
+    if source.kind == "harmonic":
+        omega, phase = 2.0 * pi * source.frequency_Hz, np.deg2rad(source.phase_deg)
+        return _Formula(
+            lambda time: np.sqrt(2.0) * np.sin(omega * time + phase), rate, first_time_s
+        )
+    if source.kind == "white_noise":
+        return _WhiteNoise(generator)
+    if source.kind == "band_limited":
+        return _Interpolated(*noise_lines(generator, samples, rate, source.band_Hz))
+    values, duration = _measured(
+        excitation.file, excitation.variable, excitation.sampling_frequency_Hz, rate
+    )
+    if values.size < samples:
+        raise ForceError(
+            f"{excitation.file}: {excitation.variable} lasts {duration:.3f} s, but start-up and"
+            f" record need {samples / rate:.3f} s: lower integration.start_up_s or"
+            " record.duration_s"
+        )
+    return _Whole(values)
+
+
+@lru_cache(maxsize=1)
+def _measured(path, variable, sampling_frequency, rate):
+    """A measured record at rate [Hz], and its duration in s; one copy serves all seeds."""
+    values, measured_rate = read_force(path, variable, sampling_frequency)
+    return resample_measured(values, measured_rate, rate), values.size / measured_rate
+
+
+class _Formula:
+    """A function of time (s)."""
+
+    exact_rms, block_steps = False, BLOCK_STEPS
+
+    def __init__(self, function, rate, first_time_s):
+        self._function, self._rate, self._first = function, rate, first_time_s
+
+    def block(self, index):
+        return self._function(
+            self._first + np.arange(index * BLOCK_STEPS, (index + 1) * BLOCK_STEPS) / self._rate
+        )
+
+
+class _WhiteNoise:
+    """Independent Gaussian values, those that one call of the generator for all of them gives."""
+
+    exact_rms, block_steps = False, BLOCK_STEPS
+
+    def __init__(self, generator):
+        self._generator, self._states = generator, [generator.bit_generator.state]
+
+    def block(self, index):
+        for known in range(min(index, len(self._states) - 1), index + 1):
+            self._generator.bit_generator.state = self._states[known]
+            values = self._generator.standard_normal(BLOCK_STEPS)
+            if known + 1 == len(self._states):
+                self._states.append(self._generator.bit_generator.state)
+        return values
+
+
+class _Whole:
+    """A record that is held as it is: a measured force."""
+
+    exact_rms, block_steps = True, BLOCK_STEPS
+
+    def __init__(self, values):
+        self._values = values
+
+    def block(self, index):
+        return self._values[index * BLOCK_STEPS : (index + 1) * BLOCK_STEPS]
+
+
+class _Interpolated:
+    """The inverse transform of lines (line,), the first of them line `first` of a record of
+    `length` steps, by way of a short record.
+    """
+
+    exact_rms = True
+
+    def __init__(self, lines, first, length):
+        highest = first + lines.size - 1
+        factor = max(
+            divisor
+            for divisor in range(1, length // (OVERSAMPLING * highest) + 2)
+            if length % divisor == 0
+            and (divisor == 1 or length >= divisor * OVERSAMPLING * highest)
+        )
+        short = length // factor
+        spectrum = np.zeros(short // 2 + 1, complex)
+        spectrum[first : highest + 1] = lines
+        values = np.fft.irfft(spectrum, short) * short
+        self._rows = max(1, BLOCK_STEPS // factor)
+        # in front what the first steps' taps reach, behind what fills the last block: the record is
+        # periodic
+        if factor > 1:
+            values = values[
+                np.arange(1 - TAPS // 2, -(-short // self._rows) * self._rows + TAPS // 2 + 1)
+                % short
+            ]
+        self._short = values
+        self._weights = interpolation_weights(factor)
+        self.block_steps = self._rows * factor
+
+    def block(self, index):
+        first = index * self._rows
+        if self._weights.shape[1] == 1:
+            return self._short[first : first + self._rows]
+        windows = np.lib.stride_tricks.sliding_window_view(
+            self._short[first : first + self._rows + TAPS - 1], TAPS
+        )
+        return (windows @ self._weights).ravel()
+
+
+def interpolation_weights(factor: int) -> np.ndarray:
+    """Weights (TAPS, factor) of the short record's values -(TAPS / 2 - 1) .. TAPS / 2 in the factor
+    steps from value 0 on.
+
+    A sinc under a Kaiser window: passes up to 1/OVERSAMPLING of the short record's rate, stops from
+    1 - 1/OVERSAMPLING of it on, where the first image of the band begins.
+    """
+    distance = np.arange(TAPS)[:, None] - (TAPS // 2 - 1) - np.arange(factor) / factor
+    window = np.i0(
+        KAISER_BETA * np.sqrt(np.maximum(1.0 - (distance / (TAPS // 2)) ** 2, 0.0))
+    ) / np.i0(KAISER_BETA)
+    return np.sinc(distance) * window

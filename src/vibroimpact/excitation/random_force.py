@@ -1,0 +1,84 @@
+"""Forces: band-limited Gaussian records of exact RMS, and measured records resampled to the
+integration step.
+"""
+
+import numpy as np
+
+EDGE_S = 0.25  # odd reflection added at both ends of a measured record before resampling
+
+
+class ForceError(Exception):
+    """A force that can not be used; the message names the file, the value and the remedy."""
+
+
+def band_limited_noise(
+    generator: np.random.Generator, samples: int, rate: float, band
+) -> np.ndarray:
+    """Gaussian noise (sample,) with a flat PSD inside band (low, high) [Hz] and nothing outside, at
+    rate [Hz]; RMS near 1.
+
+    Raises ForceError when the band holds no line.
+    """
+    lines, first, length = noise_lines(generator, samples, rate, band)
+    spectrum = np.zeros(length // 2 + 1, complex)
+    spectrum[first : first + lines.size] = lines
+    return np.fft.irfft(spectrum, length)[:samples] * length
+
+
+def noise_lines(
+    generator: np.random.Generator, samples: int, rate: float, band
+) -> tuple[np.ndarray, int, int]:
+    """(lines (line,), number of the first one, length of the period in samples): Fourier lines of
+    noise as in band_limited_noise.
+
+    The noise is the real part of the sum of 2 lines exp(2 pi i number n / length) over n.
+    Independent complex Gaussian lines (Shinozuka & Deodatis 1991, random amplitudes). Raises
+    ForceError when the band holds no line.
+    """
+    length = fast_length(samples)
+    low, high = (int(np.ceil(band[0] * length / rate)), int(np.floor(band[1] * length / rate)))
+    if high < low or low < 1 or high >= length // 2:
+        raise ForceError(
+            f"band {band[0]:g}-{band[1]:g} Hz holds no line between 0 and {rate / 2:g} Hz: give"
+            " band_Hz as [low, high] in Hz"
+        )
+    count = high - low + 1
+    lines = generator.standard_normal(count) + 1j * generator.standard_normal(count)
+    return lines * (0.5 / np.sqrt(count)), low, length
+
+
+def fast_length(samples: int) -> int:
+    """The smallest 2^a 3^b 5^c that is at least ``samples``, a length that an FFT likes."""
+    best = 2 ** (samples - 1).bit_length()
+    for threes in range(11):
+        for fives in range(8):
+            odd = 3**threes * 5**fives
+            best = min(best, odd * 2 ** max((-(-samples // odd) - 1).bit_length(), 0))
+    return best
+
+
+def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> np.ndarray:
+    """A measured record (sample,) taken as band-limited, at another rate [Hz].
+
+    By FFT between odd, tapered reflections of the ends, so that the ends do not ring into each
+    other; a few last samples are dropped when the ratio of the rates asks for it.
+    """
+    edge = int(np.ceil(EDGE_S * from_rate))
+    padded = np.pad(values.astype(float), edge, mode="reflect", reflect_type="odd")
+    ramp = np.sin(0.5 * np.pi * (np.arange(edge) + 0.5) / edge) ** 2
+    padded[:edge] *= ramp
+    padded[-edge:] *= ramp[::-1]
+    length = padded.size
+    while (
+        abs(length * to_rate / from_rate - round(length * to_rate / from_rate)) > 1e-9
+        and length > padded.size - 10000
+    ):
+        length -= 1
+    new_length = round(length * to_rate / from_rate)
+    spectrum = np.fft.rfft(padded[:length])
+    resized = np.zeros(new_length // 2 + 1, complex)
+    kept = min(spectrum.size, resized.size)
+    resized[:kept] = spectrum[:kept]
+    first = round(edge * to_rate / from_rate)
+    last = first + round(values.size * to_rate / from_rate)
+    return np.fft.irfft(resized, new_length)[first:last] * (new_length / length)

@@ -1,0 +1,217 @@
+"""A campaign at a glance: PSD of every force and response at every level, and how their RMS grow
+with the load.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.campaign.file import force_units
+from vibroimpact.campaign.signals import Averaging, excited_band, measured_signals
+from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.style import (
+    BLACK,
+    BLUE,
+    BROWN,
+    GREEN,
+    GREY,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    ordered_colours,
+)
+from vibroimpact.spectra.welch import psd_statistics, segment_spectra
+from vibroimpact.units import UnitError, si_unit
+
+MOST_PANELS = 12
+ACROSS = 3
+BINS_PER_OCTAVE = 48
+SEGMENTS = 12
+FORCE_FLOOR, LOWEST = 1e-6, 1e-12  # of the highest value: what is drawn of it
+PSD_COLUMNS = {
+    "m s-2": "psd_m2_per_s4_per_Hz",
+    "m s-1": "psd_m2_per_s2_per_Hz",
+    "m": "psd_m2_per_Hz",
+    "N": "psd_N2_per_Hz",
+    "V": "psd_V2_per_Hz",
+}
+CURVES = (BLUE, ORANGE, GREEN, RED, PINK, BLACK, SKY, BROWN, GREY)
+MARKERS = "os^Dv<>PX"
+
+
+def quicklook(campaign):
+    """Return [Sheet] of a campaign Dataset: panels in SI units, one per force and response, 12 at
+    most, and the levels.
+    """
+    measured = measured_signals(campaign)
+    panels = [
+        ("force", index, name, _shown_unit(force_units(campaign, index), "excitation"))
+        for index, name in enumerate(measured.forces)
+    ]
+    panels += [
+        (
+            "response",
+            index,
+            name,
+            _shown_unit(str(campaign["channel_units"].values[index]), measured.kinds[index]),
+        )
+        for index, name in enumerate(measured.channels)
+    ]
+    left_out, panels = panels[MOST_PANELS:], panels[:MOST_PANELS]
+    keys = [f"{role} {name}" for role, _, name, _ in panels] + ["levels"]
+    keys += ["."] * (-len(keys) % ACROSS)
+    mosaic = [keys[row : row + ACROSS] for row in range(0, len(keys), ACROSS)]
+    sheet = Sheet(
+        "quicklook",
+        _title(measured),
+        _caption(campaign, measured, panels, left_out),
+        mosaic,
+        size=(12.0, 0.9 + 2.5 * len(mosaic)),
+    )
+    colours = ordered_colours(
+        [load if np.isfinite(load) and load > 0.0 else 1.0 for load in measured.load_rms]
+    )
+    band = excited_band(measured)
+    for role, index, name, unit in panels:
+        axes = sheet.axes[f"{role} {name}"]
+        _spectra(sheet, axes, measured, (role, index), unit, colours, band)
+        axes.set_title(
+            f"{name}{'' if role == 'force' else ', ' + measured.kinds[index].replace('_', ' ')},"
+            f" {unit}",
+            fontsize=9,
+        )
+    _levels(sheet, sheet.axes["levels"], measured)
+    handles = [
+        (line, line.get_label())
+        for line in sheet.axes[keys[0]].get_lines()
+        if not line.get_label().startswith("_")
+    ]
+    sheet.figure.legend(
+        [line for line, _ in handles],
+        [label for _, label in handles],
+        loc="outside lower center",
+        ncols=4,
+    )
+    return [sheet]
+
+
+def _title(measured):
+    duration = max(signal.shape[-1] for signal in measured.force) / measured.rate
+    forces = f"{len(measured.forces)} force{'s' if len(measured.forces) > 1 else ''}"
+    return (
+        f"{len(measured.records)} records of up to {duration:.3g} s at {measured.rate:g} Hz:"
+        f" {forces}, {len(measured.channels)} responses"
+    )
+
+
+def _caption(campaign, measured, panels, left_out):
+    source = str(campaign.attrs.get("source", "")) or "no source given"
+    hidden = f" Not shown: {', '.join(name for _, _, name, _ in left_out)}." if left_out else ""
+    return (
+        f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power"
+        f" in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light for high loads;"
+        " dashed: held out. The shaded band is what the force excites. Last panel: RMS of each"
+        " response over its RMS at the lowest level; a linear structure follows the grey"
+        f" line.{hidden}"
+    )
+
+
+def _shown_unit(units, kind):
+    """Return the SI unit of a channel, or its own where that can not be converted."""
+    try:
+        return si_unit(units, kind)
+    except UnitError:
+        return units or "no unit"
+
+
+def _spectra(sheet, axes, measured, signal, unit, colours, band):
+    """Draw the PSDs of one force or response, ("force" or "response", index), record by record."""
+    role, index = signal
+    column = PSD_COLUMNS.get(unit, "psd_unit2_per_Hz")
+    lowest, highest = np.inf, 0.0
+    for record in np.argsort(measured.load_rms, kind="stable"):
+        values = getattr(measured, role)[record][index]
+        if not np.isfinite(values).all() or values.size < 64 or not values.any():
+            continue
+        frequency, psd = _binned(values, measured.rate, band)
+        load = measured.load_rms[record]
+        held = measured.splits[record] == "holdout"
+        sheet.line(
+            axes,
+            ("frequency_Hz", frequency),
+            (column, psd),
+            measured.records[record],
+            tags={"load_rms_N": float(load), "split": measured.splits[record]},
+            color=colours.get(load, BLACK),
+            linewidth=0.9,
+            linestyle="--" if held else "-",
+            label=f"{measured.records[record]} ({load:.3g} N RMS{', held out' if held else ''})",
+        )
+        lowest, highest = min(lowest, np.percentile(psd, 3)), max(highest, psd.max())
+    if not highest > 0.0:
+        sheet.note(axes, "holes in every record", "frequency_Hz", column)
+        return
+    if band is not None:
+        axes.axvspan(*band, color=SKY, alpha=0.12, linewidth=0)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(
+        max(0.3 * lowest, (FORCE_FLOOR if role == "force" else LOWEST) * highest), 3.0 * highest
+    )
+
+
+def _binned(values, rate, band):
+    """Return (frequency, PSD) in logarithmic bins from a third of the lowest excited frequency to
+    the highest one there is.
+    """
+    segment_s = values.size / rate / (0.5 * SEGMENTS + 0.5)
+    spectra = segment_spectra(values, rate, Averaging(segment_s))
+    psd = psd_statistics(spectra.values)[0][0]
+    first = max(spectra.frequency[1], (band[0] if band else spectra.frequency[1]) / 3.0)
+    place = np.floor(np.log2(np.maximum(spectra.frequency, 1e-9) / first) * BINS_PER_OCTAVE)
+    kept = spectra.frequency >= first
+    numbers, inverse, counts = np.unique(place[kept], return_inverse=True, return_counts=True)
+    return np.bincount(inverse, spectra.frequency[kept]) / counts, np.maximum(
+        np.bincount(inverse, psd[kept]) / counts, np.finfo(float).tiny
+    )
+
+
+def _levels(sheet, axes, measured):
+    """Draw the RMS of every response over its RMS at the lowest level, against load."""
+    order = np.argsort(measured.load_rms, kind="stable")
+    loads = measured.load_rms[order]
+    for index, name in enumerate(measured.channels):
+        rms = np.array(
+            [np.sqrt(np.mean(np.square(measured.response[record][index]))) for record in order]
+        )
+        if not (np.isfinite(rms[0]) and rms[0] > 0.0):
+            continue
+        sheet.line(
+            axes,
+            ("load_rms_N", loads),
+            ("rms_over_lowest", rms / rms[0]),
+            name,
+            color=CURVES[index % len(CURVES)],
+            marker=MARKERS[index % len(MARKERS)],
+            linestyle="none",
+            label=name,
+            alpha=0.85,
+        )
+    if not axes.lines:
+        sheet.note(axes, "no response without holes", "load_rms_N", "rms_over_lowest")
+        return
+    line = np.array([loads[0], loads[-1]])
+    sheet.line(
+        axes,
+        ("load_rms_N", line),
+        ("rms_over_lowest", line / line[0]),
+        "linear",
+        color=GREY,
+        linewidth=1.0,
+        zorder=0,
+    )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_title("Levels", fontsize=9)
+    sheet.legend(axes, fontsize=6.5, ncols=2 if len(measured.channels) > 6 else 1)

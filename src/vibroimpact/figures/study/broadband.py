@@ -1,0 +1,146 @@
+"""Broadband PSD: target, best linear equivalent and the range of linear responses (paper figure
+12).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+
+from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.style import (
+    BLACK,
+    GREEN,
+    ORDERED,
+    gap_label,
+    number,
+    ordered_colours,
+    ordered_norm,
+)
+from vibroimpact.linear.equivalent_linear import psd_family
+
+from .cases_of_gap import first_seed, transition_load
+from .linear_limits import contact_stiffness
+from .psd_table import driven_sensor, unit_force_psd
+
+RANGE_MEMBERS = 9
+
+
+def figure_12_broadband(config, model, curves, spectra, rows):
+    """Return the Sheet of the broadband correlation at the load of the widest peak and at the
+    largest one.
+
+    curves, spectra: {Case: Dataset} of one gap; rows: table rows of that gap.
+    """
+    sensor = driven_sensor(config, config.identification.broadband.point)
+    caption = (
+        f"PSD of displacement at {sensor}, gap"
+        f" {gap_label(next(iter(curves)).gap_m, config.structure.section.outer_diameter_m)}, first"
+        " seed: simulated with contact (black), and the linear tube whose bilateral support (k, c)"
+        " correlates best with it over the band (green). Thin, coloured: linear tubes with other"
+        " stiffnesses, no damping added, under the same force. Left: the load at which the main"
+        " peak is widest; right: the largest load."
+    )
+    cases = first_seed(curves)
+    loads = sorted({transition_load(rows), max(cases)})
+    sheet = Sheet(
+        "figure_12_broadband",
+        "A linear tube with the right support has nearly the same spectrum",
+        caption,
+        [[f"{load:g} N" for load in loads]],
+        size=(7.6, 4.6),
+    )
+    stiffness = np.geomspace(
+        config.identification.stiffness_range_N_per_m[0], contact_stiffness(model), RANGE_MEMBERS
+    )
+    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
+    for load in loads:
+        axes, case = sheet.axes[f"{load:g} N"], cases[load]
+        found = next(
+            (
+                row
+                for row in rows
+                if row["method"] == "broadband"
+                and row["load_rms_N"] == load
+                and row["seed"] == case.seed
+            ),
+            None,
+        )
+        _panel(
+            sheet,
+            axes,
+            config,
+            model,
+            (curves[case], spectra[case]),
+            (stiffness, shape, load, sensor),
+        )
+        axes.set_title(f"load {load:.3g} N RMS\n{_values(found)}")
+        sheet.legend(axes, loc="lower left")
+    for load in loads[1:]:
+        sheet.axes[f"{load:g} N"].set_ylabel("")
+    sheet.colour_bar(
+        ScalarMappable(ordered_norm(stiffness), ORDERED),
+        list(sheet.axes.values()),
+        "support_stiffness_N_per_m",
+    )
+    return [sheet]
+
+
+def _values(found):
+    """Return the identified support in words."""
+    if found is None or not np.isfinite(found["k_N_per_m"]):
+        return "no k resolved"
+    damping = (
+        f", c = {number(found['c_N_s_per_m'])} N s/m"
+        if np.isfinite(found["c_N_s_per_m"])
+        else ", c not resolved"
+    )
+    return f"k = {number(found['k_N_per_m'])} N/m{damping}"
+
+
+def _panel(sheet, axes, config, model, datasets, family):
+    """Draw range, target and best member for one load."""
+    (fitted, spectrum), (stiffness, shape, load, sensor) = datasets, family
+    low, high = config.identification.broadband.band_Hz
+    frequency = spectrum["frequency"].values
+    inside = (frequency >= low) & (frequency <= high)
+    frequency = frequency[inside]
+    target = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[inside].astype(float)
+    members = (
+        psd_family(model, stiffness, [0.0], frequency, shape)[:, 0]
+        * unit_force_psd(config, frequency)
+        * load**2
+    )
+    colours = ordered_colours(stiffness)
+    for k, psd in zip(stiffness, members, strict=True):
+        sheet.line(
+            axes,
+            ("frequency_Hz", frequency),
+            ("psd_m2_per_Hz", psd),
+            "linear",
+            tags={"k_N_per_m": k},
+            color=colours[k],
+            linewidth=0.6,
+        )
+    sheet.line(
+        axes,
+        ("frequency_Hz", frequency),
+        ("psd_m2_per_Hz", target),
+        "target",
+        color=BLACK,
+        linewidth=1.0,
+        label="with contact (target)",
+    )
+    if "broadband_curve" in fitted:
+        sheet.line(
+            axes,
+            ("frequency_Hz", fitted["broadband_frequency"].values),
+            ("psd_m2_per_Hz", fitted["broadband_curve"].values),
+            "best linear",
+            color=GREEN,
+            linewidth=2.0,
+            label=f"best linear, correlation {float(fitted['best_correlation']):.3f}",
+        )
+    axes.set_yscale("log")
+    axes.set_xlim(low, high)
+    axes.set_ylim(0.05 * target.min(), 30.0 * target.max())

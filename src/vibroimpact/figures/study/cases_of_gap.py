@@ -1,0 +1,83 @@
+"""Which cases a figure of one gap shows: those of the largest gap, and a few loads among all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.study.cases import case_from_id
+
+from .seed_scatter import medians
+
+
+def shown_gap(config):
+    """Return the gap in m of the figures that show one gap: the largest."""
+    return max(config.grid.gap_m)
+
+
+def paths_of_gap(paths, gap_m):
+    """Return the paths whose file name is the id of a case of a gap (m)."""
+    return [path for path in paths if case_from_id(Path(path).stem).gap_m == gap_m]
+
+
+class CasesOnDemand(Mapping):
+    """{Case: read(path)} of paths named after cases, ordered by case; a file is read when its case
+    is asked for first, then kept.
+    """
+
+    def __init__(self, paths, read):
+        self._paths = dict(sorted((case_from_id(Path(path).stem), path) for path in paths))
+        self._read, self._kept = read, {}
+
+    def __getitem__(self, case):
+        if case not in self._kept:
+            self._kept[case] = self._read(self._paths[case])
+        return self._kept[case]
+
+    def __iter__(self):
+        return iter(self._paths)
+
+    def __len__(self):
+        return len(self._paths)
+
+
+def cases_of_gap(paths, config, read):
+    """Return the CasesOnDemand of the paths of the gap shown."""
+    return CasesOnDemand(paths_of_gap(paths, shown_gap(config)), read)
+
+
+def spread_loads(rows, count):
+    """Return up to `count` loads in N RMS, ascending, whose main peaks are spread evenly in
+    frequency (LSCF, median over seeds).
+
+    rows: table rows of one gap. The lowest and the highest load are among them; loads without a
+    pole are not.
+    """
+    load, frequency = medians(
+        [row for row in rows if row["method"] == "lscf"], "load_rms_N", "frequency_Hz"
+    )
+    if load.size == 0:
+        return sorted({row["load_rms_N"] for row in rows})[-1:]
+    wanted = np.linspace(frequency[0], frequency.max(), count)[1:-1]
+    between = {float(load[np.argmin(np.abs(frequency - value))]) for value in wanted}
+    return sorted({float(load[0]), float(load[-1]), *between})
+
+
+def first_seed(by_case):
+    """Return {load in N RMS: Case} of the lowest seed among the keys of {Case: anything}."""
+    lowest = min(case.seed for case in by_case)
+    return {case.load_rms_N: case for case in by_case if case.seed == lowest}
+
+
+def transition_load(rows):
+    """Return the load in N RMS at which the main peak is widest: the largest median damping ratio
+    of the LSCF pole among table rows.
+
+    The largest load where no pole was found at all.
+    """
+    load, ratio = medians(
+        [row for row in rows if row["method"] == "lscf"], "load_rms_N", "damping_ratio"
+    )
+    return float(load[np.argmax(ratio)]) if load.size else max(row["load_rms_N"] for row in rows)

@@ -1,0 +1,288 @@
+"""The contact: its law and discretisation (paper figure 3), and what the number of contact points
+does to the first frequency (figure 4).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.config.stage_settings import Settings
+from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    gap_label,
+    number,
+    shown,
+)
+from vibroimpact.reduction.reduced_model import build_model
+
+from .linear_limits import HELD, driven_frequencies
+
+POINTS = {1: PINK, 2: ORANGE, 3: GREEN, 5: BLUE, 9: BLACK}  # contact points per support -> colour
+LINES = {1: (0, (1, 1)), 2: (0, (4, 1)), 3: (0, (4, 1, 1, 1)), 5: "-", 9: (0, (6, 2))}
+STIFFNESS = np.logspace(0.0, 11.0, 89)  # N/m per support
+# a range belongs to a limit where the frequency is within this share of the step to the next limit
+NEAR = 0.05
+
+
+def figure_03_contact_law(config, structure):
+    """Return the Sheet of the discretised layer of stiffness and of the force law with its tangent
+    and secant stiffness.
+    """
+    gap, support = max(config.grid.gap_m), config.supports[0]
+    stiffness = float(np.sum(structure.contact.stiffness[structure.contact.support == 0]))
+    caption = (
+        f"Contact law of support '{support.name}'. Left: the layer of stiffness over the height of"
+        f" the support (total {stiffness:.3g} N/m) and the contact points that stand for it; each"
+        " point carries the stiffness written beside it. Right: contact force against radial"
+        " displacement of the tube, all points together, gap"
+        f" {gap_label(gap, config.structure.section.outer_diameter_m)}. The slope past the gap is"
+        " the tangent stiffness, always the same; force over displacement is the secant stiffness,"
+        " which rises with the amplitude: this is why an equivalent linear support stiffens with"
+        " the load."
+    )
+    sheet = Sheet(
+        "figure_03_contact_law",
+        "Contact: a discretised elastic layer behind a gap",
+        caption,
+        [["layer", "law"]],
+        size=(7.6, 3.7),
+        width_ratios=(1, 1.35),
+    )
+    _layer(sheet, sheet.axes["layer"], support, structure)
+    _law(sheet, sheet.axes["law"], gap, stiffness)
+    return [sheet]
+
+
+def _layer(sheet, axes, support, structure):
+    """Draw the stiffness density and the points that discretise it, over the height."""
+    axes.set_title("stiffness over the height")
+    members = structure.contact.support == 0
+    height = structure.contact.arc_length[members] - structure.contact.arc_length[members].mean()
+    values = structure.contact.stiffness[members]
+    half = 0.5 * support.height_m
+    density = values.sum() / support.height_m
+    layer = np.array([-half, -half, half, half]), np.array([0.0, density, density, 0.0])
+    sheet.line(
+        axes,
+        ("stiffness_density_N_per_m2", layer[1]),
+        ("height_in_support_m", layer[0]),
+        "layer",
+        color=GREY,
+        linewidth=1.0,
+        label="elastic layer",
+    )
+    axes.fill_betweenx(
+        shown("height_in_support_m", layer[0]),
+        shown("stiffness_density_N_per_m2", layer[1]),
+        color=GREY,
+        alpha=0.15,
+        linewidth=0,
+    )
+    share = values / (support.height_m / len(values))
+    sheet.line(
+        axes,
+        ("stiffness_density_N_per_m2", share),
+        ("height_in_support_m", height),
+        "contact points",
+        tags={"contact_stiffness_N_per_m": values},
+        color=RED,
+        marker="o",
+        linestyle="none",
+        label="contact points",
+    )
+    axes.hlines(
+        shown("height_in_support_m", height),
+        0.0,
+        shown("stiffness_density_N_per_m2", share),
+        color=RED,
+        linewidth=1.2,
+    )
+    for place, value in zip(height, values, strict=True):
+        axes.annotate(
+            f"{number(value)} N/m",
+            (0.4, shown("height_in_support_m", place)),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=8,
+        )
+    axes.set_xlim(0.0, shown("stiffness_density_N_per_m2", 1.25 * max(share.max(), density)))
+    axes.set_ylim(-1.5e3 * half, 1.75e3 * half)
+    sheet.legend(axes, loc="upper right", ncols=2)
+
+
+def _law(sheet, axes, gap, stiffness):
+    """Draw the force law, the tangent beyond the gap and secants to two displacements."""
+    axes.set_title("force, tangent and secant stiffness")
+    displacement = np.linspace(-1.6 * gap, 1.6 * gap, 321)
+    penetration = np.maximum(np.abs(displacement) - gap, 0.0)
+    force = stiffness * penetration * np.sign(displacement)
+    sheet.line(
+        axes,
+        ("radial_displacement_m", displacement),
+        ("contact_force_N", force),
+        "contact force",
+        tags={
+            "tangent_stiffness_N_per_m": np.where(penetration > 0.0, stiffness, 0.0),
+            "secant_stiffness_N_per_m": np.divide(
+                force, displacement, out=np.zeros_like(force), where=displacement != 0.0
+            ),
+        },
+        color=BLUE,
+        linewidth=2.2,
+        label=f"contact force; tangent {number(stiffness)} N/m past the gap",
+    )
+    for reach, colour, dash in ((1.2, ORANGE, (0, (5, 2))), (1.5, RED, (0, (2, 1)))):
+        top = stiffness * (reach - 1.0) * gap
+        sheet.line(
+            axes,
+            ("radial_displacement_m", [0.0, reach * gap]),
+            ("contact_force_N", [0.0, top]),
+            f"secant at {reach:g} gap",
+            color=colour,
+            linestyle=dash,
+            marker="o",
+            markevery=[1],
+            label=f"secant at {reach:g} gap: {number(top / (reach * gap))} N/m",
+        )
+    for side in (-gap, gap):
+        sheet.mark(
+            axes, "radial_displacement_m", side, "gap", color=GREY, linewidth=0.9, linestyle=":"
+        )
+    axes.annotate(
+        "gap",
+        (gap * 1e3, force[0] * 0.85),
+        xytext=(3, 0),
+        textcoords="offset points",
+        color=GREY,
+        fontsize=8.5,
+    )
+    axes.set_ylim(force[0] * 1.05, force[-1] * 1.75)
+    sheet.legend(axes, loc="upper left")
+
+
+def model_with_points(config, points):
+    """Return the ModalModel of a configuration whose supports each have `points` contact points of
+    equal stiffness.
+    """
+    plain = {"points": points, "gap_factor": 1.0, "centre_offset_m": (0.0, 0.0)}
+    supports = tuple(
+        {**support, **plain, "stiffness_N_per_m": float(np.sum(support.stiffness_N_per_m))}
+        for support in config.supports
+    )
+    return build_model(Settings({**config, "supports": supports}))
+
+
+def figure_04_first_frequency(config):
+    """Return the Sheet of the first frequency against the bilateral stiffness, by number of contact
+    points.
+    """
+    caption = (
+        "First frequency of the driven plane against a bilateral stiffness k per support, shared"
+        " by 1, 2, 3, 5 or 9 contact points over its height. Dotted: the frequencies of the free"
+        " tube, of the tube pinned at the middle of each support and of the tube held over its"
+        f" whole height. Shaded: the stiffness ranges where 9 points are within {NEAR:.0%} of the"
+        " step to the neighbouring limit. One point can pin the tube but never clamp it; five"
+        " follow the layer over the whole range."
+    )
+    sheet = Sheet(
+        "figure_04_first_frequency",
+        "Support stiffness: from the free to the pinned to the clamped tube",
+        caption,
+        size=(7.6, 4.7),
+    )
+    axes = sheet.axes["main"]
+    axes.set_title("first frequency of the driven plane, by number of contact points per support")
+    models = {points: model_with_points(config, points) for points in POINTS}
+    frequency = {
+        points: driven_frequencies(model, STIFFNESS)[:, 0] for points, model in models.items()
+    }
+    finest = max(POINTS)
+    limits = {
+        "free": driven_frequencies(models[1], 0.0)[0, 0],
+        "pinned in the middle": driven_frequencies(models[1], HELD)[0, 0],
+        "clamped over the height": driven_frequencies(models[finest], HELD)[0, 0],
+    }
+    _shade_ranges(axes, frequency[finest], *limits.values())
+    for points, values in frequency.items():
+        sheet.line(
+            axes,
+            ("support_stiffness_N_per_m", STIFFNESS),
+            ("first_frequency_Hz", values),
+            f"{points} points",
+            tags={"contact_points": points},
+            color=POINTS[points],
+            linestyle=LINES[points],
+            linewidth=2.2 if points == 5 else 1.4,
+            label=f"{points} point{'s' * (points > 1)}",
+        )
+    for name, value in limits.items():
+        sheet.mark(
+            axes,
+            "first_frequency_Hz",
+            value,
+            name,
+            vertical=False,
+            color=GREY,
+            linestyle=":",
+            linewidth=1.0,
+        )
+        axes.annotate(
+            f"{name}: {value:.2f} Hz",
+            (STIFFNESS[0], value),
+            xytext=(3, 2),
+            textcoords="offset points",
+            fontsize=8.5,
+            color=BLACK,
+        )
+    totals = sorted({float(np.sum(support.stiffness_N_per_m)) for support in config.supports})
+    for total in totals:
+        sheet.mark(
+            axes,
+            "support_stiffness_N_per_m",
+            total,
+            "contact stiffness of the study",
+            color=RED,
+            linewidth=1.0,
+            linestyle="--",
+            label=f"contact stiffness of the study, {number(total)} N/m",
+        )
+    axes.set_xscale("log")
+    axes.set_xlim(STIFFNESS[0], STIFFNESS[-1])
+    axes.margins(y=0.08)
+    sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return [sheet]
+
+
+def _shade_ranges(axes, frequency, free, pinned, clamped):
+    """Shade the stiffness ranges that belong to a limit."""
+    steps = pinned - free, clamped - pinned
+    ranges = {
+        "free": frequency < free + NEAR * steps[0],
+        "pinned": (frequency > pinned - NEAR * steps[0]) & (frequency < pinned + NEAR * steps[1]),
+        "clamped": frequency > clamped - NEAR * steps[1],
+    }
+    for name, inside in ranges.items():
+        places = STIFFNESS[inside]
+        if places.size == 0:
+            continue
+        axes.axvspan(places[0], places[-1], color=SKY, alpha=0.18, linewidth=0, zorder=0)
+        at_end = places[-1] == STIFFNESS[-1]
+        axes.annotate(
+            f"{name} range",
+            (places[-1] if at_end else np.sqrt(places[0] * places[-1]), 0.01),
+            xycoords=("data", "axes fraction"),
+            ha="right" if at_end else "center",
+            va="bottom",
+            fontsize=8.5,
+        )

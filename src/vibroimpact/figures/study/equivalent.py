@@ -1,0 +1,229 @@
+"""The equivalent support: k and c against load by every method (paper figure 13), and the collapse
+of all gaps on load over gap.
+"""
+
+from __future__ import annotations
+
+from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.style import (
+    BLACK,
+    GAP_COLOURS,
+    GAP_MARKERS,
+    GREY,
+    METHODS,
+    OPEN_METHODS,
+    PINK,
+    gap_label,
+)
+
+from .linear_limits import contact_stiffness
+from .seed_scatter import medians, over_seeds
+
+COMPARED = ("lscf", "ods", "broadband")
+PREDICTED = ("statistical_linearisation", "secant")
+
+
+def figure_13_equivalent_support(config, model, rows):
+    """Return the Sheet of k and c against load, a column per gap, a colour and marker per method.
+
+    rows: the consistency table, list of {column: value}.
+    """
+    caption = (
+        "Equivalent bilateral support by each method against load, a column per gap: stiffness k"
+        " (top) and damping c on top of the modal damping (bottom), per support; median over seeds,"
+        " bars from the smallest to the largest seed. What a method does not resolve is left out:"
+        " near the free tube none sees k. The shape carries no damping. Lines without bars:"
+        " statistical linearisation (from the load alone) and the mean secant stiffness of the"
+        " simulated contact forces. Dashed: the contact stiffness, the upper limit."
+    )
+    gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
+    mosaic = [[f"{name}, gap {gap:.5g} m" for gap in gaps] for name in ("k", "c")]
+    sheet = Sheet(
+        "figure_13_equivalent_support",
+        "Equivalent stiffness and damping by independent methods",
+        caption,
+        mosaic,
+        size=(2.6 + 2.6 * len(gaps), 6.4),
+        sharex=True,
+    )
+    for gap, (top, bottom) in zip(gaps, zip(*mosaic, strict=True), strict=True):
+        chosen = [row for row in rows if row["gap_m"] == gap]
+        _methods(sheet, sheet.axes[top], chosen, "k_N_per_m", (*METHODS,))
+        _methods(
+            sheet, sheet.axes[bottom], chosen, "c_N_s_per_m", (*OPEN_METHODS, "lscf", "broadband")
+        )
+        sheet.axes[top].set_title(
+            f"gap {gap_label(gap, config.structure.section.outer_diameter_m)}"
+        )
+        sheet.mark(
+            sheet.axes[top],
+            "k_N_per_m",
+            contact_stiffness(model),
+            "contact stiffness",
+            vertical=False,
+            color=GREY,
+            linestyle="--",
+            linewidth=1.0,
+            label="contact stiffness",
+        )
+    _alike(sheet, mosaic, rows, config)
+    handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
+    for key in mosaic[0][1:]:  # a method may be resolved at one gap only
+        for handle, label in zip(*sheet.axes[key].get_legend_handles_labels(), strict=True):
+            if label not in labels:
+                handles.append(handle)
+                labels.append(label)
+    sheet.figure.legend(
+        handles, labels, loc="outside lower center", ncols=(2, 4, 5)[min(len(gaps), 3) - 1]
+    )
+    return [sheet]
+
+
+def _methods(sheet, axes, rows, column, methods):
+    """Draw one quantity by every method: predicted ones as lines, the others with the scatter over
+    seeds.
+    """
+    for method in methods:
+        label, colour, marker = METHODS[method]
+        chosen = [
+            row
+            for row in rows
+            if row["method"] == method and (column != "k_N_per_m" or row[column] > 0.0)
+        ]
+        if method in PREDICTED:
+            place, value = medians(chosen, "load_rms_N", column)
+            if place.size:
+                sheet.line(
+                    axes,
+                    ("load_rms_N", place),
+                    (column, value),
+                    method,
+                    color=colour,
+                    linestyle="-" if method == "secant" else "--",
+                    marker=marker,
+                    markersize=3.5,
+                    linewidth=1.0,
+                    label=label,
+                    zorder=1,
+                )
+            continue
+        over_seeds(
+            sheet,
+            axes,
+            chosen,
+            "load_rms_N",
+            column,
+            method,
+            color=colour,
+            marker=marker,
+            label=label,
+            linewidth=0.8,
+            markerfacecolor="white" if method in OPEN_METHODS else colour,
+            zorder=3 if method in OPEN_METHODS else 4,
+        )
+    if not axes.get_xlabel():
+        sheet.note(axes, "nothing resolved", "load_rms_N", column)
+
+
+def _alike(sheet, mosaic, rows, config):
+    """Give all columns the same axes, labels at the outside only."""
+    lowest = config.identification.stiffness_range_N_per_m[0]
+    for top in mosaic[0]:
+        sheet.axes[top].set_xscale("log")
+        sheet.axes[top].set_yscale("log")
+        sheet.axes[top].set_ylim(0.5 * lowest, 2e7)
+        sheet.axes[top].set_xlabel("")
+    for row in mosaic:
+        limits = [sheet.axes[key].get_ylim() for key in row]
+        for key in row:
+            sheet.axes[key].set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+        for key in row[1:]:
+            sheet.axes[key].set_ylabel("")
+            sheet.axes[key].tick_params(labelleft=False)
+    sheet.figure.align_ylabels([sheet.axes[row[0]] for row in mosaic])
+
+
+def collapse(config, model, rows):
+    """Return the Sheet of k and c of all gaps against load over gap.
+
+    rows: the consistency table, list of {column: value}.
+    """
+    caption = (
+        "Equivalent support against load divided by gap, all gaps: stiffness k (left) and damping"
+        " c (right) per support. The tube with impacts is homogeneous: what it does, measured in"
+        " gaps, depends on load/gap only, so that the points of all gaps must fall on one curve."
+        " Markers: median over seeds and over the methods"
+        f" {', '.join(METHODS[method][0] for method in COMPARED)} (the shape gives no c), bars from"
+        " the smallest to the largest value. Lines: statistical linearisation and the mean secant"
+        " stiffness, of all gaps."
+    )
+    sheet = Sheet(
+        "collapse",
+        "All gaps fall on one curve in load / gap",
+        caption,
+        [["k", "c"]],
+        size=(7.6, 4.2),
+    )
+    gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
+    table = [{**row, "load_over_gap_N_per_m": row["load_over_gap"]} for row in rows]
+    for index, gap in enumerate(gaps):
+        style = {
+            "color": GAP_COLOURS[index % 6],
+            "marker": GAP_MARKERS[index % 6],
+            "linestyle": "none",
+            "label": f"gap {gap_label(gap, config.structure.section.outer_diameter_m)}",
+        }
+        compared = [row for row in table if row["gap_m"] == gap and row["method"] in COMPARED]
+        over_seeds(
+            sheet,
+            sheet.axes["k"],
+            compared,
+            "load_over_gap_N_per_m",
+            "k_N_per_m",
+            "identified",
+            tags=("gap_m", "load_rms_N"),
+            **style,
+        )
+        over_seeds(
+            sheet,
+            sheet.axes["c"],
+            compared,
+            "load_over_gap_N_per_m",
+            "c_N_s_per_m",
+            "identified",
+            tags=("gap_m", "load_rms_N"),
+            **style,
+        )
+    for method, colour, dash in (("statistical_linearisation", PINK, "--"), ("secant", BLACK, "-")):
+        place, value = medians(
+            [row for row in table if row["method"] == method and row["k_N_per_m"] > 0.0],
+            "load_over_gap_N_per_m",
+            "k_N_per_m",
+        )
+        if place.size:
+            sheet.line(
+                sheet.axes["k"],
+                ("load_over_gap_N_per_m", place),
+                ("k_N_per_m", value),
+                method,
+                color=colour,
+                linestyle=dash,
+                linewidth=1.2,
+                label=METHODS[method][0],
+                zorder=1,
+            )
+    for key, column in (("k", "k_N_per_m"), ("c", "c_N_s_per_m")):
+        if not sheet.axes[key].get_xlabel():
+            sheet.note(sheet.axes[key], "nothing resolved", "load_over_gap_N_per_m", column)
+        sheet.axes[key].set_xscale("log")
+    sheet.axes["k"].set_yscale("log")
+    sheet.axes["k"].set_ylim(
+        0.5 * config.identification.stiffness_range_N_per_m[0], 2.5 * contact_stiffness(model)
+    )
+    sheet.axes["k"].set_title("stiffness")
+    sheet.axes["c"].set_title("damping on top of the modal damping")
+    sheet.axes["c"].axhline(0.0, color=GREY, linewidth=0.8)
+    sheet.axes["c"].sharex(sheet.axes["k"])
+    handles, labels = sheet.axes["k"].get_legend_handles_labels()
+    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return [sheet]

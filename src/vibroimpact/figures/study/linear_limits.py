@@ -1,0 +1,45 @@
+"""The linear tube at both ends of the study: frequencies without contact, in full contact and held,
+and the band that figures show.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import linalg
+
+from vibroimpact.linear.equivalent_linear import contact_matrix, first_block
+
+HELD = 1.0e14  # N/m: as good as held at the contact points; beyond it round-off shows
+
+
+def driven_frequencies(model, stiffness, count=1):
+    """Return (k, count) lowest frequencies in Hz of the block that the drive excites, for support
+    stiffness (k,) in N/m.
+    """
+    modes = first_block(model)
+    contact = contact_matrix(model)[modes]
+    rows = []
+    for k in np.atleast_1d(stiffness):
+        squares = linalg.eigvalsh(np.diag(model.omega[modes] ** 2) + k * contact @ contact.T)
+        rows.append(np.sqrt(np.maximum(squares[:count], 0.0)) / (2.0 * np.pi))
+    return np.array(rows)
+
+
+def linear_modes(model, k, count):
+    """Return (count,) lowest frequencies in Hz of the driven plane with bilateral support stiffness
+    k in N/m.
+    """
+    return driven_frequencies(model, k, count)[0]
+
+
+def contact_stiffness(model):
+    """Return the contact stiffness in N/m per support (the largest of the supports)."""
+    return float(np.bincount(model.support_of_point, model.contact_stiffness).max())
+
+
+def shown_band(model, highest_Hz=np.inf):
+    """Return (low, high) in Hz: from well below the first free mode to just above the third mode of
+    the driven plane in full contact.
+    """
+    third = linear_modes(model, contact_stiffness(model), 3)[-1]
+    return 0.35 * linear_modes(model, 0.0, 1)[0], min(1.1 * third, highest_Hz)

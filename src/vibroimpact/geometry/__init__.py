@@ -1,0 +1,1 @@
+"""Where a tube runs in space: its centreline, the mesh on it, and directions across it."""

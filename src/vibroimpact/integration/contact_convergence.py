@@ -1,0 +1,78 @@
+"""The contact iteration of a step: how fast it contracts, and the error of a step too large for
+it.
+"""
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .kernel_layout import ModalLayout
+
+CONTRACTION_LIMIT = 0.5
+
+
+class IntegrationError(Exception):
+    """A run that can not be done or that diverged; the message names the place and the remedy, case
+    (None: all) the case of the batch.
+    """
+
+    def __init__(self, message, case=None):
+        super().__init__(message)
+        self.case = case
+
+
+def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -> float:
+    """Upper bound of the factor by which one pass of the contact fixed point shrinks its error.
+
+    The largest eigenvalue of the tangent stiffness of all contacts and elements, dampers counting
+    by the scheme's velocity, times the compliance of one step, all of them engaged at once. Terms
+    that grow with the motion (cubic, drag, Hunt-Crossley) are left out: the residual of the fixed
+    point, kept with every record, tells of them.
+    """
+    layout = ModalLayout(model, scheme)
+    modal, own, local = layout.modal(dt), model.contact_laws, model.local_laws
+    stiffness = np.zeros(modal.row_force_channel.size)
+    rate = modal.speed[0]  # of the velocity with the displacement
+    radial = np.where(own.hertz > 0.0, 0.0, model.contact_stiffness) + rate * own.damping
+    tangential = np.where(own.friction > 0.0, own.stick_stiffness, 0.0)
+    for direction in range(2):
+        stiffness[layout.contact_rows()[:, direction]] = np.maximum(radial, tangential)
+    stick = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)
+    stiffness[layout.element_rows()] = (
+        np.abs(local.stiffness)
+        + rate * np.abs(local.damping)
+        + stick
+        + np.abs(local.saturation_stiffness)
+    )
+    largest = 0.0
+    for g in range(modal.row_start.size - 1):
+        row, end = modal.row_start[g], modal.force_row_start[g]
+        if end == row:
+            continue
+        start, rows = modal.compliance_start[g], modal.row_start[g + 1] - row
+        compliance = modal.compliance[start : start + rows * rows].reshape(rows, rows)[
+            : end - row, : end - row
+        ]
+        weight = np.sqrt(stiffness[row:end])
+        largest = max(largest, np.linalg.eigvalsh(weight[:, None] * compliance * weight)[-1])
+    return float(largest)
+
+
+def checked_contraction(model, steps_per_second, scheme="newmark"):
+    """The contraction factor of the contact iteration; raises IntegrationError when it is too slow
+    to rely on.
+    """
+    contraction = contact_contraction(model, 1.0 / steps_per_second, scheme)
+    if contraction > CONTRACTION_LIMIT:
+        largest = max(
+            model.contact_stiffness.max(initial=0.0),
+            np.abs(model.local_laws.stiffness).max(initial=0.0),
+        )
+        raise IntegrationError(
+            f"contact stiffness {largest:.3g} N/m is too stiff for a step of"
+            f" {1 / steps_per_second:.3g} s: the contact iteration contracts by {contraction:.2g}"
+            f" only (limit {CONTRACTION_LIMIT}; dampers and friction springs count too): raise"
+            " integration.steps_per_second to at least"
+            f" {steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
+        )
+    return contraction

@@ -1,0 +1,100 @@
+"""Every step of a short run, unfiltered: displacement and force of each contact point and local
+element.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+from . import kernels
+from .batch import modal_energies, start_state, to_lanes
+from .contact_convergence import IntegrationError, checked_contraction
+from .kernel_layout import ModalLayout
+from .kernels import RATIO, SLOTS
+from .stored_energy import stored_energy
+
+
+@dataclass
+class Traces:
+    """A batch of up to LANES short runs, step by step; step 0 is the initial state.
+
+    time (step,) s; contact_displacement, contact_force (case, contact_point, 2, step): m, and N on
+    the structure; element_displacement, element_force (case, element, step): m, and N on the
+    structure; energy {term: (case,)} J over the whole run: input_work, dissipated by modal damping,
+    contact_work done by contacts and elements, change of the mechanical energy of the modes and of
+    that stored in contacts and elements. sliding_work (case, support) J: normal force times slip;
+    slip_work (case, element) J: slider force times slip.
+    """
+
+    time: np.ndarray
+    contact_displacement: np.ndarray
+    contact_force: np.ndarray
+    element_displacement: np.ndarray
+    element_force: np.ndarray
+    energy: dict[str, np.ndarray]
+    sliding_work: np.ndarray
+    slip_work: np.ndarray
+
+
+def trace_lanes(
+    model: ModalModel,
+    steps_per_second: float,
+    steps: int,
+    gap,
+    imperfection,
+    drive,
+    scheme: str = "newmark",
+) -> Traces:
+    """Integrate up to LANES cases side by side from their initial state and keep every step.
+
+    steps: rounded up to a multiple of RATIO; gap (case,) m; imperfection (contact_point, 2, case)
+    m; drive: function (first, count) -> (count, force_channel, case) N at the times first /
+    steps_per_second, ...; index 0 is the initial state's. Raises IntegrationError.
+    """
+    contraction = checked_contraction(model, steps_per_second, scheme)
+    cases, ticks = np.size(gap), -(-steps // RATIO)
+    layout = ModalLayout(model, scheme)
+    modal, lanes_gap = layout.modal(1.0 / steps_per_second), to_lanes(gap, 1.0)
+    contact = layout.contact(lanes_gap, to_lanes(imperfection, 0.0), contraction)
+    laws = layout.laws(lanes_gap)
+    state, tally, work = layout.state(), layout.tally(), layout.work()
+    channels = model.drive_shapes.shape[1]
+    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], kernels.LANES))
+    force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
+    force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
+    start_state(layout, modal, contact, laws, state, work, force[0])
+    start = state.row_displacement.copy(), state.row_force.copy()
+    before = sum(modal_energies(layout, modal.dt, state)), stored_energy(contact, laws, state)
+    trace = layout.trace(ticks * RATIO)
+    output = layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
+    done = kernels.march(
+        modal, contact, laws, state, tally, output, trace, work, np.ascontiguousarray(force[1:])
+    )
+    if done < ticks * RATIO:
+        raise IntegrationError(
+            f"diverged at t = {done / steps_per_second:.4f} s: raise integration.steps_per_second"
+            " or check forces and stiffnesses"
+        )
+    displacement, pushed = (
+        np.concatenate([first[:, None], rest], axis=1)[..., :cases].transpose(2, 0, 1)
+        for first, rest in zip(start, (trace.displacement, trace.force), strict=True)
+    )
+    contacts, elements = layout.contact_rows(), layout.element_rows()
+    energy = {
+        name: getattr(tally, name)[0, :cases]
+        for name in ("input_work", "dissipated", "contact_work")
+    }
+    energy["mechanical"] = (sum(modal_energies(layout, modal.dt, state)) - before[0])[:cases]
+    energy["stored"] = (stored_energy(contact, laws, state) - before[1])[:cases]
+    return Traces(
+        time=np.arange(ticks * RATIO + 1) / steps_per_second,
+        contact_displacement=displacement[:, contacts],
+        contact_force=pushed[:, contacts],
+        element_displacement=displacement[:, elements],
+        element_force=pushed[:, elements],
+        energy=energy,
+        sliding_work=tally.sliding_work[:, :cases].T,
+        slip_work=tally.slip_work[:, :cases].T,
+    )

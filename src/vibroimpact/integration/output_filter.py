@@ -1,0 +1,160 @@
+"""The output filter: from the integration step to the sampling of the records, without aliasing.
+
+Two linear-phase stages. The first divides the rate by ``kernels.RATIO`` inside the integration; it
+only has to stop what would fold into the final band (images of it around the multiples of its
+output rate). The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05
+dB below 0.78 of it (800 Hz at 2048 Hz).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .kernels import BEHIND, RATIO, SLOTS
+
+PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
+KAISER_ATTENUATION_DB = 100.0
+DIFFERENCE_ERROR = 1e-6  # of the second derivative, relative, up to the end of the passband
+LONGEST_DIFFERENCE = 30  # with which a middle rate near the sampling frequency has to do
+DROOP_TERMS = 5  # of the polynomial in 1 - cos that undoes the first stage's droop
+
+
+@dataclass(frozen=True)
+class OutputFilter:
+    """Both stages, and where they sit in time.
+
+    first (2 * half + 1,) taps at the step rate; second and second_derivative (tap,) taps at rate /
+    RATIO, the latter [1/s²] gives acceleration from displacement; step: second-stage decimation.
+    """
+
+    first: np.ndarray
+    second: np.ndarray
+    second_derivative: np.ndarray
+    step: int
+
+    @property
+    def delay(self) -> int:
+        """Half length of the second stage, in its input samples."""
+        return (self.second.size - 1) // 2
+
+    def phase_weights(self) -> np.ndarray:
+        """First stage by (phase, slot): weight of step n = RATIO * tick + phase in output tick -
+        BEHIND + slot.
+        """
+        half = (self.first.size - 1) // 2
+        weights = np.zeros((RATIO, SLOTS))
+        for phase in range(RATIO):
+            for slot in range(SLOTS):
+                lag = phase - RATIO * (slot - BEHIND)
+                if abs(lag) <= half:
+                    weights[phase, slot] = self.first[half + lag]
+        return weights
+
+    def response(self, frequency, steps_per_second):
+        """Amplitude response of both stages together, before decimation: (frequency,)."""
+        frequency = np.asarray(frequency, float)
+        first = _amplitude(self.first, frequency / steps_per_second)
+        return first * _amplitude(self.second, frequency * RATIO / steps_per_second)
+
+
+def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputFilter:
+    """The filter for one pair of rates [Hz].
+
+    Raises ValueError when the ratio of the rates is not a multiple of RATIO.
+    """
+    ratio = steps_per_second / sampling_frequency
+    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < RATIO:
+        raise ValueError(
+            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}:"
+            f" choose a sampling frequency of {steps_per_second / RATIO:g} Hz divided by a whole"
+            " number"
+        )
+    middle_rate = steps_per_second / RATIO
+    stop = 0.5 * sampling_frequency
+    first = _first_stage(stop / steps_per_second)
+    passband = PASS_FRACTION * stop / middle_rate
+    second = np.convolve(_kaiser_lowpass(passband, stop / middle_rate), _lift(first, passband))
+    order = next(
+        (
+            order
+            for order in range(3, LONGEST_DIFFERENCE)
+            if _difference_error(order, passband) < DIFFERENCE_ERROR
+        ),
+        LONGEST_DIFFERENCE,
+    )
+    difference = _second_difference(order) * middle_rate**2
+    return OutputFilter(
+        first=first,
+        second=np.pad(second, order),
+        second_derivative=np.convolve(second, difference),
+        step=round(ratio / RATIO),
+    )
+
+
+def _first_stage(band):
+    """Taps that stop the images of 0..band around multiples of 1 / RATIO (cycles per step) and pass
+    about 1 below.
+
+    A polynomial in x = cos(2 pi f) with Chebyshev-spaced zeros in each image band, the nearest band
+    one more. Its length is the largest that SLOTS outputs can share.
+    """
+    pairs = (RATIO * SLOTS - 2) // 2
+    images = RATIO // 2
+    taps = np.ones(1)
+    for image in range(1, images + 1):
+        count = pairs // images + (1 if image <= pairs % images else 0)
+        nodes = np.cos((2 * np.arange(count) + 1) * np.pi / (2 * count))
+        for zero in np.cos(2 * np.pi * (image / RATIO + band * nodes)):
+            taps = np.convolve(taps, [0.5, -zero, 0.5]) / (1.0 - zero)
+    return taps
+
+
+def _lift(first, passband):
+    """Taps at the middle rate that undo the first stage's droop up to passband (cycles per middle
+    sample); exactly 1 at 0.
+    """
+    frequency = np.linspace(0.0, passband, 200)[1:]
+    x = 1.0 - np.cos(2 * np.pi * frequency)
+    powers = x[:, None] ** np.arange(1, DROOP_TERMS + 1)
+    weights = np.linalg.lstsq(powers, 1.0 / _amplitude(first, frequency / RATIO) - 1.0, rcond=None)[
+        0
+    ]
+    taps, power = np.ones(1), np.ones(1)
+    for weight in weights:
+        power = np.convolve(power, [-0.5, 1.0, -0.5])
+        taps = np.pad(taps, 1) + weight * power
+    return taps
+
+
+def _kaiser_lowpass(passband, stopband):
+    """Odd-length windowed-sinc low-pass, band edges in cycles per sample (Kaiser 1974)."""
+    width = 2 * np.pi * (stopband - passband)
+    count = int(np.ceil((KAISER_ATTENUATION_DB - 8.0) / (2.285 * width)))
+    half = (count + 1) // 2
+    n = np.arange(-half, half + 1)
+    cut = passband + stopband
+    taps = cut * np.sinc(cut * n) * np.kaiser(2 * half + 1, 0.1102 * (KAISER_ATTENUATION_DB - 8.7))
+    return taps / taps.sum()
+
+
+def _second_difference(order):
+    """Central-difference weights of the second derivative at unit spacing, 2 * order + 1 points
+    (Fornberg).
+    """
+    n = np.arange(1, order + 1)
+    powers = n[None, :].astype(float) ** (2 * n[:, None])
+    side = np.linalg.solve(powers, np.where(n == 1, 1.0, 0.0))
+    return np.concatenate([side[::-1], [-2.0 * side.sum()], side])
+
+
+def _difference_error(order, passband):
+    """Relative error of the second difference at the end of the passband (cycles per sample)."""
+    return abs(
+        _amplitude(_second_difference(order), np.array([passband]))[0] / (2 * np.pi * passband) ** 2
+        + 1.0
+    )
+
+
+def _amplitude(taps, frequency):
+    half = (taps.size - 1) // 2
+    return np.cos(2 * np.pi * np.outer(frequency, np.arange(-half, half + 1))) @ taps

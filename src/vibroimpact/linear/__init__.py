@@ -1,0 +1,3 @@
+"""The equivalent linear structure: responses and poles with a bilateral support, and the family
+over (k, c).
+"""

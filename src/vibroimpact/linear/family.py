@@ -1,0 +1,133 @@
+"""The family of linear tubes with a bilateral support (k, c), prepared once so that any member's
+response costs almost nothing.
+
+With B (mode, contact) the contact shapes scaled by the square root of their weights, the bilateral
+support adds s B B^T to the dynamic stiffness, s = k + i omega c. Woodbury's formula leaves the
+small contact compliance G = B^T Z^-1 B; with its eigenvalues mu_j at each frequency every response
+is h0 - sum_j s r_j / (1 + s mu_j). The eigenvalues serve all outputs and all (k, c).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .equivalent_linear import contact_matrix, first_block
+
+
+@dataclass(frozen=True)
+class DrivenModes:
+    """The modes that the force excites, and the contacts that they move.
+
+    omega, damping (mode,) rad/s and 1/s; contact (mode, contact) kg^-1/2, scaled by the square root
+    of the contact's weight; drive (mode,) kg^-1/2; indices (mode,) in the ModalModel; block (mode,)
+    bool: the uncoupled block in which the drive does most, whose lowest mode is "the first mode".
+    """
+
+    omega: np.ndarray
+    damping: np.ndarray
+    contact: np.ndarray
+    drive: np.ndarray
+    indices: np.ndarray
+    block: np.ndarray
+
+    @property
+    def first(self):
+        """Return the place of the first mode."""
+        return int(np.argmin(np.where(self.block, self.omega, np.inf)))
+
+    def receptance(self, laplace):
+        """Return the modal receptances (..., mode) in s² for laplace (...) in rad/s, complex."""
+        laplace = np.asarray(laplace)[..., None]
+        return 1.0 / (self.omega**2 + laplace * (self.damping + laplace))
+
+    def compliance(self, laplace):
+        """Return the contact compliance G (..., contact, contact) in m/N at laplace (...) in
+        rad/s.
+        """
+        return (self.contact.T * self.receptance(laplace)[..., None, :]) @ self.contact
+
+
+def driven_modes(model, channel=0):
+    """Return the DrivenModes of a ModalModel for one force channel. Raises ValueError when the
+    force moves no contact.
+    """
+    first = first_block(model, channel)
+    drive = model.drive_shapes[:, channel]
+    indices = np.sort(
+        np.concatenate([modes for modes, _ in model.blocks if np.any(drive[modes] != 0.0)])
+    )
+    contact = contact_matrix(model)[indices]
+    contact = contact[:, (contact != 0.0).any(axis=0)]
+    return DrivenModes(
+        model.omega[indices],
+        model.damping[indices],
+        contact,
+        drive[indices],
+        indices,
+        np.isin(indices, first),
+    )
+
+
+@dataclass(frozen=True)
+class FamilyResponse:
+    """Displacement per unit force of every member of the family on one frequency grid.
+
+    frequency: (frequency,) Hz; free: (output, frequency) m/N, the tube without support; residue:
+    (output, frequency, contact) m²/N²; compliance: (frequency, contact) m/N, the eigenvalues mu.
+    `part` below selects frequencies (a slice or an array of indices), `outputs` a slice of the
+    outputs.
+    """
+
+    frequency: np.ndarray
+    free: np.ndarray
+    residue: np.ndarray
+    compliance: np.ndarray
+
+    def frf(self, k, c, part=slice(None), outputs=slice(None)):
+        """Return the frequency responses (output, frequency) in m/N for k (N/m) and c (N s/m)."""
+        support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
+        gain = support / (1.0 + support * self.compliance[part])
+        return self.free[outputs][:, part] - (self.residue[outputs][:, part] * gain).sum(axis=-1)
+
+    def frf_slope(self, k, c, part=slice(None)):
+        """Return (frequency responses (output, frequency), their derivative to the support's
+        dynamic stiffness s = k + i omega c).
+        """
+        support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
+        share = 1.0 / (1.0 + support * self.compliance[part])
+        residue = self.residue[:, part]
+        return self.free[:, part] - (residue * (support * share)).sum(axis=-1), -(
+            residue * share**2
+        ).sum(axis=-1)
+
+    def psd(self, k, c, part=slice(None), outputs=slice(None)):
+        """Return the displacement PSDs (output, frequency) in m²/N² under a unit force PSD."""
+        response = self.frf(k, c, part, outputs)
+        return response.real**2 + response.imag**2
+
+
+class LinearFamily:
+    """The contact compliance's eigenvalues and vectors on one frequency grid, from which responses
+    at any outputs are made.
+
+    modes: DrivenModes; frequency: (frequency,) Hz.
+    """
+
+    def __init__(self, modes, frequency):
+        self.modes = modes
+        self.frequency = frequency
+        self._receptance = modes.receptance(2j * np.pi * frequency)
+        self._compliance, self._vectors = np.linalg.eig(modes.compliance(2j * np.pi * frequency))
+        reached = (self._receptance * modes.drive) @ modes.contact
+        self._excited = np.linalg.solve(self._vectors, reached[..., None])[..., 0]
+
+    def response(self, shapes, part=slice(None)):
+        """Return the FamilyResponse of outputs with shapes (mode, output), modes as in the
+        ModalModel, on a part of the grid.
+        """
+        shapes = shapes[self.modes.indices]
+        receptance, vectors = self._receptance[part], self._vectors[part]
+        free = (receptance * self.modes.drive) @ shapes
+        observed = np.stack([(receptance * shape) @ self.modes.contact for shape in shapes.T])
+        residue = (observed[:, :, None, :] @ vectors)[:, :, 0, :] * self._excited[part]
+        return FamilyResponse(self.frequency[part], free.T, residue, self._compliance[part])

@@ -1,0 +1,222 @@
+"""The reduced model that every later stage works on: uncoupled modes, and what contacts, forces and
+sensors see of them.
+"""
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+
+from vibroimpact.contact.laws import ContactLaws, LocalLaws
+
+# Fields whose axes are checked: name -> axis names. "mode", "contact_point", ... must agree between
+# fields.
+AXES = {
+    "omega": ("mode",),
+    "damping": ("mode",),
+    "contact_shapes": ("mode", "contact_point", 2),
+    "contact_directions": ("contact_point", 2, 3),
+    "contact_weight": ("contact_point",),
+    "support_of_point": ("contact_point",),
+    "contact_stiffness": ("contact_point",),
+    "gap_factor": ("contact_point",),
+    "centre_offset": ("contact_point", 2),
+    "contact_position": ("contact_point", 3),
+    "drive_shapes": ("mode", "force_channel"),
+    "sensor_shapes": ("mode", "sensor"),
+    "sensor_positions": ("sensor", 3),
+    "sensor_directions": ("sensor", 3),
+    "line_shapes": ("mode", "line_point"),
+    "line_positions": ("line_point", 3),
+    "line_arc_length": ("line_point",),
+    "stress_shapes": ("mode", "section", 2),
+    "full_mode_frequencies": ("full_mode",),
+    "element_shapes": ("mode", "element"),
+    "initial_displacement": ("mode",),
+    "initial_velocity": ("mode",),
+    "constant_force": ("mode",),
+}
+NAMES = {
+    "support_names": "support",
+    "sensor_names": "sensor",
+    "section_names": "section",
+    "element_names": "element",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class ModalModel:
+    """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, and what acts on it
+    locally.
+
+    omega (mode,) rad/s, ascending; damping (mode,) = 2 zeta omega in 1/s. Shapes: displacement in m
+    per unit modal amplitude (kg^1/2 m), that is kg^-1/2: contact_shapes (mode, contact_point, 2)
+    along the two contact_directions (contact_point, 2, 3); drive_shapes (mode, force_channel) along
+    the force; sensor_shapes (mode, sensor) at sensor_positions (sensor, 3) m along
+    sensor_directions (sensor, 3), named like "apex.y"; line_shapes (mode, line_point) at
+    line_positions (line_point, 3) m, line_arc_length (line_point,) m. stress_shapes (mode, section,
+    2): outer-fibre stress of the two bending moments, Pa per unit modal amplitude. Contact points:
+    contact_position (contact_point, 3) m; support_of_point (contact_point,) int, an index into
+    support_names; contact_weight (contact_point,) share of the support's stiffness, sums to 1 per
+    support; contact_stiffness (contact_point,) N/m; gap_factor (contact_point,) times the case's
+    gap; centre_offset (contact_point, 2) m along the contact directions. full_mode_frequencies
+    (full_mode,) Hz: the lowest frequencies of the full model without contact. contact_laws: what
+    the contacts have beyond the elastic circle (None: nothing). Local elements: element_shapes
+    (mode, element), their direction's displacement, relative for an element between two points;
+    element_names; local_laws. initial_displacement, initial_velocity (mode,): modal amplitudes at
+    the start, kg^1/2 m and kg^1/2 m/s; constant_force (mode,): dead load, N kg^-1/2.
+
+    Raises ValueError listing every field with a wrong shape or value.
+    """
+
+    omega: np.ndarray
+    damping: np.ndarray
+    contact_shapes: np.ndarray
+    contact_directions: np.ndarray
+    contact_weight: np.ndarray
+    support_of_point: np.ndarray
+    support_names: tuple[str, ...]
+    contact_stiffness: np.ndarray
+    gap_factor: np.ndarray
+    centre_offset: np.ndarray
+    contact_position: np.ndarray
+    drive_shapes: np.ndarray
+    sensor_shapes: np.ndarray
+    sensor_names: tuple[str, ...]
+    sensor_positions: np.ndarray
+    sensor_directions: np.ndarray
+    line_shapes: np.ndarray
+    line_positions: np.ndarray
+    line_arc_length: np.ndarray
+    stress_shapes: np.ndarray
+    section_names: tuple[str, ...]
+    full_mode_frequencies: np.ndarray
+    contact_laws: ContactLaws = None
+    element_shapes: np.ndarray = None
+    element_names: tuple[str, ...] = ()
+    local_laws: LocalLaws = None
+    initial_displacement: np.ndarray = None
+    initial_velocity: np.ndarray = None
+    constant_force: np.ndarray = None
+
+    def __post_init__(self):
+        """Fill in what is off, and refuse wrong shapes and values, all of them in one sentence."""
+        modes = np.size(self.omega)
+        neutral = {
+            "contact_laws": ContactLaws.neutral(np.size(self.support_of_point)),
+            "element_shapes": np.zeros((modes, 0)),
+            "local_laws": LocalLaws.neutral(len(self.element_names)),
+            "initial_displacement": np.zeros(modes),
+            "initial_velocity": np.zeros(modes),
+            "constant_force": np.zeros(modes),
+        }
+        for name, value in neutral.items():
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, value)
+        problems = [*self._wrong_shapes()]
+        problems = problems or [*self._wrong_values()]
+        if problems:
+            raise ValueError("the modal model is not valid: " + "; ".join(problems))
+
+    @property
+    def modes(self):
+        """Return the number of modes."""
+        return len(self.omega)
+
+    @property
+    def frequencies(self):
+        """Return (mode,) undamped frequencies in Hz."""
+        return self.omega / (2.0 * np.pi)
+
+    @property
+    def conservative(self):
+        """Return True when no contact and no local element takes energy."""
+        contact, local = self.contact_laws, self.local_laws
+        lossy = (
+            contact.damping,
+            contact.hunt_crossley,
+            contact.friction,
+            local.damping,
+            local.drag,
+            local.slip_limit,
+        )
+        return not any(np.any(column) for column in lossy)
+
+    @cached_property
+    def blocks(self):
+        """Return [(mode_indices, [(contact_point, direction), ...])]: groups of modes that no
+        contact force couples.
+
+        mode_indices is an ascending (mode,) int array. Two modes belong together when a contact
+        point and direction moves in both; a shape of exactly 0.0 is no motion (the reduction treats
+        uncoupled degrees of freedom apart, so zeros are exact). Modes that a local element moves
+        belong together too. Modes that move no contact point and no element form one last block
+        without contacts.
+        """
+        points = 2 * self.contact_shapes.shape[1]
+        moved = (
+            np.hstack([self.contact_shapes.reshape(self.modes, points), self.element_shapes]) != 0.0
+        )
+        unassigned, groups = set(range(self.modes)), []
+        while unassigned:
+            modes, reached = {min(unassigned)}, np.zeros(moved.shape[1], dtype=bool)
+            while True:
+                contacts = moved[sorted(modes)].any(axis=0)
+                if (contacts == reached).all():
+                    break
+                reached = contacts
+                modes |= set(np.flatnonzero(moved[:, contacts].any(axis=1)).tolist())
+            unassigned -= modes
+            contacts = [divmod(int(contact), 2) for contact in np.flatnonzero(reached[:points])]
+            groups.append((sorted(modes), contacts, reached.any()))
+        coupled = [(np.array(modes), contacts) for modes, contacts, held in groups if held]
+        alone = sorted(mode for modes, _, held in groups if not held for mode in modes)
+        return coupled + ([(np.array(alone), [])] if alone else [])
+
+    def _wrong_shapes(self):
+        """Yield a sentence for every array or tuple whose axes disagree."""
+        sizes = {}
+        for name, axes in AXES.items():
+            shape = np.shape(getattr(self, name))
+            if len(shape) != len(axes):
+                yield f"{name} has {len(shape)} axes, expected {axes}"
+                continue
+            for axis, size in zip(axes, shape, strict=True):
+                expected = axis if isinstance(axis, int) else sizes.setdefault(axis, size)
+                if size != expected:
+                    yield f"{name} has {size} along {axis}, expected {expected}"
+        for name, axis in NAMES.items():
+            if axis in sizes and len(getattr(self, name)) != sizes[axis]:
+                yield f"{name} has {len(getattr(self, name))} names for {sizes[axis]} along {axis}"
+
+    def _wrong_values(self):
+        """Yield a sentence for every value that makes no physical sense."""
+        for name in (field.name for field in fields(self) if field.name in AXES):
+            if not np.isfinite(getattr(self, name)).all():
+                yield f"{name} holds values that are not finite"
+        if (np.diff(self.omega) < 0.0).any() or (self.omega < 0.0).any():
+            yield "omega must be ascending and not negative"
+        if (self.damping < 0.0).any():
+            yield "damping must not be negative"
+        points = len(self.support_of_point)
+        if len(self.contact_laws.gap) != points:
+            yield (
+                f"contact_laws are for {len(self.contact_laws.gap)} points, the model has {points}"
+            )
+        if len(self.local_laws.stiffness) != len(self.element_names):
+            yield (
+                f"local_laws are for {len(self.local_laws.stiffness)} elements, the model has"
+                f" {len(self.element_names)}"
+            )
+        if points and not set(np.unique(self.support_of_point)) <= set(
+            range(len(self.support_names))
+        ):
+            yield "support_of_point must index support_names"
+            return
+        shares = (
+            np.bincount(self.support_of_point, self.contact_weight, len(self.support_names))
+            if points
+            else np.ones(0)
+        )
+        if not np.allclose(shares, 1.0, rtol=0.0, atol=1.0e-9):
+            yield f"contact_weight must sum to 1 per support, sums are {shares.tolist()}"

@@ -1,0 +1,1 @@
+"""Reports as single pages: a discrepancy, the hidden-effect suite, the validation."""

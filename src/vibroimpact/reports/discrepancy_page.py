@@ -1,0 +1,247 @@
+"""The report of one campaign as a page in a single file: verdict, effects, misfit, map, ranking,
+checks; figures are embedded.
+"""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+
+from vibroimpact.discrepancy.results_folder import best_places, shown_effects
+from vibroimpact.display_units import shown_unit
+from vibroimpact.effects.effect import TESTS
+from vibroimpact.effects.registry import EFFECTS
+
+from .page_style import STYLE
+
+TEMPLATE = Path(__file__).with_suffix(".html")
+SPLITS = {"fit": "fitted", "holdout": "held out"}
+MOST_ROWS, MOST_MODES = 20, 6
+LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
+
+
+SEEDS = "that between two seeds of the completed model"
+NOISE = "what the measurement itself scatters by, from period to period or from average to average"
+
+
+def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
+    """Return the HTML page.
+
+    name: of the campaign; verdict: content of verdict.json; figures: PNG files in their order, each
+    with its caption beside it as .txt; floor: what the floor of the misfit is, SEEDS or NOISE;
+    quick_s: what a quick look kept of every record, None for a whole run.
+    """
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
+    tests = [
+        f"{test}, {TESTS[test]}" if test in TESTS else str(test)
+        for test in verdict["broken_invariances"]
+    ]
+    return template.render(
+        style=STYLE,
+        name=name,
+        verdict=verdict,
+        floor=floor,
+        quick_s=None if quick_s is None else digits(quick_s),
+        sentence=verdict_sentence(verdict),
+        effects=[*_effect_rows(verdict)],
+        misfit=[*_misfit_rows(verdict)],
+        p_before=_probability(verdict["p_global_before"]),
+        p_after=_probability(verdict["p_global_after"]),
+        regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]],
+        broken="; ".join(tests),
+        figures=embedded(figures),
+        ranking=[
+            {
+                "ids": in_words(row["ids"]),
+                "location": ", ".join((row.get("location") or "").split("+")),
+                "score": digits(row["heldout_score"]),
+                "closed": percent(row["closed_fraction"]),
+            }
+            for row in best_places(verdict["ranking"])[:MOST_ROWS]
+        ],
+        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)),
+        seconds=digits(verdict["seconds"]),
+        provenance=[*_flat(verdict["provenance"])],
+    )
+
+
+def embedded(figures):
+    """Return {name, caption, data} of PNG files, each with its caption beside it as .txt; data as
+    the text of a data: address.
+    """
+    return [
+        {
+            "name": file.stem,
+            "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
+            "data": base64.b64encode(file.read_bytes()).decode(),
+        }
+        for file in map(Path, figures)
+    ]
+
+
+def verdict_sentence(verdict):
+    """Return what the verdict says, in one or two sentences."""
+    kind = verdict["verdict"]
+    closed = (verdict["misfit"].get("holdout") or {}).get("closed_fraction")
+    shrinks = (
+        f" Adding it closes {percent(closed)} of the excess misfit on records that were not fitted."
+        if closed is not None
+        else ""
+    )
+    named = "; and ".join(_with_parameters(effect) for effect in verdict["effects"])
+    alternatives = [
+        ids
+        for ids in verdict["ambiguity_set"]
+        if sorted(ids) != sorted(effect["id"] for effect in verdict["effects"])
+    ]
+    others = (
+        f" This campaign can not tell it from {sets_in_words(alternatives)}."
+        if named and alternatives
+        else ""
+    )
+    near = [effect["id"] for effect in verdict.get("most_probable", ())]
+    nearest = f" What came nearest, {in_words(near)}, is not it." if near else ""
+    refusals = " ".join(row["message"] for row in verdict["checks"] if row["level"] == "refuse")
+    sentences = {
+        "none": (
+            "No effect is missing: the model explains the campaign within the scatter of its seeds"
+            " (chance makes such a map with probability"
+            f" {_probability(verdict['p_global_before'])})."
+        ),
+        "named": f"The model lacks {named}.{shrinks}{others}",
+        "partly_explained": (
+            f"The model lacks {named}, and something else that the catalogue does not hold: the"
+            f" remaining difference is more than chance.{shrinks}{others}"
+        ),
+        "ambiguous": (
+            "One of these is missing, and this campaign can not tell which:"
+            f" {sets_in_words(verdict['ambiguity_set'])}."
+            + shrinks.replace("Adding it", "Adding the most probable of them")
+        ),
+        "unknown": (
+            "The model and the measurement disagree, and no effect of the catalogue explains it:"
+            f" the map says where to look.{nearest}"
+        ),
+        "not_testable": f"The campaign can not be judged. {refusals}".strip(),
+    }
+    return sentences.get(kind, f"Verdict: {kind}.")
+
+
+def in_words(ids):
+    """Return effect ids as words: dry friction and gap."""
+    return " and ".join(str(name).replace("_", " ") for name in ids)
+
+
+def sets_in_words(sets):
+    """Return the members of an ambiguity set: dry friction, or foliate obstacle."""
+    return ", or ".join(in_words(ids) for ids in sets)
+
+
+def _with_parameters(effect):
+    """Return an effect in words with its parameters: dry friction at both plates (mu 0.149, between
+    0.128 and 0.171).
+    """
+    values = ", ".join(
+        f"{name.replace('_', ' ')} {digits(value['value'])}{_unit(value['unit'])}, between"
+        f" {digits(value['low'])} and {digits(value['high'])}"
+        for name, value in ((name, _for_reading(row)) for name, row in effect["parameters"].items())
+    )
+    place = f" at {effect['location']}" if effect.get("location") not in (None, "", "all") else ""
+    return f"{in_words([effect['id']])}{place}" + (f" ({values})" if values else "")
+
+
+def _effect_rows(verdict):
+    for effect in shown_effects(verdict):
+        known = EFFECTS.get(effect["id"])
+        head = {
+            "effect": in_words([effect["id"]]),
+            "explanation": known.explanation if known else "",
+            "location": effect.get("location") or "all",
+        }
+        for name, value in [
+            (name, _for_reading(row)) for name, row in effect["parameters"].items()
+        ] or [("", None)]:
+            cells = {key: digits(value[key]) if value else "" for key in ("value", "low", "high")}
+            yield {
+                **head,
+                "parameter": name.replace("_", " "),
+                **cells,
+                "unit": _unit(value["unit"]).strip() or "-" if value else "",
+            }
+            head = {"effect": "", "explanation": "", "location": ""}
+
+
+def _misfit_rows(verdict):
+    for split, words in SPLITS.items():
+        values = verdict["misfit"].get(split) or {}
+        yield {
+            "records": words,
+            **{key: digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")},
+            "closed": percent(values.get("closed_fraction")),
+        }
+
+
+def _region_row(region):
+    gap = region.get("gap_m")
+    return {
+        "band": " to ".join(digits(edge) for edge in region["band_Hz"]),
+        "channel": region["channel"],
+        "load": digits(region["load_rms_N"]),
+        "gap": digits(gap * 1e3) if gap is not None else "-",
+        "discrepancy": f"{region['discrepancy_dB']:+.1f}",
+        "z": f"{region['z']:+.1f}",
+        "modes": _modes(region.get("nearest_modes_Hz", ())),
+    }
+
+
+def _modes(frequencies):
+    """Return the modes of the model in or nearest to a band; those that a symmetric tube has twice,
+    to three digits, once.
+    """
+    shown = list(dict.fromkeys(digits(frequency) for frequency in frequencies))
+    return ", ".join(shown[:MOST_MODES]) + (" ..." if len(shown) > MOST_MODES else "")
+
+
+def _flat(values, prefix=""):
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _unit(unit):
+    return "" if unit in ("1", "", "-", None) else f" {unit}"
+
+
+def digits(value):
+    """Return a number with 3 digits, whole up to 100000, - where there is none."""
+    return (
+        "-"
+        if value is None or value != value
+        else f"{value:.0f}"
+        if 1e3 <= abs(value) < 1e5
+        else f"{value:.3g}"
+    )
+
+
+def _for_reading(row):
+    """Return {value, low, high, unit} of a parameter in the unit that it is shown in."""
+    values = {key: row[key] for key in ("value", "low", "high")}
+    unit, factor = shown_unit(row["unit"], values.values())
+    return {
+        "unit": unit,
+        **{key: None if value is None else factor * value for key, value in values.items()},
+    }
+
+
+def percent(fraction):
+    """Return a share in whole per cent, - where there is none."""
+    return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"
+
+
+def _probability(value):
+    return "not computed" if value is None else "below 0.001" if value < 1e-3 else f"{value:.2g}"

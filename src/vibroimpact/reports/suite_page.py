@@ -1,0 +1,125 @@
+"""The hidden-effect suite as one page in a single file: rates against targets, detection limits,
+figures, every campaign.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+
+from vibroimpact.discrepancy.suite import TARGETS
+
+from .discrepancy_page import digits, embedded, in_words, percent
+from .page_style import STYLE
+
+TEMPLATE = Path(__file__).with_suffix(".html")
+
+
+def suite_page(seed, rows, rates, limits, figures):
+    """Return the HTML page.
+
+    seed: of the draw; rows: judged campaigns; rates: rows of rates.csv; limits: rows of
+    detection.csv; figures: PNG files in their order, each with its caption beside it as .txt.
+    """
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
+    return template.render(
+        style=STYLE,
+        seed=seed,
+        count=len(rows),
+        sentence=suite_sentence(seed, rows, rates),
+        failed=any(row["standing"] == "fails" for row in rates),
+        rates=[_rate_row(row) for row in rates],
+        unasked=unasked(rates),
+        limits=[_limit_row(row) for row in limits],
+        figures=embedded(figures),
+        campaigns=[_campaign_row(row) for row in rows],
+    )
+
+
+def suite_sentence(seed, rows, rates):
+    """Return how many campaigns of which draw were judged, and which rows miss their target or
+    fail, in one or two sentences.
+    """
+    met = sum(row["standing"] == "met" for row in rates)
+    missed, failing = (
+        "; ".join(_with_numbers(row) for row in rates if row["standing"] == standing)
+        for standing in ("missed", "fails")
+    )
+    head = (
+        f"{len(rows)} campaigns of the draw with seed {seed}: {met} of {len(rates)} rows meet their"
+        " target."
+    )
+    return (
+        head
+        + (f" Missed: {missed}." if missed else "")
+        + (f" Failing: {failing}." if failing else "")
+    )
+
+
+def unasked(rates):
+    """Return the rows of the acceptance table, in words, that no campaign answers yet."""
+    held = {(row["arm"], row["quantity"]) for row in rates}
+    return "; ".join(
+        f"{arm}: {quantity}" for arm, quantity in TARGETS if (arm, quantity) not in held
+    )
+
+
+def _with_numbers(row):
+    return (
+        f"{row['arm']}: {row['quantity']} ({percent(row['rate'])}, target {_bound(row)}, campaigns:"
+        f" {row['campaigns']})"
+    )
+
+
+def _bound(row):
+    """Return the target in words, with the side on which it is met."""
+    limit = row["fails_beyond"]
+    return (
+        f"at {'most' if limit == limit and limit > row['target'] else 'least'}"
+        f" {percent(row['target'])}"
+    )
+
+
+def _rate_row(row):
+    return {
+        "arm": row["arm"],
+        "quantity": row["quantity"],
+        "campaigns": row["campaigns"],
+        "rate": percent(row["rate"]),
+        "interval": f"{percent(row['low'])} to {percent(row['high'])}",
+        "by_chance": percent(row["by_chance"]),
+        "target": _bound(row),
+        "fails_beyond": percent(row["fails_beyond"]),
+        "standing": row["standing"],
+    }
+
+
+def _limit_row(row):
+    bounds = [
+        f"{word} {digits(row[key])}"
+        for word, key in (("from", "limit_low"), ("to", "limit_high"))
+        if row[key] == row[key]
+    ]
+    return {
+        "effect": in_words([row["effect"]]),
+        "campaigns": row["campaigns"],
+        "found": row["found"],
+        "limit": digits(row["limit_over_floor"]),
+        "interval": " ".join(bounds) or "-",
+    }
+
+
+def _campaign_row(row):
+    sets = [in_words(names.split("+")) for names in row["named"].split("|") if names]
+    return {
+        "number": row["campaign"].removeprefix("campaign_"),
+        "arm": row["arm"].replace("_", " "),
+        "hidden": in_words(row["hidden"].split("+")) or "nothing",
+        "verdict": row["verdict"].replace("_", " "),
+        "sets": ", or ".join(sets) or "-",
+        "first": in_words(row["first_name"].split("+")) or "-",
+        "strength": digits(row["strength"]),
+        "closed": percent(row["closed"]),
+    }

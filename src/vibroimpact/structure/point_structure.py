@@ -1,0 +1,205 @@
+"""A structure that is not a tube: masses on springs, or matrices from files, with named points."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from vibroimpact.contact.supports import ContactPoints, place_at_points
+
+from .matrix_files import MatrixFileError, read_matrix
+
+AXES = {"x": 0, "y": 1, "z": 2}
+GROUND = "ground"
+
+
+@dataclass(frozen=True, eq=False)
+class PointStructure:
+    """A linear structure known by its matrices and named points.
+
+    mass, stiffness, damping (dof, dof) sparse, SI; directions {point: {axis: dof}}; dampers: list
+    of ((dof,) row, coefficient N s/m) that are not in `damping`, each between two dofs or a dof and
+    the ground; contact: the ContactPoints of its supports.
+    """
+
+    mass: sparse.csr_array
+    stiffness: sparse.csr_array
+    damping: sparse.csr_array
+    dampers: list
+    directions: dict
+    contact: ContactPoints
+    contact_points: list
+
+    @property
+    def dofs(self):
+        """Return the number of degrees of freedom."""
+        return self.mass.shape[0]
+
+    def point_rows(self, name):
+        """Return (3, dof): displacement of a named point along x, y and z per unit dof; zeros where
+        it has no dof. Raises ValueError.
+        """
+        if name not in self.directions:
+            raise ValueError(
+                f"point '{name}' is not among the structure's: {', '.join(sorted(self.directions))}"
+            )
+        rows = np.zeros((3, self.dofs))
+        for axis, dof in self.directions[name].items():
+            rows[AXES[axis], dof] = 1.0
+        return rows
+
+    def contact_rows(self):
+        """Return (contact_point, 2, dof): displacement of each contact point along its two
+        directions, relative where it has two ends.
+        """
+        rows = [
+            self.point_rows(one) - (self.point_rows(other) if other else 0.0)
+            for one, other in self.contact_points
+        ]
+        return np.array(
+            [
+                directions @ row
+                for directions, row in zip(self.contact.directions, rows, strict=True)
+            ]
+        ).reshape(-1, 2, self.dofs)
+
+    @property
+    def inertia(self):
+        """Return (3, dof): force in N per unit acceleration of the base along x, y, z, on each dof,
+        with the sign turned.
+        """
+        rigid = np.zeros((self.dofs, 3))
+        for axes in self.directions.values():
+            for axis, dof in axes.items():
+                rigid[dof, AXES[axis]] = 1.0
+        return (self.mass @ rigid).T
+
+
+@dataclass(frozen=True, eq=False)
+class IdentifiedStructure(PointStructure):
+    """A structure known by its measured modes: its dofs are modal amplitudes (kg^1/2 m), a point
+    moves by the modes' shapes.
+
+    rows {point: (3, dof)} kg^-1/2; directions {point: {axis: axis}} name what was measured, and are
+    no dofs.
+    """
+
+    rows: dict
+
+    def point_rows(self, name):
+        """Return (3, dof): displacement of a named point along x, y and z per unit modal amplitude.
+        Raises ValueError.
+        """
+        if name not in self.rows:
+            raise ValueError(
+                f"point '{name}' is not among the structure's: {', '.join(sorted(self.rows))}"
+            )
+        return self.rows[name]
+
+    @property
+    def inertia(self):
+        """Refuse: measured modes do not tell what moves with the base. Raises ValueError."""
+        raise ValueError(
+            "structure.kind identified can not be driven by its base: its mass is not known, only"
+            " its modes"
+        )
+
+
+def build_point_structure(config):
+    """Return the PointStructure of a configuration with structure.kind chain, matrices or
+    identified.
+
+    Raises ValueError: a spring or support names a mass or point that is not there; MatrixFileError.
+    """
+    parts = {"chain": _chain, "matrices": _matrices, "identified": _identified}[
+        config.structure.kind
+    ](config.structure)
+    kind = IdentifiedStructure if config.structure.kind == "identified" else PointStructure
+    directions = parts["directions"]
+    for support in config.supports:
+        for name in filter(None, (support.point, support.other_point)):
+            if name not in directions:
+                raise ValueError(
+                    f"support {support.name}: point '{name}' is not among the structure's:"
+                    f" {', '.join(sorted(directions))}"
+                )
+    return kind(
+        **parts,
+        contact=place_at_points(config.supports),
+        contact_points=[(each.point, each.other_point) for each in config.supports],
+    )
+
+
+def _chain(chain):
+    place = {mass.name: dof for dof, mass in enumerate(chain.masses)}
+    stiffness, dampers = np.zeros((len(place), len(place))), []
+    for spring in chain.springs:
+        row = np.zeros(len(place))
+        for name, sign in zip(spring.between, (1.0, -1.0), strict=True):
+            if name != GROUND:
+                row[place[name]] += sign
+        stiffness += spring.stiffness_N_per_m * np.outer(row, row)
+        if spring.damping_N_s_per_m:
+            dampers.append((row, spring.damping_N_s_per_m))
+    return {
+        "mass": sparse.diags_array([mass.mass_kg for mass in chain.masses], format="csr"),
+        "stiffness": sparse.csr_array(stiffness),
+        "damping": sparse.csr_array(stiffness.shape),
+        "dampers": dampers,
+        "directions": {name: {"x": dof} for name, dof in place.items()},
+    }
+
+
+def _matrices(structure):
+    mass = read_matrix(structure.mass, "mass")
+    stiffness = read_matrix(structure.stiffness, "stiffness")
+    damping = (
+        read_matrix(structure.damping, "damping")
+        if structure.damping
+        else sparse.csr_array(mass.shape)
+    )
+    for path, matrix in ((structure.stiffness, stiffness), (structure.damping, damping)):
+        if matrix.shape != mass.shape:
+            raise MatrixFileError(
+                f"{path}: is {matrix.shape}, but {structure.mass} is {mass.shape}: give matrices of"
+                " the same dofs"
+            )
+    directions = {name: dict(axes.items()) for name, axes in structure.points.items()}
+    for name, axes in directions.items():
+        for axis, dof in axes.items():
+            if dof >= mass.shape[0]:
+                raise MatrixFileError(
+                    f"structure.points.{name}.{axis} = {dof}: {structure.mass} has {mass.shape[0]}"
+                    " dofs, counted from 0"
+                )
+    return {
+        "mass": mass,
+        "stiffness": stiffness,
+        "damping": damping,
+        "dampers": [],
+        "directions": directions,
+    }
+
+
+def _identified(structure):
+    modes = sorted(structure.modes, key=lambda mode: mode.frequency_Hz)
+    omega = 2.0 * np.pi * np.array([mode.frequency_Hz for mode in modes])
+    ratios = np.array([mode.damping_ratio for mode in modes])
+    rows, directions = {}, {}
+    for number, mode in enumerate(modes):
+        for name, axes in mode.shape.items():
+            for axis, value in axes.items():
+                rows.setdefault(name, np.zeros((3, len(modes))))[AXES[axis], number] = value
+                directions.setdefault(name, {})[axis] = AXES[axis]
+    diagonal = [
+        sparse.diags_array(values, format="csr")
+        for values in (np.ones(len(modes)), omega**2, 2.0 * ratios * omega)
+    ]
+    return {
+        "mass": diagonal[0],
+        "stiffness": diagonal[1],
+        "damping": diagonal[2],
+        "dampers": [],
+        "directions": directions,
+        "rows": rows,
+    }

@@ -1,0 +1,139 @@
+"""The cases of a study: grid <-> case id, and the random streams of a seed.
+
+An id is made of values, not of places in a list, so that an added load, gap or seed changes no
+other id. A random stream depends on (seed of the study, seed index, name of the stream) only: all
+loads and gaps of a seed see the same force, scaled.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+ID_PATTERN = re.compile(r"load_(?P<load>[^_]+)_gap_(?P<gap>[^_]+)_seed_(?P<seed>\d+)")
+SIGNIFICANT_DIGITS = 6
+
+
+@dataclass(frozen=True, order=True)
+class Case:
+    """One simulation: load_rms_N in N RMS, gap_m the radial clearance in m, seed an index from
+    0.
+    """
+
+    load_rms_N: float
+    gap_m: float
+    seed: int
+
+    @property
+    def id(self) -> str:
+        """The name of the case's files, e.g. load_0.5_gap_0.00028886_seed_0."""
+        return case_id(value_text(self.load_rms_N), self.gap_m, self.seed)
+
+
+def case_id(load_text: str, gap_m: float, seed: int) -> str:
+    """Return the id of a case; `load_text` may be a wildcard that stands for the load."""
+    return f"load_{load_text}_gap_{value_text(gap_m)}_seed_{seed}"
+
+
+def value_text(value: float) -> str:
+    """Return the shortest text that reads back as exactly `value`: 20.0 -> '20', 5.1106e-5 ->
+    '5.1106e-05'.
+    """
+    text = repr(float(value))
+    return text.removesuffix(".0")
+
+
+def case_from_id(case_id: str) -> Case:
+    """Return the Case of an id. Raises ValueError when the text is no id; the message shows the
+    form of one.
+    """
+    match = ID_PATTERN.fullmatch(case_id)
+    if match is None:
+        raise ValueError(
+            f"'{case_id}' is not a case id: it should look like load_0.5_gap_0.00028886_seed_0"
+        )
+    return Case(float(match["load"]), float(match["gap"]), int(match["seed"]))
+
+
+def load_values(grid) -> list[float]:
+    """Return the loads (load,) in N RMS of config.grid: as listed, or log-spaced and rounded to 6
+    significant digits.
+
+    The rounding keeps ids short and makes the id tell the load that was simulated.
+    """
+    loads = grid.load_rms_N
+    if isinstance(loads, tuple):
+        return [float(load) for load in loads]
+    spaced = np.geomspace(loads.first, loads.last, loads.count)
+    return [float(f"{load:.{SIGNIFICANT_DIGITS}g}") for load in spaced]
+
+
+def loads_by_half_decade(grid) -> dict[str, list[str]]:
+    """Return {name of a half decade: texts of the loads in it}, both ascending: batches of which an
+    added load changes one.
+
+    A half decade holds loads from 10^(n/2) N on, below 10^((n+1)/2) N; its name, e.g. from_0.316,
+    is its lower end.
+    """
+    batches: dict[int, list[float]] = {}
+    for load in sorted(load_values(grid)):
+        batches.setdefault(math.floor(2.0 * math.log10(load) + 1e-9), []).append(load)
+    return {
+        f"from_{10 ** (half / 2):.3g}": [value_text(load) for load in loads]
+        for half, loads in batches.items()
+    }
+
+
+def nearest_loads(grid, wanted) -> list[float]:
+    """Return the loads of config.grid nearest (in logarithm) to the wanted ones (load,) in N RMS,
+    ascending, each once.
+    """
+    loads = np.array(load_values(grid))
+    return sorted({float(loads[np.argmin(np.abs(np.log(loads / load)))]) for load in wanted})
+
+
+def all_cases(grid) -> list[Case]:
+    """Return every Case of config.grid, ordered by load, then gap, then seed as the configuration
+    lists them.
+    """
+    return [
+        Case(load, float(gap), seed)
+        for load, gap, seed in product(load_values(grid), grid.gap_m, range(grid.seeds))
+    ]
+
+
+def cases_of_load(grid, load_rms_N: float) -> list[Case]:
+    """Return the cases of one load: what one simulation job integrates together. Needs gap_m and
+    seeds of the grid only.
+    """
+    return [
+        Case(float(load_rms_N), float(gap), seed)
+        for gap, seed in product(grid.gap_m, range(grid.seeds))
+    ]
+
+
+def ids_of_load(grid, load_text: str) -> list[str]:
+    """Return the ids of the cases of one load, in the order of cases_of_load; `load_text` may be a
+    wildcard that stands for the load.
+    """
+    return [
+        case_id(load_text, float(gap), seed) for gap, seed in product(grid.gap_m, range(grid.seeds))
+    ]
+
+
+def random_stream(study_seed: int, seed_index: int, stream: str) -> np.random.Generator:
+    """Return the generator of the stream named `stream` (e.g. 'force') of seed `seed_index` of a
+    study.
+
+    Streams of different names or indices are independent (numpy SeedSequence with a spawn key).
+    """
+    words = np.frombuffer(hashlib.sha256(stream.encode()).digest()[:16], dtype="<u4")
+    sequence = np.random.SeedSequence(
+        study_seed, spawn_key=(seed_index, *(int(word) for word in words))
+    )
+    return np.random.Generator(np.random.PCG64(sequence))

@@ -1,0 +1,225 @@
+"""Simulating the cases of a study: forces in, one record dataset per case out."""
+
+from contextlib import nullcontext
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.excitation.force_stream import ForceStream
+from vibroimpact.integration.batch import ENERGY_TERMS, Lanes, Schedule, march_lanes
+from vibroimpact.integration.kernels import LANES, RATIO
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.stopwatch import Stopwatch
+
+from .cases import Case, random_stream
+from .record_variables import describe
+from .step_records import trace_cases
+
+
+def simulate_cases(
+    config, model: ModalModel, cases: list[Case], keep=None, stopwatch: Stopwatch | None = None
+):
+    """Yield (case, record dataset) for every case, integrating LANES of them at a time.
+
+    The record's variables, dimensions and units are those of variables.VARIABLES. A case's record
+    does not depend on the other cases of the list. keep: where given the records hold no time
+    series; those go piece by piece to keep(schedule, batch), which is entered for each batch of
+    cases and gives a function put(first sample, {variable: (case, ..., sample)}), see series_files.
+    stopwatch: is told the CPU seconds of kernel, output filter and force. With record.every_step:
+    see step_records; keep is not asked. Raises IntegrationError, ForceError.
+    """
+    stopwatch = Stopwatch() if stopwatch is None else stopwatch
+    if config.record.every_step:
+        yield from trace_cases(config, model, cases)
+        return
+    schedule = Schedule(
+        config.integration.steps_per_second,
+        config.record.sampling_frequency_Hz,
+        config.integration.start_up_s,
+        config.record.duration_s,
+        config.integration.scheme,
+    )
+    with stopwatch("force"):
+        forces = {
+            seed: seed_force(config, schedule, seed)
+            for seed in sorted({case.seed for case in cases})
+        }
+    for first in range(0, len(cases), LANES):
+        batch = cases[first : first + LANES]
+        with nullcontext() if keep is None else keep(schedule, batch) as put:
+            lanes = march_lanes(
+                model,
+                schedule,
+                gap=np.array([case.gap_m for case in batch]),
+                imperfection=np.stack(
+                    [imperfection(config, model, case) for case in batch], axis=-1
+                ),
+                drive=_drive(batch, forces, stopwatch),
+                receive=(
+                    None
+                    if put is None
+                    else lambda at, *pieces, put=put: put(at, series_of(model, *pieces))
+                ),
+            )
+        stopwatch.add(lanes.stopwatch)
+        for lane, case in enumerate(batch):
+            yield case, record_dataset(config, model, schedule, lanes, lane, case)
+
+
+def seed_force(config, schedule: Schedule, seed: int) -> ForceStream:
+    """The seed's force at every step of the run, of RMS 1 (exactly so over the recorded window).
+
+    Loads scale it, gaps share it, so scaling load and gap by a power of two scales a record bit for
+    bit.
+    """
+    rate = schedule.steps_per_second
+    first = round(schedule.start_up * rate) + 1
+    recorded = slice(first, first + round(schedule.duration * rate))
+    generator = random_stream(config.seed, seed, "force")
+    first_time = -schedule.start_up - 1.0 / rate
+    return ForceStream(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
+
+
+def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
+    """Offsets (contact_point, 2) m of the obstacles' centres, drawn once per seed as a fraction of
+    the gap.
+
+    Without them a perfectly out-of-plane force leaves the in-plane motion to round-off.
+    """
+    draw = random_stream(config.seed, case.seed, "imperfection").uniform(
+        -1.0, 1.0, (model.support_of_point.size, 2)
+    )
+    return draw * (config.integration.imperfection * case.gap_m)
+
+
+def _drive(batch, forces, stopwatch):
+    def drive(first, count):
+        with stopwatch("force"):
+            unit = {
+                seed: forces[seed].values(first, count) for seed in {case.seed for case in batch}
+            }
+            out = np.empty((count, 1, len(batch)))
+            for lane, case in enumerate(batch):
+                np.multiply(unit[case.seed], case.load_rms_N, out=out[:, 0, lane])
+        return out
+
+    return drive
+
+
+def series_of(model: ModalModel, displacement, acceleration, force) -> dict[str, np.ndarray]:
+    """The time series of a record by variable, (..., sample) each, from those of integrate.Lanes,
+    (..., channel, sample).
+    """
+    sensors, supports = model.sensor_shapes.shape[1], len(model.support_names)
+    return {
+        "displacement": displacement[..., :sensors, :],
+        "acceleration": acceleration,
+        "line_displacement": displacement[..., sensors:, :],
+        "support_force": (
+            -force[..., : 2 * supports, :].reshape(*force.shape[:-2], supports, 2, force.shape[-1])
+        ),
+        "force": force[..., 2 * supports, :],
+    }
+
+
+def record_dataset(
+    config, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case
+) -> xr.Dataset:
+    """The record of one lane of a batch; without time series where the lanes hold none."""
+    series = (
+        {}
+        if lanes.force is None
+        else series_of(model, lanes.displacement[lane], lanes.acceleration[lane], lanes.force[lane])
+    )
+    coordinates = {
+        **({"time": sample_times(schedule)} if series else {}),
+        "sensor": list(model.sensor_names),
+        "line_arc_length": model.line_arc_length,
+        "support": list(model.support_names),
+        "section": list(model.section_names),
+        "element": list(model.element_names),
+        "energy_term": list(ENERGY_TERMS),
+        "energy_time": lanes.energy_time,
+    }
+    values = (
+        series | statistics(lanes, lane, schedule) | energy_balance(lanes, lane, model.conservative)
+    )
+    values["stress_flag"] = np.int8(
+        values["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa
+    )
+    return describe(values, coordinates, case_attributes(config, schedule, case))
+
+
+def sample_times(schedule: Schedule) -> np.ndarray:
+    """Times (time,) s of the samples of a record."""
+    return np.arange(schedule.samples) / schedule.sampling_frequency
+
+
+def case_attributes(config, schedule: Schedule, case: Case) -> dict:
+    """What every file of a case says of it."""
+    return {
+        "study": config.study,
+        "case": case.id,
+        "load_rms_N": case.load_rms_N,
+        "gap_m": case.gap_m,
+        "seed": case.seed,
+        "sampling_frequency": float(schedule.sampling_frequency),
+        "steps_per_second": float(schedule.steps_per_second),
+        "start_up_s": float(schedule.start_up),
+    }
+
+
+def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:
+    """Contact, wear and stress statistics of one lane over the recorded steps, by variable name."""
+    tally = {name: np.asarray(value[..., lane]) for name, value in lanes.tally.items()}
+    steps, dt = lanes.steps, 1.0 / schedule.steps_per_second
+    impacts = tally["impacts"]
+    per_impact = np.divide(1.0, impacts, out=np.full(impacts.shape, np.nan), where=impacts > 0)
+    rows, elements = lanes.contact_rows, lanes.element_rows
+    return {
+        "stress_rms": np.sqrt(tally["square_stress"] / steps),
+        "stress_peak": np.sqrt(tally["peak_square_stress"]),
+        "contact_fraction": tally["contact_steps"] / steps,
+        "impact_count": impacts.astype(np.int32),
+        "impact_rate": impacts / (steps * dt),
+        "peak_force": tally["peak_force"],
+        "rms_force": np.sqrt(tally["square_force"] / steps),
+        "mean_impulse": tally["force_sum"] * dt * per_impact,
+        "impact_velocity_rms": np.sqrt(tally["impact_velocity_square"] * per_impact),
+        "impact_velocity_max": tally["impact_velocity_peak"],
+        "wear_work_rate": tally["sliding_work"] / (steps * dt),
+        "force_displacement": -tally["force_displacement"][rows] / steps,
+        "displacement_square": tally["square_displacement"][rows] * RATIO / steps,
+        "element_displacement_square": tally["square_displacement"][elements] * RATIO / steps,
+        "element_force_displacement": -tally["force_displacement"][elements] / steps,
+        "element_power": -tally["element_work"] / (steps * dt),
+        "slip_power": tally["slip_work"] / (steps * dt),
+    }
+
+
+def energy_balance(lanes: Lanes, lane: int, conservative: bool) -> dict[str, np.ndarray]:
+    """Energies of one lane and the two residuals, relative to the largest energy that came in, by
+    work or at the start.
+
+    energy_residual: with the contact work as the trapezoidal sum of f du, the identity of the
+    scheme (round-off only); potential_energy_residual: with the potential energy of contacts and
+    elements in its place, which measures the step; NaN unless they are conservative.
+    contact_dissipation: what contacts and elements took beyond what their springs hold.
+    """
+    energy = lanes.energy[lane]
+    terms = dict(zip(ENERGY_TERMS, energy, strict=True))
+    mechanical = terms["kinetic"] + terms["elastic"]
+    start = mechanical[0]
+    supplied = terms["input_work"] - terms["dissipated"] + start
+    scale = max(abs(terms["input_work"][-1]), start)
+    exact = mechanical - supplied - terms["contact_work"]
+    held = terms["contact_potential"] - terms["contact_potential"][0]
+    return {
+        "energy": energy,
+        "energy_residual": np.max(np.abs(exact)) / scale,
+        "potential_energy_residual": (
+            np.max(np.abs(mechanical + held - supplied)) / scale if conservative else np.nan
+        ),
+        "contact_dissipation": (-terms["contact_work"] - held)[-1],
+        "fixed_point_residual": lanes.fixed_point_residual[lane] * lanes.contraction,
+    }

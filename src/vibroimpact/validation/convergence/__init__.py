@@ -1,0 +1,1 @@
+"""Convergence with mesh, contact points, step, modes and averages."""

@@ -1,0 +1,1 @@
+"""Other codes that judge the same numbers."""

@@ -1,0 +1,76 @@
+"""The other codes that judge the project, imported or found only when asked for: each is there, or
+a sentence says how to get it.
+"""
+
+import logging
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+PYTHON_JUDGES = "make judges installs it, from requirements-judges.lock"
+
+
+class JudgeAbsent(Exception):
+    """A judge that is not installed; the message says how to install it."""
+
+
+def opensees():
+    """Return the module openseespy.opensees. Raises JudgeAbsent."""
+    try:
+        import openseespy.opensees as module
+    except (
+        ImportError,
+        RuntimeError,
+    ) as error:  # RuntimeError: the package is there, its compiled part does not fit this Python
+        raise JudgeAbsent(
+            f"OpenSeesPy cannot be imported ({error}): {PYTHON_JUDGES}; its compiled part needs"
+            " Python 3.11 on Linux"
+        ) from error
+    return module
+
+
+def sdypy_ema():
+    """Return the module sdypy.EMA. Raises JudgeAbsent."""
+    try:
+        from sdypy import EMA as module
+    except ImportError as error:
+        raise JudgeAbsent(f"sdypy-EMA cannot be imported ({error}): {PYTHON_JUDGES}") from error
+    return module
+
+
+def pyoma2():
+    """Return the modules (pyoma2.functions.ssi, pyoma2.functions.plscf). Raises JudgeAbsent."""
+    try:
+        with (
+            np.errstate()
+        ):  # its import switches numpy's floating-point warnings off for the whole process
+            from pyoma2.functions import plscf, ssi
+    except ImportError as error:
+        raise JudgeAbsent(f"pyOMA2 cannot be imported ({error}): {PYTHON_JUDGES}") from error
+    logging.getLogger("pyoma2").setLevel(logging.WARNING)  # it reports every record it works on
+    return ssi, plscf
+
+
+def calculix(deck):
+    """Return the text of the .dat file that CalculiX writes for an input deck (str). Raises
+    JudgeAbsent; RuntimeError when it fails.
+    """
+    program = shutil.which("ccx")
+    if program is None:
+        raise JudgeAbsent(
+            "CalculiX is not on the PATH as ccx: apt-get install calculix-ccx, or another build of"
+            " CalculiX 2.20"
+        )
+    with TemporaryDirectory() as folder:
+        Path(folder, "tube.inp").write_text(deck, encoding="ascii")
+        done = subprocess.run(
+            [program, "-i", "tube"], cwd=folder, capture_output=True, text=True, check=False
+        )
+        if done.returncode or "*ERROR" in done.stdout:
+            raise RuntimeError(
+                f"ccx ended with {done.returncode}: {(done.stdout + done.stderr)[-600:]}"
+            )
+        return Path(folder, "tube.dat").read_text(encoding="ascii")

@@ -1,0 +1,1 @@
+"""Whether the equivalent linear tube predicts what it was not fitted on."""

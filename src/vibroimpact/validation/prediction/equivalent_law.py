@@ -1,0 +1,124 @@
+"""The equivalent support as a law of the level: fitted on one study, used at loads, gaps and
+geometries that it has not seen.
+
+Two forms. "load / gap": k and c of the tube of the study against load over gap, exact for that tube
+because its model is homogeneous. "scaled": k over the tube's own static stiffness at the plates,
+against the RMS displacement that the FREE tube would have there over the gap; both come from the
+linear model of any tube, so the law can be carried to another one.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.linear.equivalent_linear import frf
+from vibroimpact.study.method_agreement import COMPARED
+
+NEIGHBOURS = 7  # points of the fit that a place of the law is the median of
+FREE = 1.0  # N/m: a support that is not there
+
+
+@dataclass(frozen=True)
+class EquivalentLaw:
+    """k N/m and c N s/m per support against a level, by straight lines between medians in
+    logarithms.
+
+    level, k, c (point,): ascending level; below the first the tube counts as free, beyond the last
+    the last slope goes on (`inside` tells).
+    """
+
+    level: np.ndarray
+    k: np.ndarray
+    c: np.ndarray
+
+    def at(self, level):
+        """Return (k, c) at a level, (0, 0) where the tube counts as free."""
+        if level < self.level[0]:
+            return 0.0, 0.0
+        x = np.log(level)
+        return tuple(
+            float(np.exp(_line(x, np.log(self.level), np.log(values))))
+            for values in (self.k, self.c)
+        )
+
+    def inside(self, level):
+        """Return True where the law interpolates or the tube is free."""
+        return bool(level <= self.level[-1])
+
+
+def _line(x, places, values):
+    if x <= places[-1]:
+        return np.interp(x, places, values)
+    slope = (values[-1] - values[-4]) / (places[-1] - places[-4])
+    return values[-1] + slope * (x - places[-1])
+
+
+def fit_law(summary, level_of, scale=(1.0, 1.0), without_load=None) -> EquivalentLaw:
+    """Return the law of a study: running medians over loads, gaps and methods.
+
+    summary: rows of consistency_summary.csv; level_of: function (load N, gap m) -> level; scale:
+    what k and c are divided by; without_load: a load N RMS that is left out.
+    """
+    points = sorted(
+        (level_of(row["load_rms_N"], row["gap_m"]), row["k_median"], row["c_median"])
+        for row in summary
+        if row["method"] in COMPARED
+        and np.isfinite(row["k_median"])
+        and row["load_rms_N"] != without_load
+    )
+    level, k, c = np.array(points, dtype=float).T
+    levels, ks, cs = [], [], []
+    for first in range(0, len(points) - NEIGHBOURS + 1, 2):
+        part = slice(first, first + NEIGHBOURS)
+        levels.append(np.exp(np.median(np.log(level[part]))))
+        ks.append(np.exp(np.median(np.log(k[part]))))
+        cs.append(np.nanmedian(c[part]))  # the shape gives no c
+    kept = np.concatenate([[True], np.diff(levels) > 0.0])
+    return EquivalentLaw(
+        np.array(levels)[kept],
+        np.array(ks)[kept] / scale[0],
+        np.maximum(np.array(cs)[kept], 1e-3) / scale[1],
+    )
+
+
+def free_level(model, band_Hz):
+    """Return metres per newton: RMS displacement of the free tube at the middle of its plates,
+    along the drive, per RMS force in the band.
+    """
+    frequency = np.arange(band_Hz[0], band_Hz[1], 0.02)
+    response = frf(model, FREE, 0.0, frequency, _plate_shapes(model))
+    return float(np.sqrt(np.mean(np.abs(response) ** 2)))
+
+
+def plate_stiffness(model):
+    """Return (N/m, N s/m): static stiffness of the tube at its plates, all moving alike, per plate;
+    and over the first frequency, for c.
+    """
+    shapes = _plate_shapes(model)
+    moved = shapes.sum(axis=1)
+    kept = model.omega > 0.0
+    flexibility = np.sum((moved[kept] / model.omega[kept]) ** 2) / shapes.shape[1]
+    first = model.omega[kept][np.argmax((moved[kept] / model.omega[kept]) ** 2)]
+    return 1.0 / flexibility, 1.0 / (flexibility * first)
+
+
+def _plate_shapes(model):
+    """(mode, support): mean displacement of each support's points along its direction that the
+    drive moves most.
+    """
+    driven = np.abs(
+        np.einsum(
+            "mcd,m->cd",
+            model.contact_shapes,
+            model.drive_shapes[:, 0] / np.maximum(model.omega, 1.0) ** 2,
+        )
+    ).sum(axis=0)
+    along = model.contact_shapes[:, :, int(np.argmax(driven))]
+    return np.stack(
+        [
+            along[:, model.support_of_point == number]
+            @ model.contact_weight[model.support_of_point == number]
+            for number in range(len(model.support_names))
+        ],
+        axis=1,
+    )

@@ -1,0 +1,232 @@
+"""Does the equivalent linear tube predict? Its response beside the non-linear one, quantity by
+quantity, where nothing was fitted.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.linear.equivalent_linear import frf
+
+BANDS_HZ = ((5.0, 20.0), (20.0, 40.0), (40.0, 60.0), (60.0, 100.0), (100.0, 200.0))
+RESOLUTION_HZ = 0.01
+USABLE_dB = 2.0  # 26 % in amplitude: the "agree" of the study
+REGIMES = (
+    ("hardly touching", 0.01),
+    ("transition", 0.40),
+    ("mostly in contact", 1.0),
+)  # up to this fraction of time in contact
+EULER_GAMMA = 0.5772
+
+
+@dataclass(frozen=True)
+class Response:
+    """One tube under one load: psd {sensor: (frequency,) m²/Hz} at frequency (frequency,) Hz,
+    rms_displacement {sensor: m}, rms_force {support: N}, rms_stress and peak_stress {section: Pa},
+    contact fraction of time (NaN for a linear tube).
+    """
+
+    frequency: np.ndarray
+    psd: dict
+    rms_displacement: dict
+    rms_force: dict
+    rms_stress: dict
+    peak_stress: dict
+    contact: float
+
+
+def linear_response(model, k, c, load, band_Hz, duration_s) -> Response:
+    """Return the Response of the linear tube with support (k N/m, c N s/m) to a force of RMS `load`
+    N, flat in a band.
+
+    Peak stress: expected maximum of a Gaussian process over the duration, sigma (sqrt(2 ln n) +
+    0.5772 / sqrt(2 ln n)), n upcrossings. Source: Davenport 1964. Plate force: (k + i omega c)
+    times the displacement of the points, summed by their share.
+    """
+    frequency = np.arange(band_Hz[0], band_Hz[1], RESOLUTION_HZ)
+    level = load**2 / (band_Hz[1] - band_Hz[0])
+    outputs = np.hstack(
+        [
+            model.sensor_shapes,
+            model.stress_shapes.reshape(len(model.omega), -1),
+            _support_shapes(model),
+        ]
+    )
+    power = np.abs(frf(model, k, c, frequency, outputs)) ** 2 * level
+    sensors, sections = len(model.sensor_names), len(model.section_names)
+    variance = power.sum(axis=1) * RESOLUTION_HZ
+    stress = power[sensors : sensors + 2 * sections].reshape(sections, 2, -1).sum(axis=1)
+    sigma = np.sqrt(stress.sum(axis=1) * RESOLUTION_HZ)
+    crossings = np.sqrt((stress * frequency**2).sum(axis=1) * RESOLUTION_HZ) / sigma * duration_s
+    support = power[sensors + 2 * sections :] * (k**2 + (2.0 * np.pi * frequency * c) ** 2)
+    force = np.sqrt(support.sum(axis=1).reshape(-1, 2).sum(axis=1) * RESOLUTION_HZ)
+    return Response(
+        frequency=frequency,
+        psd=dict(zip(model.sensor_names, power[:sensors], strict=True)),
+        rms_displacement=dict(zip(model.sensor_names, np.sqrt(variance[:sensors]), strict=True)),
+        rms_force=dict(zip(model.support_names, force, strict=True)),
+        rms_stress=dict(zip(model.section_names, sigma, strict=True)),
+        peak_stress=dict(
+            zip(model.section_names, sigma * expected_peak_factor(crossings), strict=True)
+        ),
+        contact=np.nan,
+    )
+
+
+def amplified(response: Response, gain: float) -> Response:
+    """Return the Response of a linear tube to a force `gain` times as large."""
+    values = {
+        name: {place: gain * value for place, value in getattr(response, name).items()}
+        for name in ("rms_displacement", "rms_force", "rms_stress", "peak_stress")
+    }
+    return replace(
+        response, psd={name: gain**2 * psd for name, psd in response.psd.items()}, **values
+    )
+
+
+def expected_peak_factor(crossings):
+    """Return the expected maximum of a Gaussian process in standard deviations, over a time with
+    that many upcrossings of its mean.
+    """
+    root = np.sqrt(2.0 * np.log(np.maximum(crossings, 2.0)))
+    return root + EULER_GAMMA / root
+
+
+def _support_shapes(model):
+    """(mode, 2 per support): displacement that the resultant of a support acts on, in its two
+    directions.
+    """
+    weighted = model.contact_shapes * model.contact_weight[:, None]
+    return np.concatenate(
+        [
+            weighted[:, model.support_of_point == number].sum(axis=1)
+            for number in range(len(model.support_names))
+        ],
+        axis=1,
+    )
+
+
+def recorded_response(record, frequency, psd, names) -> Response:
+    """Return the Response of a non-linear record: statistics of its dataset, psd (sensor,
+    frequency) m²/Hz of the sensors `names`.
+    """
+    step = frequency[1] - frequency[0]
+    return Response(
+        frequency=frequency,
+        psd=dict(zip(names, psd, strict=True)),
+        rms_displacement=dict(zip(names, np.sqrt(psd.sum(axis=1) * step), strict=True)),
+        rms_force=_named(record, "support", "rms_force"),
+        rms_stress=_named(record, "section", "stress_rms"),
+        peak_stress=_named(record, "section", "stress_peak"),
+        contact=float(record["contact_fraction"].values.mean()),
+    )
+
+
+def _named(record, axis, name):
+    return dict(
+        zip([str(place) for place in record[axis].values], record[name].values, strict=True)
+    )
+
+
+def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) -> list[dict]:
+    """Return the rows that compare one linear Response with the non-linear ones of several seeds.
+
+    labels: columns that identify the case. Row keys: those, regime, quantity, of, unit, linear,
+    nonlinear (root mean square over seeds), scatter_dB (standard error), error_dB, usable. sensors:
+    those whose displacement counts (the driven direction).
+    """
+    contact = float(np.mean([seed.contact for seed in seeds]))
+    regime = next(name for name, limit in REGIMES if contact <= limit)
+    rows = []
+    for sensor in sensors:
+        rows.append(
+            _row(
+                "RMS displacement",
+                sensor,
+                "m",
+                linear.rms_displacement[sensor],
+                [seed.rms_displacement[sensor] for seed in seeds],
+            )
+        )
+        for low, high in BANDS_HZ:
+            pair = [
+                _band(linear, sensor, low, high),
+                *(_band(seed, sensor, low, high) for seed in seeds),
+            ]
+            rows.append(_row(f"PSD {low:g}-{high:g} Hz", sensor, "m/sqrt(Hz)", pair[0], pair[1:]))
+    for quantity, unit, name in (
+        ("RMS plate force", "N", "rms_force"),
+        ("RMS bending stress", "Pa", "rms_stress"),
+        ("peak bending stress", "Pa", "peak_stress"),
+    ):
+        ours = getattr(linear, name)
+        places = ours if name == "rms_force" else _largest(ours)
+        rows += [
+            _row(quantity, place, unit, ours[place], [getattr(seed, name)[place] for seed in seeds])
+            for place in places
+        ]
+    return [{**labels, "contact_fraction": contact, "regime": regime, **row} for row in rows]
+
+
+def _largest(values, count=3):
+    """The sections with the largest stress: where a designer looks."""
+    return sorted(values, key=values.get, reverse=True)[:count]
+
+
+def _band(response, sensor, low, high):
+    inside = (response.frequency >= low) & (response.frequency < high)
+    return float(np.sqrt(np.mean(response.psd[sensor][inside])))
+
+
+def _row(quantity, of, unit, linear, seeds):
+    seeds = np.asarray(seeds, dtype=float)
+    nonlinear = float(np.sqrt(np.mean(seeds**2)))
+    error = 20.0 * np.log10(linear / nonlinear) if linear > 0.0 and nonlinear > 0.0 else np.nan
+    scatter = (
+        8.686 * seeds.std(ddof=1) / np.sqrt(seeds.size) / nonlinear
+        if seeds.size > 1 and nonlinear > 0.0
+        else np.nan
+    )
+    return {
+        "quantity": quantity,
+        "of": of,
+        "unit": unit,
+        "linear": float(linear),
+        "nonlinear": nonlinear,
+        "scatter_dB": float(scatter),
+        "error_dB": float(error),
+        "usable": bool(abs(error) <= USABLE_dB),
+    }
+
+
+def summary_rows(rows) -> list[dict]:
+    """Return the engineer's table: per geometry, law, quantity and regime the median and the worst
+    error in dB, and whether to use it.
+
+    yes: every case within 2 dB; with care: the median within 2 dB; no: else.
+    """
+    groups = {}
+    for row in rows:
+        if np.isfinite(row["error_dB"]):
+            groups.setdefault(
+                (row["geometry"], row["law"], row["quantity"], row["regime"]), []
+            ).append(row["error_dB"])
+    table = []
+    for (geometry, law, quantity, regime), errors in groups.items():
+        worst, middle = max(errors, key=abs), float(np.median(errors))
+        verdict = (
+            "yes" if abs(worst) <= USABLE_dB else "with care" if abs(middle) <= USABLE_dB else "no"
+        )
+        table.append(
+            {
+                "geometry": geometry,
+                "law": law,
+                "quantity": quantity,
+                "regime": regime,
+                "cases": len(errors),
+                "median_error_dB": middle,
+                "worst_error_dB": float(worst),
+                "may_be_used": verdict,
+            }
+        )
+    return table

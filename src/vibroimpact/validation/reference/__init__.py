@@ -1,0 +1,1 @@
+"""Reference cases of the field: closed forms and published numbers."""

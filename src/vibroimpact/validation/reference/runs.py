@@ -1,0 +1,108 @@
+"""Running the reference cases through the public interface: configuration, reduced model,
+simulation, record, checks.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.config.reading import load_config
+from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.study.cases import all_cases, load_values
+from vibroimpact.study.simulation import simulate_cases
+from vibroimpact.validation.check import Check
+from vibroimpact.validation.variant import changed
+
+from . import cases as reference_cases
+from .frequencies import frequency_checks
+from .random_stops import law_checks
+
+STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
+# the place of a touch inside a step is random, and the order of four steps scatters with it
+ORDER_TOLERANCE = 0.3
+ORDER_COLUMNS = ("steps_per_second", "step_s", "contact_time_error_s")
+WHITE_SIGMA = {
+    "r11_stops_10": (0.5, 1.0),
+    "r11_stops_100": (1.0, 2.0),
+}  # s0 of the loads of each configuration
+
+
+def run(config) -> list:
+    """Return the record datasets of all cases of a configuration."""
+    model = build_model(config)
+    return [record for _, record in simulate_cases(config, model, all_cases(config.grid))]
+
+
+def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
+    """Return (Checks of R1 to R5, rows {steps_per_second, contact_time_error_s} of R3); folder: of
+    the reference configurations.
+    """
+    configs = {
+        name: load_config(folder / f"{name}.yaml")
+        for name in (
+            "r1_friction_slide",
+            "r2_launch_on_stop",
+            "r3_forced_impact",
+            "r4_base_driven",
+            "r5_wear",
+        )
+    }
+    checks = reference_cases.slide_checks(run(configs["r1_friction_slide"])[0])
+    checks += reference_cases.launch_checks(run(configs["r2_launch_on_stop"])[0])
+    checks += reference_cases.base_driven_checks(run(configs["r4_base_driven"])[0])
+    wear = configs["r5_wear"]
+    checks += reference_cases.wear_checks(run(wear), wear.elements[0].stick_stiffness_N_per_m)
+    forced = [
+        run(changed(configs["r3_forced_impact"], {"integration.steps_per_second": rate}))[0]
+        for rate in STEPS
+    ]
+    checks += reference_cases.forced_impact_checks(forced[-1])
+    steps, errors, order = reference_cases.contact_time_order(forced)
+    checks.append(
+        Check(
+            "R3",
+            "order of the contact times in the step",
+            "1",
+            2.0,
+            "average acceleration",
+            order,
+            ORDER_TOLERANCE,
+            scale=1.0,
+        )
+    )
+    rows = [
+        {"steps_per_second": rate, "step_s": step, "contact_time_error_s": error}
+        for rate, step, error in zip(STEPS, steps, errors, strict=True)
+    ]
+    return checks, rows
+
+
+def random_stop_checks(folder: Path, name: str) -> list[Check]:
+    """Return the Checks of one configuration of R11, "r11_stops_10" or "r11_stops_100"."""
+    config = load_config(folder / f"{name}.yaml")
+    omega = 2.0 * np.pi * build_model(config).full_mode_frequencies[0]
+    records = run(config)
+    checks = []
+    for sigma, load in zip(WHITE_SIGMA[name], load_values(config.grid), strict=True):
+        seeds = [record for record in records if record.attrs["load_rms_N"] == load]
+        checks += law_checks(
+            seeds,
+            sigma,
+            config.supports[0].stiffness_N_per_m / omega**2,
+            omega,
+            config.supports[0].gap_m,
+        )
+    return checks
+
+
+def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[dict]]:
+    """Return (Checks, rows of R3's order) of "frequencies", "impacts", "r11_stops_10" or
+    "r11_stops_100".
+
+    study: the configuration of the stand-in tube; folder: of the reference configurations.
+    """
+    if group == "frequencies":
+        return frequency_checks(study), []
+    if group == "impacts":
+        return impact_checks(folder)
+    return random_stop_checks(folder, group), []
