@@ -1,61 +1,80 @@
-# `make study`, `make test`, `make smoke`: each does all set-up first, into .venv, from requirements.lock. `make judges` runs the tests that
-# hold the project against other codes, in .venv-judges, from requirements-judges.lock (Python 3.11 on Linux; CalculiX, if wanted: ccx on the PATH).
-# `make benchmark` measures the project beside other codes, in .venv-benchmark, from requirements-benchmark.lock, and writes docs/performance.md.
-# Needs Python 3.11 or newer with venv and pip. PYTHON, JOBS and CONFIG can be given: `make study JOBS=8 CONFIG=config/mine.yaml`.
+# `make` lists the targets. Each sets up the environment that it needs first, from a lock file.
+# Needs Python 3.11 or newer with venv and pip. PYTHON, JOBS and CONFIG can be given:
+# `make study JOBS=8 CONFIG=config/mine.yaml`.
 
 PYTHON ?= python3
 JOBS ?= $(shell $(PYTHON) -c "import os; print(os.cpu_count() or 2)")
 CONFIG ?= config/study.yaml
 
-VENV := .venv
-BIN := $(VENV)/bin
-JUDGES := .venv-judges
-BENCHMARK := .venv-benchmark
-# Named after the content of the lock, so that a changed lock, and nothing else, makes the environment anew.
-ready = $(1)/ready-$(shell $(PYTHON) -c "import hashlib; print(hashlib.sha256(open('$(2)', 'rb').read()).hexdigest()[:16])")
-STAMP := $(call ready,$(VENV),requirements.lock)
-JUDGES_STAMP := $(call ready,$(JUDGES),requirements-judges.lock)
-BENCHMARK_STAMP := $(call ready,$(BENCHMARK),requirements-benchmark.lock)
+BIN := .venv/bin
+# A stamp is named after the content of its lock: a changed lock, and nothing else, makes the
+# environment anew. (1) environment, (2) lock.
+digest = $(shell $(PYTHON) -c "import hashlib; \
+	print(hashlib.sha256(open('$(1)', 'rb').read()).hexdigest()[:16])")
+stamp = $(1)/ready-$(call digest,$(2))
+READY := $(call stamp,.venv,requirements.lock)
+READY_JUDGES := $(call stamp,.venv-judges,requirements-judges.lock)
+READY_BENCHMARK := $(call stamp,.venv-benchmark,requirements-benchmark.lock)
 
-# An environment (1) from a lock (2), and in it the library itself: its folder on the path, so that an edit counts at once.
+# An environment (1) from a lock (2), with the library's own folder on its path.
 define environment
-@$(PYTHON) -c "import sys; sys.version_info >= (3, 11) or sys.exit('Python 3.11 or newer is needed, this is ' + sys.version.split()[0] + ': make PYTHON=python3.11')"
+@$(PYTHON) -c "import sys; sys.version_info >= (3, 11) or sys.exit('Python 3.11 or newer is' \
+	' needed, this is ' + sys.version.split()[0] + ': make PYTHON=python3.11')"
 rm -rf $(1)
 $(PYTHON) -m venv $(1)
-$(1)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r $(2)
-@$(1)/bin/python -c "import pathlib, sysconfig; pathlib.Path(sysconfig.get_path('purelib'), 'vibroimpact.pth').write_text(str(pathlib.Path('src').resolve()) + '\n')"
+$(1)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
+	-r $(2)
+@$(1)/bin/python workflow/put_library_on_path.py
 @touch $@
 endef
 
-.PHONY: study smoke test judges benchmark setup clean
+.DEFAULT_GOAL := help
+.PHONY: help study smoke test test-all lint format judges benchmark setup clean
 
-study: $(STAMP)
-	@test -f $(CONFIG) || { echo "CONFIG=$(CONFIG) is not a file: give the path of a configuration, such as config/study.yaml"; exit 1; }
+help: ## list the targets
+	@$(PYTHON) -c "import re; [print(f'make {name:<10} {text}') for name, text in \
+		re.findall(r'^([a-z-]+):.*?## (.*)', open('Makefile').read(), re.M)]"
+
+study: $(READY) ## the study of CONFIG: simulation, spectra, identification, tables, figures
 	$(BIN)/snakemake -j$(JOBS) --configfile $(CONFIG)
 
-smoke: $(STAMP)
+smoke: $(READY) ## the same study made tiny, in under a minute
 	$(BIN)/snakemake -j$(JOBS) --configfile config/smoke.yaml
 
-test: $(STAMP)
+test: $(READY) ## the fast tier of every kind of test, in parallel
 	$(BIN)/python -m pytest
 
-judges: $(JUDGES_STAMP)
-	$(JUDGES)/bin/python -m pytest tests/judges -rs
+test-all: $(READY) ## every test
+	$(BIN)/python -m pytest
 
-benchmark: $(BENCHMARK_STAMP)
-	$(BENCHMARK)/bin/python -m benchmarks.work_precision
-	$(BENCHMARK)/bin/python -m benchmarks
+lint: $(READY) ## formatting, static checks and types
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/snakefmt --check Snakefile workflow/rules
+	$(BIN)/mypy
 
-setup: $(STAMP)
+format: $(READY) ## format Python files and rules
+	$(BIN)/ruff check --fix --select I
+	$(BIN)/ruff format
+	$(BIN)/snakefmt Snakefile workflow/rules
 
-$(STAMP):
-	$(call environment,$(VENV),requirements.lock)
+judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
+	.venv-judges/bin/python -m pytest tests/judges -rs
 
-$(JUDGES_STAMP):
-	$(call environment,$(JUDGES),requirements-judges.lock)
+benchmark: $(READY_BENCHMARK) ## speed beside other codes: writes docs/performance.md
+	.venv-benchmark/bin/python -m benchmarks.work_precision
+	.venv-benchmark/bin/python -m benchmarks
 
-$(BENCHMARK_STAMP):
-	$(call environment,$(BENCHMARK),requirements-benchmark.lock)
+setup: $(READY) ## only the environment
 
-clean:
-	rm -rf results/*/ .snakemake
+clean: ## remove the results of one study: make clean STUDY=name (imported data stay)
+	@$(PYTHON) workflow/remove_study.py "$(STUDY)"
+
+$(READY):
+	$(call environment,.venv,requirements.lock)
+
+$(READY_JUDGES):
+	$(call environment,.venv-judges,requirements-judges.lock)
+
+$(READY_BENCHMARK):
+	$(call environment,.venv-benchmark,requirements-benchmark.lock)

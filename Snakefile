@@ -34,6 +34,7 @@ localrules:
 
 
 rule all:
+    """The whole study: simulation, spectra, identification, tables and every figure."""
     default_target: True
     input:
         targets(),
@@ -42,6 +43,7 @@ rule all:
 
 
 rule discrepancy:
+    """Compare a measured campaign with a model: --config campaign=FILE [model=FILE] [quick=yes]."""
     input:
         verdict=f"{DISCREPANCY}/verdict.json",
         model=f"{DISCREPANCY}/model_updated.yaml",

@@ -4,6 +4,7 @@ IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
 
 
 rule import_campaign:
+    """Turn a folder of raw measurements into a campaign file: --config import=FOLDER."""
     input:
         library=library("import_campaign"),
         folder=requested("import", "FOLDER"),
@@ -33,6 +34,7 @@ rule import_campaign:
 
 
 rule quicklook:
+    """Check and draw a campaign file, without a model: --config campaign=FILE."""
     input:
         library=library("quicklook"),
         campaign=requested("campaign", "FILE.nc"),

@@ -67,6 +67,7 @@ rule _suite_campaign:
 
 
 rule suite:
+    """Judge the discrepancy workflow on campaigns in which an effect is hidden: --config count=N."""
     input:
         library=library("suite"),
         template=f"{SOURCE}/vibroimpact/reports/suite_page.html",
@@ -101,6 +102,7 @@ rule suite:
 
 
 rule suite_difference:
+    """Judge a suite again with other seeds or lengths: --config draw=1 or seconds=49."""
     input:
         library=library("suite_difference"),
         plain=plain_verdicts(SUITE_SEED, SUITE, SUITE_CAMPAIGNS),

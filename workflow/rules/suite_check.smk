@@ -25,6 +25,7 @@ rule _suite_check_campaign:
 
 
 rule suite_check:
+    """Judge six small hidden effects in quick mode."""
     input:
         library=library("suite_check"),
         verdicts=[f"{SUITE_CHECK}/{name}/verdict.json" for name in CHECKS],

@@ -2,6 +2,7 @@
 
 
 rule timing:
+    """Where the time of a finished study went: table and figure."""
     input:
         library=library("timing"),
         benchmarks=[f"{RESULTS}/benchmarks/{job}.tsv" for job in jobs_of_study()],

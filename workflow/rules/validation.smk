@@ -138,6 +138,7 @@ rule _validation_prediction:
 
 
 rule validation:
+    """Reference cases, frequencies, convergence and the claims of the paper, on one page."""
     input:
         library=library("validation"),
         checks=PAGE_CHECKS,
