@@ -1,132 +1,204 @@
-"""What a configuration says about the forces: where they act and how they vary in time."""
+"""The keys of the forces: where they act and how they vary in time."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from .quantities import Band_Hz, Frequency_Hz, Name, Number, Section, Vector, choice, within
+from pydantic import Field
 
-Phase_deg = Annotated[
-    Number, within("in degrees, between -360 and 360", at_least=-360, at_most=360)
-]
+from .quantities import (
+    Band_Hz,
+    By_kind,
+    Direction,
+    Frequency_Hz,
+    Name,
+    Number,
+    Phase_deg,
+    Section,
+    Unit,
+    Vector,
+)
+
+Factor = Annotated[Number, Unit("1")]
+DIRECTION = "Direction of the force. Its length does not matter."
 
 
 class ForcePoint(Section):
-    """One more point that the force of the case acts at: factor times the force, along the
-    direction.
-    """
+    """One more point that the force of the case acts at."""
 
-    point: Name
-    direction: Vector
-    factor: Number = 1.0
+    point: Name = Field(description="Named point.", examples=["apex"])
+    direction: Direction = Field(description=DIRECTION, examples=[[0.0, 1.0, 0.0]])
+    factor: Factor = Field(
+        1.0, description="Force at this point over the force of the case.", examples=[0.5]
+    )
 
 
 class Distributed(Section):
-    """A part of the tube that the force of the case is spread over, factor_per_m times the force on
-    each metre.
-    """
+    """A stretch of the tube that the force of the case is spread over."""
 
-    from_m: Vector
-    to_m: Vector
-    direction: Vector
-    factor_per_m: Number
+    from_m: Vector = Field(
+        description="Position of one end of the stretch, within 5 mm of the centreline.",
+        examples=[[-0.30, 0.0, 0.50]],
+    )
+    to_m: Vector = Field(
+        description="Position of the other end, within 5 mm of the centreline.",
+        examples=[[-0.30, 0.0, 0.60]],
+    )
+    direction: Direction = Field(description=DIRECTION, examples=[[0.0, 1.0, 0.0]])
+    factor_per_m: Number = Field(
+        description="Force per metre over the force of the case.", examples=[10.0]
+    )
 
 
 class DeadLoad(Section):
     """A constant force at a point."""
 
-    point: Name
-    direction: Vector
-    force_N: Number
+    point: Name = Field(description="Named point.", examples=["apex"])
+    direction: Direction = Field(description=DIRECTION, examples=[[0.0, 0.0, -1.0]])
+    force_N: Number = Field(
+        description="Force along the direction, the same in all cases.", examples=[2.0]
+    )
+
+
+CONSTANT = "Constant forces, the same in all cases."
 
 
 class Forces(Section):
-    """Where the force of the case acts: factor times the force at the point, and what is listed
-    under `also` and `distributed`.
+    """Where the force of the case acts: at a point, and at what `also` and `distributed` list."""
 
-    turn_deg: angle by which the force at the point acts away from its stated direction,
-    right-handed about turn_about: z, or the tangent of the tube there.
-    """
+    point: Name = Field(description="Named point that the force acts at.", examples=["shaker"])
+    direction: Direction = Field(description=DIRECTION, examples=[[0.0, 1.0, 0.0]])
+    turn_deg: Phase_deg = Field(
+        0.0,
+        description="Angle by which the force at the point is turned away from `direction`,"
+        " right-handed about the axis `turn_about`.",
+        examples=[2.0],
+    )
+    turn_about: Literal["z", "tube"] = Field(
+        "z",
+        description="Axis of turn_deg: the global z axis, or the tangent of the tube at the point.",
+        examples=["z"],
+    )
+    factor: Factor = Field(
+        1.0, description="Force at the point over the force of the case.", examples=[1.0]
+    )
+    also: tuple[ForcePoint, ...] = Field((), description="More points that the same force acts at.")
+    distributed: tuple[Distributed, ...] = Field(
+        (), description="Stretches of a tube that the same force is spread over."
+    )
+    constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
 
-    point: Name
-    direction: Vector
-    turn_deg: Phase_deg = 0.0
-    turn_about: Literal["z", "tube"] = "z"
-    factor: Number = 1.0
-    also: tuple[ForcePoint, ...] = ()
-    distributed: tuple[Distributed, ...] = ()
-    constant: tuple[DeadLoad, ...] = ()
+
+BAND = (
+    "Band in which the one-sided PSD is flat; outside it is 0. Give at least 20"
+    " integration.steps_per_second per period of its upper end."
+)
+HARMONIC = "Frequency of the sine."
+PHASE = (
+    "Phase of the sine, sqrt(2) load sin(2 pi f t + phase). t = 0 at the start of the record; where"
+    " record.every_step is true, at the start of the run."
+)
 
 
 class BandLimited(Forces):
-    """A Gaussian force with a flat one-sided PSD in a band."""
+    """A Gaussian force with a flat one-sided PSD in a band. It is scaled so that its RMS over the
+    record is exactly the load of the case.
+    """
 
-    kind: Literal["band_limited"]
-    band_Hz: Band_Hz
+    kind: Literal["band_limited"] = Field(
+        description="This kind of excitation.", examples=["band_limited"]
+    )
+    band_Hz: Band_Hz = Field(description=BAND, examples=[[5.0, 200.0]])
 
 
 class Measured(Forces):
-    """A measured force record (netCDF, CSV or MAT), scaled to the load of the case."""
+    """A measured force. It is resampled to the integration step and scaled so that its RMS over the
+    record is exactly the load of the case. It must last for start-up and record.
+    """
 
-    kind: Literal["measured"]
-    file: str
-    variable: str
-    sampling_frequency_Hz: Frequency_Hz | None = None
+    kind: Literal["measured"] = Field(description="This kind of excitation.", examples=["measured"])
+    file: str = Field(
+        description="File of the force: netCDF (.nc), CSV with a header line (.csv) or MATLAB v5"
+        " (.mat), from the folder where the study is run.",
+        examples=["measurements/force.csv"],
+    )
+    variable: str = Field(description="Name of the variable or column.", examples=["force"])
+    sampling_frequency_Hz: Frequency_Hz | None = Field(
+        None,
+        description="Sampling frequency. Needed only where the file does not give it, by an"
+        " attribute or a time column.",
+        examples=[2048.0],
+    )
 
 
 class Harmonic(Forces):
-    """A sine: sqrt(2) load sin(2 pi frequency t + phase), t = 0 at the start of the record (of the
-    run where every step is kept).
-    """
+    """A sine whose RMS is the load of the case."""
 
-    kind: Literal["harmonic"]
-    frequency_Hz: Frequency_Hz
-    phase_deg: Phase_deg = 0.0
+    kind: Literal["harmonic"] = Field(description="This kind of excitation.", examples=["harmonic"])
+    frequency_Hz: Frequency_Hz = Field(description=HARMONIC, examples=[20.0])
+    phase_deg: Phase_deg = Field(0.0, description=PHASE, examples=[90.0])
 
 
 class WhiteNoise(Forces):
-    """An independent Gaussian value at every step: one-sided PSD 2 load² / steps_per_second."""
+    """White noise: an independent Gaussian value at every integration step, whose standard
+    deviation is the load of the case. The one-sided PSD is 2 load² / integration.steps_per_second,
+    in N²/Hz, so that for a given PSD the load grows with the square root of the steps per second.
+    The RMS of one record is the load on average only: records are not scaled to it.
+    """
 
-    kind: Literal["white_noise"]
+    kind: Literal["white_noise"] = Field(
+        description="This kind of excitation.", examples=["white_noise"]
+    )
 
 
 class Still(Section):
-    """No force that varies: free motion from the initial state, under dead loads if there are any.
-    The load of a case means nothing.
+    """No force that varies: free motion from the initial state, under constant forces if there are
+    any. The load of a case has no effect.
     """
 
-    kind: Literal["none"]
-    constant: tuple[DeadLoad, ...] = ()
+    kind: Literal["none"] = Field(description="This kind of excitation.", examples=["none"])
+    constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
 
 
 class BandSignal(Section):
     """A Gaussian signal with a flat one-sided PSD in a band."""
 
-    kind: Literal["band_limited"]
-    band_Hz: Band_Hz
+    kind: Literal["band_limited"] = Field(
+        description="This kind of signal.", examples=["band_limited"]
+    )
+    band_Hz: Band_Hz = Field(description=BAND, examples=[[5.0, 200.0]])
 
 
 class HarmonicSignal(Section):
-    """A sine of the case's RMS."""
+    """A sine."""
 
-    kind: Literal["harmonic"]
-    frequency_Hz: Frequency_Hz
-    phase_deg: Phase_deg = 0.0
+    kind: Literal["harmonic"] = Field(description="This kind of signal.", examples=["harmonic"])
+    frequency_Hz: Frequency_Hz = Field(description=HARMONIC, examples=[20.0])
+    phase_deg: Phase_deg = Field(0.0, description=PHASE, examples=[0.0])
 
 
 class BaseMotion(Section):
-    """The acceleration of all that holds the structure; the load of a case is its RMS in m/s² (N
-    per kg).
-
-    obstacles: `moving` with the base, or `fixed` in space. Displacements of sensors are relative to
-    the base; those of contacts with fixed obstacles are absolute.
+    """An acceleration of all that holds the structure. The load of a case is its RMS in m/s².
+    Displacements of sensors are relative to the base.
     """
 
-    kind: Literal["base_motion"]
-    direction: Vector
-    obstacles: Literal["moving", "fixed"] = "moving"
-    signal: choice(BandSignal, HarmonicSignal)
-    constant: tuple[DeadLoad, ...] = ()
+    kind: Literal["base_motion"] = Field(
+        description="This kind of excitation.", examples=["base_motion"]
+    )
+    direction: Direction = Field(
+        description="Direction of the acceleration. Its length does not matter.",
+        examples=[[1.0, 0.0, 0.0]],
+    )
+    obstacles: Literal["moving", "fixed"] = Field(
+        "moving",
+        description="Whether the obstacles of the supports move with the base or are fixed in"
+        " space. Displacements of contacts with fixed obstacles are absolute.",
+        examples=["moving"],
+    )
+    signal: Annotated[BandSignal | HarmonicSignal, By_kind] = Field(
+        description="How the acceleration varies in time."
+    )
+    constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
 
 
-Excitation = choice(BandLimited, Measured, Harmonic, WhiteNoise, Still, BaseMotion)
+Excitation = Annotated[BandLimited | Measured | Harmonic | WhiteNoise | Still | BaseMotion, By_kind]

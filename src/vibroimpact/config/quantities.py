@@ -1,26 +1,30 @@
-"""The quantities that a configuration may hold: each with its range and the remedy when a value is
-outside.
+"""The types of configuration values: each has its range, its unit where the key's name does not
+end with it, and a remedy for values out of range.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import (
-    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
     Tag,
 )
-from pydantic_core import PydanticCustomError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 
 class Section(BaseModel):
-    """A block of keys: immutable, and a key that is not declared is an error."""
+    """A block of keys. It is immutable, and a key that is not declared is an error."""
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, protected_namespaces=()
@@ -28,7 +32,7 @@ class Section(BaseModel):
 
 
 def _refuse_bool(value: Any) -> Any:
-    """The value itself; YAML's `yes` and `true` would otherwise pass as the number 1."""
+    """Return the value; a bool, which pydantic would take for 0 or 1, is an error."""
     if isinstance(value, bool):
         raise PydanticCustomError("number", "must be a number, not yes/no")
     return value
@@ -38,132 +42,208 @@ Number = Annotated[float, BeforeValidator(_refuse_bool)]
 Whole = Annotated[int, BeforeValidator(_refuse_bool)]
 
 
-def within(
-    remedy: str,
-    above: float | None = None,
-    at_least: float | None = None,
-    at_most: float | None = None,
-    below: float | None = None,
-) -> AfterValidator:
-    """A validator for `above < value`, `at_least <= value <= at_most`, `value < below`; its message
-    ends with the remedy.
-    """
-    bounds = [
-        (above, ">", lambda value, bound: value > bound),
-        (at_least, ">=", lambda value, bound: value >= bound),
-        (at_most, "<=", lambda value, bound: value <= bound),
-        (below, "<", lambda value, bound: value < bound),
-    ]
+@dataclass(frozen=True)
+class Unit:
+    """The unit of a value whose key does not end with it; "1" for a number without unit."""
 
-    def check(value: float) -> float:
-        for bound, sign, holds in bounds:
-            if bound is not None and not holds(value, bound):
+    symbol: str
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A check that runs after the type's own, and what it adds to the JSON schema."""
+
+    remedy: str
+
+    def check(self, value: Any) -> Any:
+        """Return the value. Raises PydanticCustomError with the remedy."""
+        raise NotImplementedError
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return the JSON schema keywords that state the same as the check."""
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Return the core schema with the check after the type's own."""
+        return core_schema.no_info_after_validator_function(self.check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Return the JSON schema of the type with the keywords of the check."""
+        return {**handler(schema), **self.json_keywords()}
+
+
+@dataclass(frozen=True)
+class Range(Checked):
+    """Bounds of a number: above < value, at_least <= value <= at_most, value < below."""
+
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    below: float | None = None
+
+    def check(self, value: float) -> float:
+        """Return the value. Raises PydanticCustomError when it is out of bounds."""
+        for sign, bound, holds in (
+            (">", self.above, lambda bound: value > bound),
+            (">=", self.at_least, lambda bound: value >= bound),
+            ("<=", self.at_most, lambda bound: value <= bound),
+            ("<", self.below, lambda bound: value < bound),
+        ):
+            if bound is not None and not holds(bound):
                 raise PydanticCustomError(
                     "range",
                     "must be {rule}: {remedy}",
-                    {"rule": f"{sign} {bound:g}", "remedy": remedy},
+                    {"rule": f"{sign} {bound:g}", "remedy": self.remedy},
                 )
         return value
 
-    return AfterValidator(check)
+    def bounds(self) -> list[tuple[str, float]]:
+        """Return [(sign, bound)] of the bounds there are."""
+        every = (
+            (">", self.above),
+            ("≥", self.at_least),
+            ("≤", self.at_most),
+            ("<", self.below),
+        )
+        return [(sign, bound) for sign, bound in every if bound is not None]
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return minimum, maximum and their exclusive forms."""
+        names = {
+            ">": "exclusiveMinimum",
+            "≥": "minimum",
+            "≤": "maximum",
+            "<": "exclusiveMaximum",
+        }
+        return {names[sign]: bound for sign, bound in self.bounds()}
 
 
-Diameter_m = Annotated[Number, within("in metres? 22.22 mm is 0.02222", above=0, at_most=2)]
-Wall_m = Annotated[Number, within("in metres? 1.27 mm is 0.00127", above=0, at_most=1)]
-Length_m = Annotated[Number, within("give the length in metres", above=0, at_most=1000)]
-Height_m = Annotated[Number, within("in metres? 30 mm is 0.030", above=0, at_most=5)]
-Gap_m = Annotated[Number, within("give the radial clearance in metres", above=0)]
-Youngs_modulus_Pa = Annotated[
-    Number, within("in Pa? 202 GPa is 2.02e11", at_least=1e6, at_most=1e13)
-]
-Stress_Pa = Annotated[Number, within("in Pa? 240 MPa is 240.0e6", at_least=1e4)]
-Poisson_ratio = Annotated[Number, within("0.3 for most metals", at_least=0, below=0.5)]
-Density = Annotated[Number, within("in kg/m3? 8.33 g/cm3 is 8330", at_least=10, at_most=3e4)]
-Shear_coefficient = Annotated[
-    Number, within("the effective part of the section: 0.53 for a thin tube", above=0, at_most=1)
-]
-Stiffness = Annotated[Number, within("give the stiffness in N/m", above=0)]
-Rotation_stiffness = Annotated[Number, within("give the stiffness in N m/rad", above=0)]
-Positive_factor = Annotated[Number, within("give a positive factor", above=0)]
-Coefficient = Annotated[Number, within("a damping coefficient is not negative", at_least=0)]
-Damping_ratio = Annotated[
-    Number, within("a fraction, not per cent: 1.5 % is 0.015", at_least=0, below=0.3)
-]
-Force_N = Annotated[Number, within("give the force in newtons RMS", above=0, at_most=1e6)]
-Frequency_Hz = Annotated[Number, within("give the frequency in Hz", above=0, at_most=1e7)]
-Lowest_frequency_Hz = Annotated[Number, within("give the frequency in Hz", at_least=0, at_most=1e7)]
-Duration_s = Annotated[Number, within("give the duration in seconds", above=0, at_most=1e5)]
-Start_up_s = Annotated[
-    Number, within("give the duration in seconds, 0 for none", at_least=0, at_most=1e5)
-]
-Fraction_of_gap = Annotated[
-    Number, within("a small fraction of the gap: 1.0e-6", at_least=0, at_most=0.1)
-]
-Overlap = Annotated[
-    Number, within("a fraction, not per cent: 65 % is 0.65", at_least=0, at_most=0.95)
-]
-Angle_deg = Annotated[Number, within("in degrees: half a turn is 180", above=0, at_most=360)]
+@dataclass(frozen=True)
+class Length(Checked):
+    """The number of values of a list."""
 
+    count: int
 
-def count(at_least: int, at_most: int, remedy: str) -> Any:
-    """The type of a whole number between two bounds."""
-    return Annotated[Whole, within(remedy, at_least=at_least, at_most=at_most)]
-
-
-def row(element: Any, length: int, remedy: str) -> Any:
-    """The type of a list of `length` elements; its message for another length ends with the
-    remedy.
-    """
-
-    def check(value: tuple) -> tuple:
-        if len(value) != length:
+    def check(self, value: tuple) -> tuple:
+        """Return the value. Raises PydanticCustomError when it has another length."""
+        if len(value) != self.count:
             raise PydanticCustomError(
-                "length", "has {count} values: {remedy}", {"count": len(value), "remedy": remedy}
+                "length",
+                "has {count} values: {remedy}",
+                {"count": len(value), "remedy": self.remedy},
             )
         return value
 
-    return Annotated[tuple[element, ...], AfterValidator(check)]
+    def json_keywords(self) -> dict[str, Any]:
+        """Return minItems and maxItems."""
+        return {"minItems": self.count, "maxItems": self.count}
 
 
-def named(pattern: str, remedy: str) -> Any:
-    """The type of a text that matches a pattern; its message says what is allowed."""
+@dataclass(frozen=True)
+class Pattern(Checked):
+    """A regular expression that the whole text matches; the remedy says what is allowed."""
 
-    def check(value: str) -> str:
-        if not re.fullmatch(pattern, value):
-            raise PydanticCustomError("name", "must be {remedy}", {"remedy": remedy})
+    expression: str
+
+    def check(self, value: str) -> str:
+        """Return the value. Raises PydanticCustomError when it does not match."""
+        if not re.fullmatch(self.expression, value):
+            raise PydanticCustomError("name", "must be {remedy}", {"remedy": self.remedy})
         return value
 
-    return Annotated[str, AfterValidator(check)]
+    def json_keywords(self) -> dict[str, Any]:
+        """Return the pattern."""
+        return {"pattern": f"^(?:{self.expression})$"}
 
 
-Name = named("[A-Za-z][A-Za-z0-9_]*", "a name of letters, digits and _ that begins with a letter")
-Study_name = named("[A-Za-z0-9][A-Za-z0-9_-]*", "a folder name of letters, digits, _ and -")
-Vector = row(Number, 3, "give three, along x, y and z")
-Pair = row(Number, 2, "give two, along the support's transverse directions")
-Band_Hz = row(Lowest_frequency_Hz, 2, "give two, the lower end and the upper end in Hz")
-Stiffness_range = row(Stiffness, 2, "give two, the lowest and the highest stiffness in N/m")
+Diameter_m = Annotated[Number, Range("in metres? 22.22 mm is 0.02222", above=0, at_most=2)]
+Wall_m = Annotated[Number, Range("in metres? 1.27 mm is 0.00127", above=0, at_most=1)]
+Length_m = Annotated[Number, Range("give the length in metres", above=0, at_most=1000)]
+Height_m = Annotated[Number, Range("in metres? 30 mm is 0.030", above=0, at_most=5)]
+Gap_m = Annotated[Number, Range("give the radial clearance in metres", above=0)]
+Youngs_modulus_Pa = Annotated[
+    Number, Range("in Pa? 202 GPa is 2.02e11", at_least=1e6, at_most=1e13)
+]
+Stress_Pa = Annotated[Number, Range("in Pa? 240 MPa is 240.0e6", at_least=1e4)]
+Poisson_ratio = Annotated[Number, Range("0.3 for most metals", at_least=0, below=0.5), Unit("1")]
+Density = Annotated[Number, Range("in kg/m3? 8.33 g/cm3 is 8330", at_least=10, at_most=3e4)]
+Shear_coefficient = Annotated[
+    Number,
+    Range("the effective part of the section: 0.53 for a thin tube", above=0, at_most=1),
+    Unit("1"),
+]
+Stiffness = Annotated[Number, Range("give the stiffness in N/m", above=0)]
+Rotation_stiffness = Annotated[Number, Range("give the stiffness in N m/rad", above=0)]
+Mass_kg = Annotated[Number, Range("give the mass in kg", above=0)]
+Positive_factor = Annotated[Number, Range("give a positive factor", above=0), Unit("1")]
+Coefficient = Annotated[Number, Range("a damping coefficient is not negative", at_least=0)]
+Non_negative = Annotated[Number, Range("give 0 for none", at_least=0)]
+Damping_ratio = Annotated[
+    Number,
+    Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, below=0.3),
+    Unit("1"),
+]
+Force_N = Annotated[Number, Range("give the force in newtons RMS", above=0, at_most=1e6)]
+Frequency_Hz = Annotated[Number, Range("give the frequency in Hz", above=0, at_most=1e7)]
+Lowest_frequency_Hz = Annotated[Number, Range("give the frequency in Hz", at_least=0, at_most=1e7)]
+Duration_s = Annotated[Number, Range("give the duration in seconds", above=0, at_most=1e5)]
+Start_up_s = Annotated[
+    Number, Range("give the duration in seconds, 0 for none", at_least=0, at_most=1e5)
+]
+Fraction_of_gap = Annotated[
+    Number, Range("a small fraction of the gap: 1.0e-6", at_least=0, at_most=0.1), Unit("1")
+]
+Overlap = Annotated[
+    Number,
+    Range("a fraction, not per cent: 65 % is 0.65", at_least=0, at_most=0.95),
+    Unit("1"),
+]
+Angle_deg = Annotated[Number, Range("in degrees: half a turn is 180", above=0, at_most=360)]
+Phase_deg = Annotated[Number, Range("in degrees, between -360 and 360", at_least=-360, at_most=360)]
+
+Name = Annotated[
+    str,
+    Pattern("a name of letters, digits and _ that begins with a letter", "[A-Za-z][A-Za-z0-9_]*"),
+]
+Study_name = Annotated[
+    str, Pattern("a folder name of letters, digits, _ and -", "[A-Za-z0-9][A-Za-z0-9_-]*")
+]
 Axis = Literal["x", "y", "z"]
+Vector = Annotated[tuple[Number, ...], Length("give three, along x, y and z", 3)]
+Direction = Annotated[Vector, Unit("1")]
+Position = Annotated[Vector, Unit("m")]
+Pair = Annotated[
+    tuple[Number, ...], Length("give two, along the support's transverse directions", 2)
+]
+Band_Hz = Annotated[
+    tuple[Lowest_frequency_Hz, ...],
+    Length("give two, the lower end and the upper end in Hz", 2),
+]
+Stiffness_range = Annotated[
+    tuple[Stiffness, ...],
+    Length("give two, the lowest and the highest stiffness in N/m", 2),
+]
+Not_empty = Field(min_length=1)
+By_kind = Field(discriminator="kind")
 
 
-def one_or_list(one: Any, many: Any, depth: int = 1) -> Any:
-    """The type of a key that takes one value, or a list of them (one per contact point).
-
-    depth: how many lists one value consists of already: 1 for a number, 2 for a pair of numbers.
-    """
+def _shape_at(depth: int) -> Callable[[Any], str]:
+    """Return the function that says whether a value, inside `depth` lists, is "one" or a "list"."""
 
     def shape(value: Any) -> str:
-        for _ in range(depth - 1):
+        for _ in range(depth):
             value = value[0] if isinstance(value, (list, tuple)) and value else None
         return "list" if isinstance(value, (list, tuple)) else "one"
 
-    return Annotated[
-        Annotated[one, Tag("one")] | Annotated[many, Tag("list")], Discriminator(shape)
-    ]
+    return shape
 
 
-def choice(*sections: Any) -> Any:
-    """The type of a section whose key `kind` says which keys it has."""
-    union = sections[0]
-    for section in sections[1:]:
-        union = union | section
-    return Annotated[union, Field(discriminator="kind")]
+# A key that takes one value or a list of them is
+# Annotated[Annotated[X, One] | Annotated[tuple[X, ...], List], One_or_list].
+One, List = Tag("one"), Tag("list")
+One_or_list = Discriminator(_shape_at(0))
+One_or_list_of_pairs = Discriminator(_shape_at(1))

@@ -1,5 +1,8 @@
-"""The only declaration of the configuration's keys, units, ranges and defaults (the structure's are
-in config_structure).
+"""The declaration of the configuration: every key with its type, unit, range, default, meaning and
+an example. The keys of the structure, the supports and the excitation are in the modules of those
+names.
+
+The checks, the JSON schema and the key reference all read this declaration.
 """
 
 from __future__ import annotations
@@ -17,19 +20,23 @@ from .quantities import (
     Fraction_of_gap,
     Frequency_Hz,
     Gap_m,
+    List,
     Name,
+    Not_empty,
     Number,
+    One,
+    One_or_list,
     Overlap,
+    Position,
     Positive_factor,
+    Range,
     Section,
     Start_up_s,
     Stiffness_range,
     Stress_Pa,
     Study_name,
-    Vector,
-    count,
-    one_or_list,
-    within,
+    Unit,
+    Whole,
 )
 from .structure import Damping, ModalDamping, Structure
 from .supports import Initial, LocalElement, PointMass, Support
@@ -39,139 +46,321 @@ SILVERBOX_DATA = "../shared/data/silverbox"
 
 
 class Basis(Section):
-    """What spans the reduced model."""
+    """The vectors that span the reduced model of a tube, or of matrices with more than 400 degrees
+    of freedom. Smaller structures keep all their modes.
+    """
 
-    free_modes_to_Hz: Frequency_Hz = 7500.0
-    constrained_modes_to_Hz: Frequency_Hz = 1000.0
-    attachment_shapes: bool = True
+    free_modes_to_Hz: Frequency_Hz = Field(
+        7500.0,
+        description="Modes of the structure without contact are kept up to this frequency.",
+        examples=[7500.0],
+    )
+    constrained_modes_to_Hz: Frequency_Hz = Field(
+        1000.0,
+        description="Modes with all contact points held in both transverse directions, and all"
+        " local elements held, are kept up to this frequency.",
+        examples=[1000.0],
+    )
+    attachment_shapes: bool = Field(
+        True,
+        description="Whether the static responses to a unit force at each contact point and local"
+        " element are kept.",
+        examples=[True],
+    )
 
 
 class Integration(Section):
-    """Scheme and step, start-up before the record, and the seeded initial offset as a fraction of
-    the gap.
-    """
+    """The integration in time."""
 
-    scheme: Literal["exact", "newmark"] = "exact"
-    steps_per_second: count(
-        100, 10**8, "20480 with the exact modal step; the paper's 2e-5 s is 50000 steps per second"
-    ) = 20480
-    start_up_s: Start_up_s = 6.0
-    imperfection: Fraction_of_gap = 1.0e-6
+    scheme: Literal["exact", "newmark"] = Field(
+        "exact",
+        description="Step of a mode: `exact` for a force that is linear over the step, or"
+        " `newmark`, average acceleration (beta = 1/4, gamma = 1/2).",
+        examples=["exact"],
+    )
+    steps_per_second: Annotated[
+        Whole,
+        Range(
+            "20480 with the exact modal step; the paper's 2e-5 s is 50000 steps per second",
+            at_least=100,
+            at_most=10**8,
+        ),
+    ] = Field(
+        20480,
+        description="Integration steps per second: 5 times a whole multiple of"
+        " record.sampling_frequency_Hz, unless record.every_step is true.",
+        examples=[20480],
+    )
+    start_up_s: Start_up_s = Field(
+        6.0,
+        description="Duration that is simulated before the record and then discarded.",
+        examples=[6.0],
+    )
+    imperfection: Fraction_of_gap = Field(
+        1.0e-6,
+        description="Largest random offset of each obstacle's centre in each transverse direction,"
+        " as a fraction of the gap of the case. Every seed draws its own. The offsets couple the"
+        " two directions of motion of a perfectly symmetric structure.",
+        examples=[1.0e-6],
+    )
 
 
 class LogSpaced(Section):
-    """`count` values from `first` to `last`, evenly spaced in logarithm."""
+    """Values evenly spaced in logarithm."""
 
-    first: Force_N
-    last: Force_N
-    count: count(1, 10**4, "the number of loads")
+    first: Annotated[Force_N, Unit("N")] = Field(description="Smallest value.", examples=[0.05])
+    last: Annotated[Force_N, Unit("N")] = Field(description="Largest value.", examples=[20.0])
+    count: Annotated[Whole, Range("the number of loads", at_least=1, at_most=10**4)] = Field(
+        description="Number of values, both ends included.", examples=[24]
+    )
 
 
 class Grid(Section):
     """The cases of the study: every load with every gap and every seed."""
 
-    load_rms_N: one_or_list(LogSpaced, Annotated[tuple[Force_N, ...], Field(min_length=1)])
-    gap_m: Annotated[tuple[Gap_m, ...], Field(min_length=1)]
-    seeds: count(1, 10**4, "the number of seeds: 4 give a scatter") = 4
+    load_rms_N: Annotated[
+        Annotated[LogSpaced, One] | Annotated[Annotated[tuple[Force_N, ...], Not_empty], List],
+        One_or_list,
+    ] = Field(
+        description="Loads: the RMS of the force in N, or of the acceleration in m/s² for base"
+        " motion. A list, or first, last and count of log-spaced values.",
+        examples=[[0.5, 2.0, 5.0, 20.0]],
+    )
+    gap_m: Annotated[tuple[Gap_m, ...], Not_empty] = Field(
+        description="Gaps: the radial clearance between the centred structure and its supports.",
+        examples=[[2.8886e-4, 5.1106e-5]],
+    )
+    seeds: Annotated[
+        Whole, Range("the number of seeds: 4 give a scatter", at_least=1, at_most=10**4)
+    ] = Field(
+        4,
+        description="Number of independent realisations of the force. They are numbered from 0.",
+        examples=[4],
+    )
 
 
 class Sensors(Section):
-    """Named points and directions whose displacement and acceleration are kept."""
+    """What the simulation records, at named points: displacement and acceleration."""
 
-    points: Annotated[tuple[Name, ...], Field(min_length=1)]
-    directions: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("x", "y")
+    points: Annotated[tuple[Name, ...], Not_empty] = Field(
+        description="Named points.", examples=[["apex", "bend_45"]]
+    )
+    directions: Annotated[tuple[Axis, ...], Not_empty] = Field(
+        ("x", "y"),
+        description="Directions recorded at each point.",
+        examples=[["x", "y"]],
+    )
 
 
 class ShapeLine(Section):
-    """Points evenly spaced in arc length from end to end (ends excluded), for the deflection
-    shape.
+    """Points of a tube whose displacement is recorded for the operational deflection shape: evenly
+    spaced in arc length from end to end, the ends left out.
     """
 
-    points: count(3, 2000, "25 points or more draw the shape") = 27
-    direction: Axis = "y"
+    points: Annotated[
+        Whole, Range("25 points or more draw the shape", at_least=3, at_most=2000)
+    ] = Field(27, description="Number of points.", examples=[27])
+    direction: Axis = Field(
+        "y",
+        description="Direction of the displacement, one of record.sensors.directions.",
+        examples=["y"],
+    )
 
 
 class RecordKeys(Section):
-    """What a case keeps, and how it is sampled; every_step: contacts and elements at each step,
-    unfiltered, in place of all else.
-    """
+    """What is recorded of a case, and how it is sampled."""
 
-    duration_s: Duration_s = 49.0
-    sampling_frequency_Hz: Frequency_Hz = 2048
-    sensors: Sensors | None = None
-    shape_line: ShapeLine = ShapeLine()
-    stress_limit_Pa: Stress_Pa = 240.0e6
-    keep_time_series: bool = False
-    every_step: bool = False
+    duration_s: Duration_s = Field(
+        49.0, description="Duration of the record, after the start-up.", examples=[49.0]
+    )
+    sampling_frequency_Hz: Frequency_Hz = Field(
+        2048, description="Sampling frequency of the record.", examples=[2048]
+    )
+    sensors: Sensors | None = Field(
+        None,
+        description="Sensors. A tube needs them; for other structures, null records every"
+        " direction of every named point.",
+    )
+    shape_line: ShapeLine = Field(ShapeLine(), description="Points of the deflection shape.")
+    stress_limit_Pa: Stress_Pa = Field(
+        240.0e6,
+        description="Bending stress of the outer fibre above which a case is flagged. It changes"
+        " no result.",
+        examples=[240.0e6],
+    )
+    keep_time_series: bool = Field(
+        False,
+        description="Whether time series are written to files. Spectra and statistics always are.",
+        examples=[False],
+    )
+    every_step: bool = Field(
+        False,
+        description="True records displacement and force of contacts and local elements at each"
+        " integration step, unfiltered, in place of everything else. For short runs, with"
+        " integration.start_up_s = 0.",
+        examples=[False],
+    )
 
 
 class Spectra(Section):
-    """Welch's averages: buffer, overlap, window."""
+    """Spectra by Welch's method. No trend is removed."""
 
-    segment_s: Duration_s = 10.0
-    overlap: Overlap = 0.65
-    window: Literal["hann", "boxcar"] = "hann"
+    segment_s: Duration_s = Field(10.0, description="Length of a segment.", examples=[10.0])
+    overlap: Overlap = Field(
+        0.65,
+        description="Overlap of neighbouring segments, as a fraction of a segment.",
+        examples=[0.65],
+    )
+    window: Literal["hann", "boxcar"] = Field(
+        "hann", description="Window of each segment.", examples=["hann"]
+    )
 
 
 class Lscf(Section):
-    """Band, highest polynomial order and reference points of the output-only LSCF."""
+    """The least-squares complex frequency-domain method (LSCF) on output spectra."""
 
-    band_Hz: Band_Hz = (8.0, 60.0)
-    max_order: count(2, 200, "24 is enough for a band with a handful of modes") = 24
-    references: Annotated[tuple[Name, ...], Field(min_length=1)]
+    band_Hz: Band_Hz = Field(
+        (8.0, 60.0), description="Band that the model is fitted in.", examples=[[8.0, 60.0]]
+    )
+    max_order: Annotated[
+        Whole,
+        Range("24 is enough for a band with a handful of modes", at_least=2, at_most=200),
+    ] = Field(
+        24,
+        description="Highest order of the polynomial, which the stabilisation diagram goes up to.",
+        examples=[24],
+    )
+    references: Annotated[tuple[Name, ...], Not_empty] = Field(
+        description="Reference points of the cross-spectra, all of them recorded.",
+        examples=[["apex", "bend_45"]],
+    )
 
 
 class Broadband(Section):
-    """Response point and band of the correlation of spectra."""
+    """The comparison of measured and computed spectra over a band."""
 
-    point: Name
-    band_Hz: Band_Hz = (6.0, 99.0)
+    point: Name = Field(description="Recorded point whose spectrum is used.", examples=["bend_45"])
+    band_Hz: Band_Hz = Field(
+        (6.0, 99.0),
+        description="Band of the comparison, inside the excited band.",
+        examples=[[6.0, 99.0]],
+    )
 
 
 class Identification(Section):
-    """Where the three identifications look."""
+    """Where the methods look for the equivalent support of a tube under a broadband force."""
 
-    response_point: Name
-    peak_search_Hz: Band_Hz = (8.0, 45.0)
-    lscf: Lscf
-    broadband: Broadband
-    stiffness_range_N_per_m: Stiffness_range = (1.0e3, 1.0e8)
+    response_point: Name = Field(
+        description="Recorded point whose PSD shows the main peak.", examples=["apex"]
+    )
+    peak_search_Hz: Band_Hz = Field(
+        (8.0, 45.0), description="Band in which the main peak is searched.", examples=[[8.0, 45.0]]
+    )
+    lscf: Lscf = Field(description="The pole by LSCF.")
+    broadband: Broadband = Field(description="The comparison of whole spectra.")
+    stiffness_range_N_per_m: Stiffness_range = Field(
+        (1.0e3, 1.0e8),
+        description="Range of the equivalent stiffness that is searched. An estimate outside it is"
+        " reported as unresolved.",
+        examples=[[1.0e3, 1.0e8]],
+    )
 
 
 class Overlay(Section):
-    """The campaign laid over the simulation in figure 5: a measured file, or a synthetic one made
-    with these loads, gap and noise.
+    """The campaign that figure 5 draws over the simulation: a measured one, or a synthetic one made
+    from the study itself with another force, another gap and measuring noise.
     """
 
-    campaign: str | None = None
-    load_rms_N: Annotated[tuple[Force_N, ...], Field(min_length=1)] = (0.5, 2.0, 5.0, 20.0)
-    gap_ratio: Positive_factor = 1.05
+    campaign: str | None = Field(
+        None,
+        description="File of a measured campaign, from the folder where the study is run; null for"
+        " a synthetic one.",
+        examples=["campaigns/mine.nc"],
+    )
+    load_rms_N: Annotated[tuple[Force_N, ...], Not_empty] = Field(
+        (0.5, 2.0, 5.0, 20.0),
+        description="Loads to draw. For each, the nearest load of the grid is taken.",
+        examples=[[0.5, 2.0, 5.0, 20.0]],
+    )
+    gap_ratio: Positive_factor = Field(
+        1.05,
+        description="Gap of the synthetic campaign over the largest gap of the grid.",
+        examples=[1.05],
+    )
     noise: Annotated[
-        Number, within("a fraction of the channel's RMS: 1 % is 0.01", at_least=0, at_most=1)
-    ] = 0.01
-    seed: count(0, 10**6, "a seed that no case of the study has, such as 1000") = 1000
+        Number,
+        Range("a fraction of the channel's RMS: 1 % is 0.01", at_least=0, at_most=1),
+        Unit("1"),
+    ] = Field(
+        0.01,
+        description="RMS of the measuring noise of the synthetic campaign, as a fraction of the"
+        " largest channel RMS at the lowest load.",
+        examples=[0.01],
+    )
+    seed: Annotated[
+        Whole,
+        Range("a seed that no case of the study has, such as 1000", at_least=0, at_most=10**6),
+    ] = Field(
+        1000,
+        description="Seed of the force of the synthetic campaign. It must not be one of the"
+        " study's, 0 to grid.seeds - 1.",
+        examples=[1000],
+    )
 
 
 class Config(Section):
-    """A whole study. Results go to results/<study>/; seed is the entropy of every random stream."""
+    """A whole study."""
 
-    study: Study_name
-    seed: count(0, 2**63, "any whole number") = 2012
-    structure: Structure
-    damping: Damping = ModalDamping(kind="modal", first_ratios=(0.015, 0.015), other_ratio=0.002)
-    supports: tuple[Support, ...] = ()
-    elements: tuple[LocalElement, ...] = ()
-    masses: tuple[PointMass, ...] = ()
-    mode_frequency_factors: tuple[Positive_factor, ...] = ()
-    initial: Initial | None = None
-    points: dict[Name, Vector] = {}
-    excitation: Excitation
-    basis: Basis = Basis()
-    integration: Integration = Integration()
-    grid: Grid
-    record: RecordKeys
-    spectra: Spectra = Spectra()
-    identification: Identification | None = None
-    overlay: Overlay = Overlay()
-    f16_data: str = F16_DATA
-    silverbox_data: str = SILVERBOX_DATA
+    study: Study_name = Field(
+        description="Name of the study. Results go to the folder results/<study>.",
+        examples=["my_tube"],
+    )
+    seed: Annotated[Whole, Range("any whole number", at_least=0, at_most=2**63)] = Field(
+        2012, description="Entropy of every random stream of the study.", examples=[2012]
+    )
+    structure: Structure = Field(description="The structure without contact.")
+    damping: Damping = Field(
+        ModalDamping(kind="modal", first_ratios=(0.015, 0.015), other_ratio=0.002),
+        description="Damping of the structure without contact.",
+    )
+    supports: tuple[Support, ...] = Field((), description="Supports with a gap.")
+    elements: tuple[LocalElement, ...] = Field(
+        (), description="Force laws between a point and the ground, or between two points."
+    )
+    masses: tuple[PointMass, ...] = Field((), description="Masses added to the structure.")
+    mode_frequency_factors: tuple[Positive_factor, ...] = Field(
+        (),
+        description="Corrections of the first modes of the structure without contact, in the order"
+        " of their computed frequencies: measured over computed frequency.",
+        examples=[[1.02, 0.99]],
+    )
+    initial: Initial | None = Field(None, description="State at the start of a run; null for rest.")
+    points: dict[Name, Position] = Field(
+        {},
+        description="Names for positions on a tube, each within 5 mm of the centreline. Other"
+        " structures bring their own points.",
+        examples=[{"apex": [0.0, 0.0, 1.0]}],
+    )
+    excitation: Excitation = Field(description="The force.")
+    basis: Basis = Field(Basis(), description="The reduced model.")
+    integration: Integration = Field(Integration(), description="The integration in time.")
+    grid: Grid = Field(description="Loads, gaps and seeds.")
+    record: RecordKeys = Field(description="What is recorded.")
+    spectra: Spectra = Field(Spectra(), description="Spectral estimation.")
+    identification: Identification | None = Field(
+        None,
+        description="Identification of the equivalent support; null for a study that ends with its"
+        " statistics.",
+    )
+    overlay: Overlay = Field(Overlay(), description="The campaign of figure 5.")
+    f16_data: str = Field(
+        F16_DATA,
+        description="Folder with the records of the F-16 ground vibration test. Only the target"
+        " `f16` needs it.",
+        examples=[F16_DATA],
+    )
+    silverbox_data: str = Field(
+        SILVERBOX_DATA,
+        description="Folder with the Silverbox records. Only the target `silverbox` needs it.",
+        examples=[SILVERBOX_DATA],
+    )

@@ -1,5 +1,5 @@
-"""What a configuration says about the structure: centreline, section, material, ends, or masses and
-matrices; and its damping.
+"""The keys of the structure (a tube, a chain of masses, matrices or measured modes) and of its
+damping.
 """
 
 from __future__ import annotations
@@ -11,213 +11,324 @@ from pydantic import Field
 from .quantities import (
     Angle_deg,
     Axis,
+    By_kind,
     Coefficient,
     Damping_ratio,
     Density,
     Diameter_m,
+    Direction,
     Frequency_Hz,
+    Length,
     Length_m,
+    Mass_kg,
     Name,
+    Not_empty,
     Number,
     Poisson_ratio,
-    Positive_factor,
+    Range,
     Rotation_stiffness,
     Section,
     Shear_coefficient,
     Stiffness,
+    Unit,
     Vector,
     Wall_m,
+    Whole,
     Youngs_modulus_Pa,
-    choice,
-    count,
-    row,
-    within,
 )
 
 
 class TubeSection(Section):
-    """Cross-section of the tube; shear_coefficient is Cowper's, used by the Timoshenko theory
-    only.
-    """
+    """The circular cross-section of the tube."""
 
-    outer_diameter_m: Diameter_m
-    wall_thickness_m: Wall_m
-    shear_coefficient: Shear_coefficient = 0.53
+    outer_diameter_m: Diameter_m = Field(description="Outer diameter.", examples=[0.02222])
+    wall_thickness_m: Wall_m = Field(
+        description="Wall thickness, less than half the outer diameter.", examples=[0.00127]
+    )
+    shear_coefficient: Shear_coefficient = Field(
+        0.53,
+        description="Shear coefficient after Cowper (1966). Only the Timoshenko theory uses it.",
+        examples=[0.53],
+    )
 
 
 class Material(Section):
-    """Linear elastic material."""
+    """The linear elastic material of the tube."""
 
-    young_modulus_Pa: Youngs_modulus_Pa
-    poisson_ratio: Poisson_ratio
-    density_kg_per_m3: Density
+    young_modulus_Pa: Youngs_modulus_Pa = Field(description="Young's modulus.", examples=[2.02e11])
+    poisson_ratio: Poisson_ratio = Field(description="Poisson's ratio.", examples=[0.3])
+    density_kg_per_m3: Density = Field(
+        description="Mass of the tube per volume of its wall. The mass of a fluid inside or around"
+        " the tube can be included here.",
+        examples=[8330.0],
+    )
 
 
 class Mesh(Section):
-    """Number of elements of a span (stretch of a straight segment between ends and support edges)
-    and of a bend.
-    """
+    """The finite-element mesh of the tube. Segment ends and contact points are always nodes."""
 
-    elements_per_span: count(1, 2000, "20 elements per span is the stated mesh") = 20
-    elements_per_bend: count(1, 2000, "80 elements per bend is the stated mesh") = 80
+    elements_per_span: Annotated[
+        Whole, Range("20 elements per span is the stated mesh", at_least=1, at_most=2000)
+    ] = Field(
+        20,
+        description="Elements of each stretch of a straight segment between segment ends and"
+        " support edges.",
+        examples=[20],
+    )
+    elements_per_bend: Annotated[
+        Whole, Range("80 elements per bend is the stated mesh", at_least=1, at_most=2000)
+    ] = Field(
+        80,
+        description="Elements of each bend. Where supports cut the bend, its parts share the"
+        " elements by length.",
+        examples=[80],
+    )
 
 
 class Clamped(Section):
-    """An end that neither moves nor turns."""
+    """An end that neither moves nor rotates."""
 
-    kind: Literal["clamped"]
+    kind: Literal["clamped"] = Field(description="This kind of end.", examples=["clamped"])
 
 
 class Pinned(Section):
     """An end that does not move and does not twist, but bends freely."""
 
-    kind: Literal["pinned"]
+    kind: Literal["pinned"] = Field(description="This kind of end.", examples=["pinned"])
 
 
 class Free(Section):
-    """An end that is not held."""
+    """An end that is free."""
 
-    kind: Literal["free"]
+    kind: Literal["free"] = Field(description="This kind of end.", examples=["free"])
 
 
 class Springs(Section):
-    """An end on springs, the same in all three directions."""
+    """An end on springs that are equal in all three directions."""
 
-    kind: Literal["springs"]
-    translation_N_per_m: Stiffness
-    rotation_N_m_per_rad: Rotation_stiffness
+    kind: Literal["springs"] = Field(description="This kind of end.", examples=["springs"])
+    translation_N_per_m: Stiffness = Field(
+        description="Stiffness against displacement, in each direction.", examples=[1.0e8]
+    )
+    rotation_N_m_per_rad: Rotation_stiffness = Field(
+        description="Stiffness against rotation, about each axis.", examples=[1.0e5]
+    )
+
+
+Theory = Literal["timoshenko", "euler_bernoulli"]
+THEORY = "Beam theory: with shear deformation and rotary inertia (timoshenko) or without."
 
 
 class UTube(Section):
-    """A U-tube: legs along z at x = -+bend_radius_m from z = 0, apex on the z axis; out of plane is
-    y.
+    """A U-tube in the plane y = 0. Its legs run along z from z = 0 at x = -bend_radius_m and x =
+    +bend_radius_m, the apex is on the z axis, and y is out of plane.
     """
 
-    kind: Literal["u_tube"]
-    theory: Literal["timoshenko", "euler_bernoulli"] = "timoshenko"
-    section: TubeSection
-    material: Material
-    leg_length_m: Length_m
-    bend_radius_m: Length_m
-    mesh: Mesh = Mesh()
-    root: choice(Clamped, Pinned, Springs) = Clamped(kind="clamped")
+    kind: Literal["u_tube"] = Field(description="This kind of structure.", examples=["u_tube"])
+    theory: Theory = Field("timoshenko", description=THEORY, examples=["timoshenko"])
+    section: TubeSection = Field(description="Cross-section of the tube.")
+    material: Material = Field(description="Material of the tube.")
+    leg_length_m: Length_m = Field(
+        description="Length of each leg, from its root at z = 0 to the bend.", examples=[0.70]
+    )
+    bend_radius_m: Length_m = Field(
+        description="Radius of the centreline of the half-circular bend.", examples=[0.30]
+    )
+    mesh: Mesh = Field(Mesh(), description="Finite-element mesh.")
+    root: Annotated[Clamped | Pinned | Springs, By_kind] = Field(
+        Clamped(kind="clamped"), description="How both roots are held."
+    )
 
 
 class Straight(Section):
-    """A straight stretch of a path."""
+    """A straight segment of a path."""
 
-    kind: Literal["straight"]
-    length_m: Length_m
+    kind: Literal["straight"] = Field(description="This kind of segment.", examples=["straight"])
+    length_m: Length_m = Field(description="Length.", examples=[1.0])
 
 
 class Bend(Section):
-    """A circular arc of a path, turning towards the direction `toward`."""
+    """A circular arc of a path. It begins along the tangent of the segment before it."""
 
-    kind: Literal["bend"]
-    radius_m: Length_m
-    angle_deg: Angle_deg
-    toward: Vector
+    kind: Literal["bend"] = Field(description="This kind of segment.", examples=["bend"])
+    radius_m: Length_m = Field(description="Radius of the centreline.", examples=[0.2])
+    angle_deg: Angle_deg = Field(description="Angle of the arc.", examples=[90.0])
+    toward: Direction = Field(
+        description="Direction that the path turns to: from the beginning of the arc to its"
+        " centre. The part along the tangent is ignored.",
+        examples=[[0.0, 0.0, 1.0]],
+    )
 
 
 class Path(Section):
-    """A centreline of straight and bend segments, tangent to each other."""
+    """A tube along any path: straight and bend segments joined end to end with a continuous
+    tangent.
+    """
 
-    kind: Literal["path"]
-    theory: Literal["timoshenko", "euler_bernoulli"] = "timoshenko"
-    section: TubeSection
-    material: Material
-    start_m: Vector
-    start_direction: Vector
-    segments: Annotated[tuple[choice(Straight, Bend), ...], Field(min_length=1)]
-    mesh: Mesh = Mesh()
-    start: choice(Clamped, Pinned, Springs, Free) = Clamped(kind="clamped")
-    end: choice(Clamped, Pinned, Springs, Free) = Clamped(kind="clamped")
+    kind: Literal["path"] = Field(description="This kind of structure.", examples=["path"])
+    theory: Theory = Field("timoshenko", description=THEORY, examples=["timoshenko"])
+    section: TubeSection = Field(description="Cross-section of the tube.")
+    material: Material = Field(description="Material of the tube.")
+    start_m: Vector = Field(description="Position of the start.", examples=[[0.0, 0.0, 0.0]])
+    start_direction: Direction = Field(
+        description="Direction of the tube at the start.", examples=[[1.0, 0.0, 0.0]]
+    )
+    segments: Annotated[tuple[Annotated[Straight | Bend, By_kind], ...], Not_empty] = Field(
+        description="Segments of the path, from its start on."
+    )
+    mesh: Mesh = Field(Mesh(), description="Finite-element mesh.")
+    start: Annotated[Clamped | Pinned | Springs | Free, By_kind] = Field(
+        Clamped(kind="clamped"), description="How the start is held."
+    )
+    end: Annotated[Clamped | Pinned | Springs | Free, By_kind] = Field(
+        Clamped(kind="clamped"), description="How the end is held."
+    )
 
 
 class Mass(Section):
-    """A mass of a chain; it moves along x."""
+    """A mass of a chain. It moves along x."""
 
-    name: Name
-    mass_kg: Positive_factor
+    name: Name = Field(
+        description="Name of the mass, and of the point where it is.", examples=["mass"]
+    )
+    mass_kg: Mass_kg = Field(description="Mass.", examples=[1.0])
 
 
 class Spring(Section):
-    """A spring and damper of a chain, between two masses, or between one and the ground."""
+    """A linear spring and damper of a chain, between two masses or between a mass and the
+    ground.
+    """
 
-    between: row(Name, 2, "give two names: masses, or ground")
-    stiffness_N_per_m: Coefficient = 0.0
-    damping_N_s_per_m: Coefficient = 0.0
+    between: Annotated[tuple[Name, ...], Length("give two names: masses, or ground", 2)] = Field(
+        description="The two ends: names of masses, or `ground`.", examples=[["ground", "mass"]]
+    )
+    stiffness_N_per_m: Coefficient = Field(0.0, description="Stiffness.", examples=[6.3e4])
+    damping_N_s_per_m: Coefficient = Field(0.0, description="Damping coefficient.", examples=[12.0])
 
 
 class Chain(Section):
-    """Masses on a line, each a point of its name with the direction x."""
+    """Masses on a line along x. Each mass is a point of its name with the direction x."""
 
-    kind: Literal["chain"]
-    masses: Annotated[tuple[Mass, ...], Field(min_length=1)]
-    springs: tuple[Spring, ...] = ()
+    kind: Literal["chain"] = Field(description="This kind of structure.", examples=["chain"])
+    masses: Annotated[tuple[Mass, ...], Not_empty] = Field(description="The masses.")
+    springs: tuple[Spring, ...] = Field((), description="The springs and dampers.")
+
+
+MATRIX_FILE = (
+    " A file with several arrays must name this one `{name}`, `{letter}` or `{small}`; a Nastran"
+    " OP4 file may name it `{letter_op4}GG`, `{letter_op4}AA` and the like. A file with one array"
+    " may give it any name."
+)
 
 
 class Matrices(Section):
-    """A structure given by its matrices, in files (.npz, .mat, MatrixMarket .mtx or Nastran .op4),
-    in SI units; points: name -> direction -> dof, from 0.
-
-    In files with several arrays the one named mass, stiffness or damping is taken; in .op4 files
-    also MGG, KGG, BGG, MAA, KAA, BAA and the like, whose dofs are the rows of Nastran's set, in its
-    order.
+    """A structure given by its matrices in SI units, in files of NumPy (.npz), MATLAB (.mat),
+    MatrixMarket (.mtx) or Nastran (.op4). The matrices are square, symmetric, real and of the same
+    size. Paths are relative to the folder where the study is run.
     """
 
-    kind: Literal["matrices"]
-    mass: str
-    stiffness: str
-    damping: str | None = None
-    points: dict[Name, dict[Axis, count(0, 10**7, "dofs are counted from 0")]]
+    kind: Literal["matrices"] = Field(description="This kind of structure.", examples=["matrices"])
+    mass: str = Field(
+        description="File of the mass matrix, in kg for displacements."
+        + MATRIX_FILE.format(name="mass", letter="M", small="m", letter_op4="M"),
+        examples=["matrices/mass.mtx"],
+    )
+    stiffness: str = Field(
+        description="File of the stiffness matrix, in N/m for displacements."
+        + MATRIX_FILE.format(name="stiffness", letter="K", small="k", letter_op4="K"),
+        examples=["matrices/stiffness.mtx"],
+    )
+    damping: str | None = Field(
+        None,
+        description="File of a damping matrix, in N s/m for displacements, or null. It is added to"
+        " the top-level `damping`."
+        + MATRIX_FILE.format(name="damping", letter="C", small="c", letter_op4="B"),
+        examples=["matrices/damping.mtx"],
+    )
+    points: dict[
+        Name,
+        dict[
+            Axis,
+            Annotated[Whole, Range("dofs are counted from 0", at_least=0, at_most=10**7)],
+        ],
+    ] = Field(
+        description="Named points: for each point, the degree of freedom (row of the matrices,"
+        " counted from 0) that is its displacement along x, y or z. A direction that is left out"
+        " does not move. In an OP4 file, the rows are the degrees of freedom of Nastran's set, in"
+        " its order.",
+        examples=[{"tip": {"x": 0, "y": 1}}],
+    )
 
 
 class MeasuredMode(Section):
-    """A mode of a measured structure: shape {point: {direction: displacement}} in kg^-1/2, scaled
-    by the drive point; zero where left out.
+    """A measured mode of a structure."""
 
-    residual: it stands for what lies outside the measured band, and its frequency means nothing by
-    itself.
-    """
-
-    frequency_Hz: Frequency_Hz
+    frequency_Hz: Frequency_Hz = Field(description="Natural frequency.", examples=[7.3])
     damping_ratio: Annotated[
-        Number, within("a fraction, not per cent: 1.5 % is 0.015", at_least=0, at_most=10)
-    ]
-    shape: dict[Name, dict[Axis, Number]]
-    residual: bool = False
+        Number,
+        Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, at_most=10),
+        Unit("1"),
+    ] = Field(description="Damping ratio, as a fraction.", examples=[0.02])
+    shape: dict[Name, dict[Axis, Annotated[Number, Unit("kg^-1/2")]]] = Field(
+        description="Mode shape: for each named point, its displacement along x, y or z, scaled to"
+        " unit modal mass. What is left out is 0.",
+        examples=[{"tip": {"x": 0.31}}],
+    )
+    residual: bool = Field(
+        False,
+        description="True for a mode that stands for the modes outside the measured band. Its"
+        " frequency has no meaning by itself.",
+        examples=[False],
+    )
 
 
 class Identified(Section):
-    """A structure known by its measured modes; its points are those that the shapes name, and its
-    damping is that of the modes.
+    """A structure known by its measured modes. Its points are those that the mode shapes name, and
+    its damping is that of the modes: the top-level `damping` is not used.
     """
 
-    kind: Literal["identified"]
-    modes: Annotated[tuple[MeasuredMode, ...], Field(min_length=1)]
+    kind: Literal["identified"] = Field(
+        description="This kind of structure.", examples=["identified"]
+    )
+    modes: Annotated[tuple[MeasuredMode, ...], Not_empty] = Field(description="The modes.")
 
 
-Structure = choice(UTube, Path, Chain, Matrices, Identified)
+Structure = Annotated[UTube | Path | Chain | Matrices | Identified, By_kind]
 
 
 class ModalDamping(Section):
-    """Damping ratios of the free modes: the first ones one by one, then all others;
-    mass_coefficient M on top, as a fluid along the tube gives.
+    """Damping ratios of the modes of the structure without contact, in the order of their
+    frequencies.
     """
 
-    kind: Literal["modal"]
-    first_ratios: tuple[Damping_ratio, ...] = ()
-    other_ratio: Damping_ratio
-    mass_coefficient_per_s: Coefficient = 0.0
+    kind: Literal["modal"] = Field(description="This kind of damping.", examples=["modal"])
+    first_ratios: tuple[Damping_ratio, ...] = Field(
+        (),
+        description="Damping ratios of the first modes, one each, as fractions. Rigid-body modes"
+        " are not counted.",
+        examples=[[0.015, 0.015]],
+    )
+    other_ratio: Damping_ratio = Field(
+        description="Damping ratio of all other modes, as a fraction.", examples=[0.002]
+    )
+    mass_coefficient_per_s: Coefficient = Field(
+        0.0,
+        description="Factor of the mass matrix in a damping matrix that is added, as for a fluid"
+        " along the whole tube.",
+        examples=[0.5],
+    )
 
 
 class RayleighDamping(Section):
-    """C = mass_coefficient M + stiffness_coefficient K."""
+    """The damping matrix C = mass_coefficient_per_s M + stiffness_coefficient_s K."""
 
-    kind: Literal["rayleigh"]
-    mass_coefficient_per_s: Coefficient
-    stiffness_coefficient_s: Coefficient
+    kind: Literal["rayleigh"] = Field(description="This kind of damping.", examples=["rayleigh"])
+    mass_coefficient_per_s: Coefficient = Field(
+        description="Factor of the mass matrix M.", examples=[0.5]
+    )
+    stiffness_coefficient_s: Coefficient = Field(
+        description="Factor of the stiffness matrix K.", examples=[1.0e-5]
+    )
 
 
-Damping = choice(ModalDamping, RayleighDamping)
+Damping = Annotated[ModalDamping | RayleighDamping, By_kind]

@@ -1,4 +1,4 @@
-"""What a configuration says about local laws: supports, elements between points, and the initial
+"""The keys of local laws: gap supports, force laws between points, point masses, and the initial
 state.
 """
 
@@ -10,130 +10,303 @@ from pydantic import Field
 
 from .quantities import (
     Axis,
+    By_kind,
     Coefficient,
     Damping_ratio,
+    Direction,
     Height_m,
+    List,
+    Mass_kg,
     Name,
+    Non_negative,
+    Not_empty,
     Number,
+    One,
+    One_or_list,
+    One_or_list_of_pairs,
     Pair,
     Positive_factor,
+    Range,
     Section,
     Stiffness,
+    Unit,
     Vector,
-    choice,
-    count,
-    one_or_list,
-    within,
+    Whole,
 )
 
 Friction = Annotated[
-    Number, within("Coulomb's coefficient, 0.2 for steel on steel", at_least=0, at_most=10)
+    Number,
+    Range("Coulomb's coefficient, 0.2 for steel on steel", at_least=0, at_most=10),
+    Unit("1"),
 ]
-Non_negative = Annotated[Number, within("give 0 for none", at_least=0)]
 
 
 class Circular(Section):
-    """A circular obstacle round the centre."""
+    """A circular obstacle: contact begins when the distance from its centre exceeds the gap."""
 
-    kind: Literal["circular"]
+    kind: Literal["circular"] = Field(description="This kind of profile.", examples=["circular"])
 
 
 class Planes(Section):
-    """Flat stops: their outward normals in degrees from the support's first transverse direction.
-    One angle is a one-sided stop.
+    """Flat stops, each at the distance of the gap from the obstacle's centre. The penetration of a
+    stop is n·d - gap, with n its normal and d the displacement from the obstacle's centre. One
+    stop alone is one-sided.
     """
 
-    kind: Literal["planes"]
-    normals_deg: Annotated[tuple[Number, ...], Field(min_length=1)]
+    kind: Literal["planes"] = Field(description="This kind of profile.", examples=["planes"])
+    normals_deg: Annotated[tuple[Number, ...], Not_empty] = Field(
+        description="Directions of the stops as seen from the obstacle's centre, one angle each."
+        " Angles count from the support's first transverse direction (0) towards the second (90): a"
+        " stop at 0 limits motion in the positive sense of the first direction, a stop at 180 in"
+        " the negative sense.",
+        examples=[[0.0, 180.0]],
+    )
 
 
 class Lobes(Section):
-    """A foliate obstacle r(theta) = gap + depth_m (1 - cos(count (theta - angle))) / 2."""
+    """A foliate obstacle. Contact begins at the distance R(theta) = gap + depth_m (1 - cos(count
+    (theta - angle_deg))) / 2 from its centre, with theta counted from the support's first
+    transverse direction towards the second. The force is normal to this profile.
+    """
 
-    kind: Literal["lobes"]
-    count: count(2, 24, "a quadrifoil has 4")
-    depth_m: Non_negative
-    angle_deg: Number = 0.0
+    kind: Literal["lobes"] = Field(description="This kind of profile.", examples=["lobes"])
+    count: Annotated[Whole, Range("a quadrifoil has 4", at_least=2, at_most=24)] = Field(
+        description="Number of lands, the places where R is smallest: 3 for a trefoil, 4 for a"
+        " quadrifoil.",
+        examples=[4],
+    )
+    depth_m: Non_negative = Field(
+        description="Largest minus smallest R: the clearance is the gap at a land and gap +"
+        " depth_m midway between two lands.",
+        examples=[2.0e-3],
+    )
+    angle_deg: Number = Field(
+        0.0,
+        description="Direction of the first land, counted from the first transverse direction"
+        " towards the second.",
+        examples=[45.0],
+    )
 
 
 class Plate(Section):
-    """What carries a support, where it gives way: a mass on a spring and damper in both transverse
-    directions.
+    """A flexible plate that carries a support: a mass on a spring and damper in each of the two
+    transverse directions, without coupling between them. The contact sees the displacement of the
+    structure relative to the plate.
     """
 
-    mass_kg: Positive_factor
-    stiffness_N_per_m: Stiffness
-    damping_ratio: Damping_ratio = 0.02
+    mass_kg: Mass_kg = Field(
+        description="Mass of the plate that moves with the support.", examples=[2.0]
+    )
+    stiffness_N_per_m: Stiffness = Field(
+        description="Stiffness of the plate in each transverse direction.", examples=[1.0e7]
+    )
+    damping_ratio: Damping_ratio = Field(
+        0.02,
+        description="Damping ratio of the plate on its spring, as a fraction.",
+        examples=[0.02],
+    )
 
 
 class PointMass(Section):
-    """A mass at a named point of the structure."""
+    """A mass added at a named point of the structure. It has no rotary inertia."""
 
-    name: Name
-    point: Name
-    mass_kg: Positive_factor
+    name: Name = Field(description="Name of the mass.", examples=["accelerometer"])
+    point: Name = Field(description="Named point where it sits.", examples=["apex"])
+    mass_kg: Mass_kg = Field(description="Mass.", examples=[0.02])
 
 
 class Support(Section):
-    """A gap support: contact points evenly spaced over its height, both edges included (one point:
-    its middle).
+    """A gap support: contact points evenly spaced over its height, both edges included; a single
+    contact point is at the middle.
 
-    On a tube it is at at_m and height_m high; on a chain or on matrices it is at a named point, or
-    between it and other_point. gap_m: clearance of this support in place of the grid's. Stiffness
-    and damping are totals, shared by the points, or lists, one per point.
+    On a tube, give at_m and height_m. On any other structure, give point, and other_point if the
+    support is between two points; it then has one contact point. The two transverse directions of a
+    support on a tube are perpendicular to the tube: the two global axes least aligned with the
+    tube, in the order x, y, z, made perpendicular to it. They are x and y where the tube runs along
+    z, y and z where it runs along x, x and z where it runs along y. On any other structure they are
+    x and y.
     """
 
-    name: Name
-    at_m: Vector | None = None
-    height_m: Height_m | None = None
-    points: count(
-        1, 200, "five points follow the contact layer over the whole range of stiffness"
-    ) = 5
-    point: Name | None = None
-    other_point: Name | None = None
-    stiffness_N_per_m: one_or_list(Stiffness, tuple[Stiffness, ...])
-    gap_factor: one_or_list(Positive_factor, tuple[Positive_factor, ...]) = 1.0
-    gap_m: Number | None = None
-    centre_offset_m: one_or_list(Pair, tuple[Pair, ...], depth=2) = (0.0, 0.0)
-    damping_N_s_per_m: Coefficient = 0.0
-    hunt_crossley_s_per_m: Non_negative = 0.0
-    hertz_N_per_m15: Non_negative = 0.0
-    friction: Friction = 0.0
-    stick_stiffness_ratio: Positive_factor = 1.0
-    profile: choice(Circular, Planes, Lobes) = Circular(kind="circular")
-    plate: Plate | None = None
+    name: Name = Field(description="Name of the support.", examples=["left"])
+    at_m: Vector | None = Field(
+        None,
+        description="Position of the middle of the support, within 5 mm of the centreline. Tubes"
+        " only.",
+        examples=[[-0.30, 0.0, 0.35]],
+    )
+    height_m: Height_m | None = Field(
+        None,
+        description="Height of the support along the tube. It must lie within one segment. Tubes"
+        " only.",
+        examples=[0.030],
+    )
+    points: Annotated[
+        Whole,
+        Range(
+            "five points follow the contact layer over the whole range of stiffness",
+            at_least=1,
+            at_most=200,
+        ),
+    ] = Field(5, description="Number of contact points. Tubes only.", examples=[5])
+    point: Name | None = Field(
+        None,
+        description="Named point that the support is at. For structures that are no tube.",
+        examples=["mass"],
+    )
+    other_point: Name | None = Field(
+        None,
+        description="Second named point: the support then acts on the displacement of point"
+        " relative to other_point. Null for a support on the ground.",
+        examples=["frame"],
+    )
+    stiffness_N_per_m: Annotated[
+        Annotated[Stiffness, One] | Annotated[tuple[Stiffness, ...], List], One_or_list
+    ] = Field(
+        description="Contact stiffness: the total of the support, shared equally by its contact"
+        " points, or a list with the stiffness of each.",
+        examples=[4.0e6],
+    )
+    gap_factor: Annotated[
+        Annotated[Positive_factor, One] | Annotated[tuple[Positive_factor, ...], List],
+        One_or_list,
+    ] = Field(
+        1.0,
+        description="Factor of the gap of the case at this support, or a list with one factor per"
+        " contact point. Not used where gap_m is given.",
+        examples=[1.1],
+    )
+    gap_m: Number | None = Field(
+        None,
+        description="Radial clearance of this support, in place of the gap of the case. With flat"
+        " stops it may be 0 or negative: the support then touches or presses at rest.",
+        examples=[1.0e-3],
+    )
+    centre_offset_m: Annotated[
+        Annotated[Pair, One] | Annotated[tuple[Pair, ...], List], One_or_list_of_pairs
+    ] = Field(
+        (0.0, 0.0),
+        description="Offset of the obstacle's centre from the structure at rest, along the first"
+        " and the second transverse direction, or a list with one such pair per contact point.",
+        examples=[[0.0, 1.0e-5]],
+    )
+    damping_N_s_per_m: Coefficient = Field(
+        0.0,
+        description="Kelvin-Voigt damping c of the contact, total of the support: the force is"
+        " max(0, k p + c dp/dt), with p the penetration. It is shared by the contact points as the"
+        " stiffness is.",
+        examples=[50.0],
+    )
+    hunt_crossley_s_per_m: Non_negative = Field(
+        0.0,
+        description="Hunt-Crossley damping h: the elastic force is multiplied by max(0, 1 + h"
+        " dp/dt), with p the penetration.",
+        examples=[0.5],
+    )
+    hertz_N_per_m15: Non_negative = Field(
+        0.0,
+        description="Coefficient H of a Hertzian contact, total of the support: where it is not 0,"
+        " the elastic force is H p^1.5 in place of k p. It is shared by the contact points as the"
+        " stiffness is.",
+        examples=[1.0e9],
+    )
+    friction: Friction = Field(
+        0.0, description="Coulomb friction coefficient of the contact.", examples=[0.2]
+    )
+    stick_stiffness_ratio: Positive_factor = Field(
+        1.0,
+        description="Stiffness of the elastic stick spring that regularises friction, as a multiple"
+        " of the contact stiffness. Used where friction is not 0.",
+        examples=[1.0],
+    )
+    profile: Annotated[Circular | Planes | Lobes, By_kind] = Field(
+        Circular(kind="circular"), description="Shape of the obstacle."
+    )
+    plate: Plate | None = Field(
+        None,
+        description="Flexible plate that carries the support; null for a rigid one.",
+    )
 
 
 class LocalElement(Section):
-    """A force law along a direction, between a named point and the ground or between two named
-    points; terms add up.
+    """A force law along one direction, between a named point and the ground or between two named
+    points.
 
-    drag_partner: name of the element, across this one, whose rate counts in the speed that drags:
-    |v| of a motion in a plane.
+    With u the displacement of point along the direction (relative to other_point where there is
+    one) and v its rate, the force on the point is -(k u + q u² + c u³ + d v + e |v| v) minus the
+    forces of the slider and of the saturating spring. Terms that are 0 are left out.
     """
 
-    name: Name
-    point: Name
-    other_point: Name | None = None
-    direction: Vector
-    stiffness_N_per_m: Number = 0.0
-    quadratic_N_per_m2: Number = 0.0
-    cubic_N_per_m3: Number = 0.0
-    damping_N_s_per_m: Number = 0.0
-    drag_N_s2_per_m2: Non_negative = 0.0
-    drag_partner: Name | None = None
-    slip_limit_N: Non_negative = 0.0
-    stick_stiffness_N_per_m: Non_negative = 0.0
-    saturation_stiffness_N_per_m: Number = 0.0
-    saturation_limit_N: Non_negative = 0.0
+    name: Name = Field(description="Name of the element.", examples=["joint"])
+    point: Name = Field(description="Named point that the force acts on.", examples=["apex"])
+    other_point: Name | None = Field(
+        None,
+        description="Second named point, which the opposite force acts on; null for the ground.",
+        examples=["frame"],
+    )
+    direction: Direction = Field(
+        description="Direction of the force. Its length does not matter.",
+        examples=[[0.0, 1.0, 0.0]],
+    )
+    stiffness_N_per_m: Number = Field(0.0, description="Linear stiffness k.", examples=[2.0e4])
+    quadratic_N_per_m2: Number = Field(0.0, description="Quadratic stiffness q.", examples=[1.0e6])
+    cubic_N_per_m3: Number = Field(0.0, description="Cubic stiffness c.", examples=[1.0e9])
+    damping_N_s_per_m: Number = Field(0.0, description="Damping coefficient d.", examples=[5.0])
+    drag_N_s2_per_m2: Non_negative = Field(
+        0.0, description="Coefficient e of quadratic drag.", examples=[10.0]
+    )
+    drag_partner: Name | None = Field(
+        None,
+        description="Name of an element in another direction at the same point. Its rate w then"
+        " counts in the speed of the drag, |v| = sqrt(v² + w²), as for a fluid around a motion in"
+        " a plane.",
+        examples=["drag_in_plane"],
+    )
+    slip_limit_N: Non_negative = Field(
+        0.0,
+        description="Force at which the slider slips (Coulomb friction of constant normal force);"
+        " 0 for no slider.",
+        examples=[2.0],
+    )
+    stick_stiffness_N_per_m: Non_negative = Field(
+        0.0,
+        description="Stiffness of the slider while it sticks. Used where slip_limit_N is not 0.",
+        examples=[1.0e5],
+    )
+    saturation_stiffness_N_per_m: Number = Field(
+        0.0,
+        description="Stiffness of the saturating spring, whose force is this times u within"
+        " +-saturation_limit_N.",
+        examples=[1.0e5],
+    )
+    saturation_limit_N: Non_negative = Field(
+        0.0, description="Largest force of the saturating spring.", examples=[3.0]
+    )
 
 
 class Initial(Section):
-    """The state at the start of a run: displacement and velocity of named points by direction;
-    everything else at rest.
-    """
+    """The state at the start of a run. What is left out is at rest at 0."""
 
-    displacement_m: dict[Name, dict[Axis, Number]] = {}
-    velocity_m_per_s: dict[Name, dict[Axis, Number]] = {}
-    base_displacement_m: Number = 0.0
-    base_velocity_m_per_s: Number = 0.0
+    displacement_m: dict[Name, dict[Axis, Number]] = Field(
+        {},
+        description="Initial displacement of named points along x, y or z. For chains and"
+        " matrices only.",
+        examples=[{"mass": {"x": 1.0e-3}}],
+    )
+    velocity_m_per_s: dict[Name, dict[Axis, Number]] = Field(
+        {},
+        description="Initial velocity of named points along x, y or z. For chains and matrices"
+        " only.",
+        examples=[{"mass": {"x": 0.1}}],
+    )
+    base_displacement_m: Number = Field(
+        0.0,
+        description="Initial displacement of the base along the direction of the base motion. Used"
+        " where excitation.obstacles is `fixed`.",
+        examples=[0.0],
+    )
+    base_velocity_m_per_s: Number = Field(
+        0.0,
+        description="Initial velocity of the base along the direction of the base motion. Used"
+        " where excitation.obstacles is `fixed`.",
+        examples=[0.0],
+    )

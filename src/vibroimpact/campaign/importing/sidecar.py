@@ -5,12 +5,12 @@ no file says.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, ValidationError
 
 from vibroimpact.campaign.file import KINDS
-from vibroimpact.config.quantities import Frequency_Hz, Number, Section, Vector, count
+from vibroimpact.config.quantities import Frequency_Hz, Number, Range, Section, Vector, Whole
 from vibroimpact.config.reading import PLAIN_WORDS, ConfigError, read_yaml
 
 from .signals import ImportProblem
@@ -47,7 +47,13 @@ class Record(Section):
     gap_m: Number | None = None
     support_gap_m: tuple[Number, ...] | None = None
     split: Literal["fit", "holdout"] = "fit"
-    repeat: count(0, 10**6, "0 for the first record of its load and gap") | None = None
+    repeat: (
+        Annotated[
+            Whole,
+            Range("0 for the first record of its load and gap", at_least=0, at_most=10**6),
+        ]
+        | None
+    ) = None
     from_s: Number | None = None
     to_s: Number | None = None
     variables: dict[str, str] = {}
@@ -71,8 +77,13 @@ class Sidecar(Section):
     sampling_frequency_Hz: Frequency_Hz | None = None
     antialias: str = "unknown"
     start_up: Literal["rest", "stationary"] = "stationary"
-    period_samples: count(0, 10**9, "samples of a period, 0 where the force is not periodic") = 0
-    transient_periods: count(0, 10**6, "periods before the steady state") = 0
+    period_samples: Annotated[
+        Whole,
+        Range("samples of a period, 0 where the force is not periodic", at_least=0, at_most=10**9),
+    ] = 0
+    transient_periods: Annotated[
+        Whole, Range("periods before the steady state", at_least=0, at_most=10**6)
+    ] = 0
     forces: tuple[Sensor, ...] = Field(min_length=1)
     channels: tuple[Sensor, ...] = Field(min_length=1)
     records: tuple[Record, ...] = Field(min_length=1)
