@@ -8,7 +8,7 @@ slender tube (below 1e-5 of the first frequency at 20 elements per metre).
 import numpy as np
 import pytest
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.structure.beam_elements import tube_beam
 from vibroimpact.validation.reference.frequencies import (
     MATERIAL,
@@ -18,7 +18,7 @@ from vibroimpact.validation.reference.frequencies import (
     straight_tube,
 )
 
-TUBE, INCONEL = Settings(SECTION), Settings(MATERIAL)
+TUBE, INCONEL = StageSettings(SECTION), StageSettings(MATERIAL)
 
 
 def straight_beam(ends, theory, elements, length=1.0):

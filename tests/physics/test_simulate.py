@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.records import read_record
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_spectra import case_spectra
@@ -29,7 +29,7 @@ def short_config(study_config):
     values["record"]["duration_s"] = 3.0
     values["record"]["stress_limit_Pa"] = 60.0e6
     values["spectra"]["segment_s"] = 1.0
-    return Settings(values)
+    return StageSettings(values)
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +97,9 @@ def test_files_written_on_the_way_hold_what_the_whole_record_does(
 def test_memory_does_not_grow_with_the_duration(short_config, study_model, tmp_path):
     batch, most = [Case(0.5, GAP, seed) for seed in range(8)], []
     for duration in (2.0, 2.0, 12.0):  # the first fills what is kept for all
-        run = Settings({**short_config, "record": {**short_config.record, "duration_s": duration}})
+        run = StageSettings(
+            {**short_config, "record": {**short_config.record, "duration_s": duration}}
+        )
         keep = spectra_files(
             run,
             study_model,
@@ -129,7 +131,7 @@ def test_stress_at_20_newton_is_that_of_the_testbed(short_config, study_model):
 
     Eight records of 12 s: their mean scatters by some 3 %, that of three records of 3 s by 15 %.
     """
-    longer = Settings({**short_config, "record": {**short_config.record, "duration_s": 12.0}})
+    longer = StageSettings({**short_config, "record": {**short_config.record, "duration_s": 12.0}})
     found = [
         record
         for _, record in simulate_cases(

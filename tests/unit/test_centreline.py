@@ -5,12 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.geometry.centreline import (
-    build_centreline,
-    mesh_arc_lengths,
-    transverse_directions,
-    unit_vector,
-)
+from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.geometry.directions import transverse_directions, unit_vector
+from vibroimpact.geometry.mesh import mesh_arc_lengths
 
 U_TUBE = SimpleNamespace(kind="u_tube", leg_length_m=0.7, bend_radius_m=0.3)
 MESH = SimpleNamespace(elements_per_span=20, elements_per_bend=80)

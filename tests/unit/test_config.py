@@ -11,7 +11,7 @@ import yaml
 
 from vibroimpact.config.reading import Config, ConfigError, check_config, load_config
 from vibroimpact.config.stage_keys import STAGE_KEYS, select, stage_params
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 
 ROOT = Path(__file__).parents[2]
 STUDY = ROOT / "config" / "study.yaml"
@@ -411,7 +411,7 @@ def test_every_key_is_read_somewhere(kinds, request):
 
 
 def test_a_stage_sees_its_keys_and_no_others():
-    settings = Settings(stage_params(load_config(STUDY), "basis"))
+    settings = StageSettings(stage_params(load_config(STUDY), "basis"))
     config = load_config(STUDY)
     assert settings.structure.section.outer_diameter_m == config.structure.section.outer_diameter_m
     assert settings.supports[1].centre_offset_m == config.supports[1].centre_offset_m

@@ -14,7 +14,7 @@ import xarray as xr
 from vibroimpact.campaign.file import read_campaign, write_campaign
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_keys import stage_params
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.sheet import Sheet, edges, rounded
 from vibroimpact.figures.study import (
     basis,
@@ -96,7 +96,7 @@ def sheets(config, study, tmp_path_factory):
     }
     gap_rows = [row for row in rows if row["gap_m"] == shown_gap(config)]
     parts = {
-        stage: Settings(stage_params(config, stage))
+        stage: StageSettings(stage_params(config, stage))
         for stage in (
             "figures_model",
             "figures_response",
@@ -282,7 +282,7 @@ def test_first_frequency_by_number_of_contact_points(study_config):
     }
     for points in contact.POINTS:
         model = contact.model_with_points(
-            Settings(stage_params(study_config, "figures_model")), points
+            StageSettings(stage_params(study_config, "figures_model")), points
         )
         found = driven_frequencies(model, [*table], 1)[:, 0]
         np.testing.assert_allclose(found, [values[points] for values in table.values()], rtol=1e-3)

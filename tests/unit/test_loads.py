@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.excitation.force_vectors import force_row, line_load
 from vibroimpact.structure.beam_elements import tube_beam
 from vibroimpact.validation.reference.frequencies import MATERIAL, SECTION, straight_tube
@@ -34,7 +34,9 @@ def test_a_line_load_bends_a_pinned_beam_by_5_over_384():
         * 2.0**4
         / (
             384.0
-            * tube_beam(Settings(SECTION), Settings(MATERIAL), "euler_bernoulli").bending_stiffness
+            * tube_beam(
+                StageSettings(SECTION), StageSettings(MATERIAL), "euler_bernoulli"
+            ).bending_stiffness
         ),
         rel=1e-6,
     )

@@ -1,6 +1,6 @@
 """Build and write the reduced model and its quality report."""
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import write_table
@@ -9,7 +9,7 @@ from vibroimpact.reduction.reduced_model import build_model, quality_report
 from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
-config = Settings(snakemake.params.config)
+config = StageSettings(snakemake.params.config)
 model = build_model(config)
 print(f"{model.modes} modes")
 write_model(model, snakemake.output.model, origin(snakemake.params.config, snakemake.input.library))

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import checks, equivalent
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_record, read_table
@@ -10,7 +10,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
-config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
+config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 rows = read_table(snakemake.input.table)
 records = checks.records_shown(snakemake.input.records, read_record)
 sheets = equivalent.figure_13_equivalent_support(config, model, rows) + equivalent.collapse(

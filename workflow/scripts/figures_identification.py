@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import broadband, poles, shapes
 from vibroimpact.figures.study.cases_of_gap import cases_of_gap, shown_gap
 from vibroimpact.job_log import redirect_output
@@ -11,7 +11,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
-config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
+config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 rows = [row for row in read_table(snakemake.input.table) if row["gap_m"] == shown_gap(config)]
 curves, spectra = (
     cases_of_gap(paths, config, read_record)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import basis, contact, tube
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_table
@@ -10,7 +10,7 @@ from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.structure.tube import build_structure
 
 redirect_output(snakemake.log[0])
-config = Settings(snakemake.params.config)
+config = StageSettings(snakemake.params.config)
 structure = build_structure(config)
 sheets = [*tube.figure_01_layout(config, structure), *tube.figure_02_free_modes(config, structure)]
 sheets += [

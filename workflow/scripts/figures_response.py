@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from vibroimpact.campaign.file import read_campaign
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import overlay, psd_table, response
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_record
@@ -11,7 +11,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
-config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
+config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 responses = psd_table.gather(
     config, model, psd_table.spectra_shown(config, snakemake.input.spectra, read_record)
 )

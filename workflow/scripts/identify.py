@@ -1,6 +1,6 @@
 """Write the estimates of all cases of some loads, and the curves behind them."""
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.case import RECORD_READ, SPECTRA_READ, identify_case
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.job_log import redirect_output
@@ -10,7 +10,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
-config = Settings(snakemake.params.config)
+config = StageSettings(snakemake.params.config)
 model = read_model(snakemake.input.model)
 stopwatch = Stopwatch()
 for record, spectra, table, curves in zip(

@@ -2,7 +2,7 @@
 kept.
 """
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.reduction.model_file import read_model
@@ -12,7 +12,7 @@ from vibroimpact.study.series_files import series_files, write_parts
 from vibroimpact.study.simulation import simulate_cases
 
 redirect_output(snakemake.log[0])
-config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
+config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 cases = cases_of_load(config.grid, float(snakemake.wildcards.load))
 source = origin(snakemake.params.config, snakemake.input.library)
 stopwatch = Stopwatch()

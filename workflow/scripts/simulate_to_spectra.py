@@ -2,7 +2,7 @@
 written.
 """
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import write_record
@@ -13,7 +13,7 @@ from vibroimpact.study.simulation import simulate_cases
 from vibroimpact.study.spectra_files import spectra_files
 
 redirect_output(snakemake.log[0])
-config, model = Settings(snakemake.params.config), read_model(snakemake.input.model)
+config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 cases = cases_of_load(config.grid, float(snakemake.wildcards.load))
 source = origin(snakemake.params.config, snakemake.input.library)
 stopwatch = Stopwatch()

@@ -1,6 +1,6 @@
 """Write the spectra of all cases of one load."""
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_record, write_record
@@ -8,7 +8,7 @@ from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_spectra import case_spectra
 
 redirect_output(snakemake.log[0])
-config, stopwatch = Settings(snakemake.params.config), Stopwatch()
+config, stopwatch = StageSettings(snakemake.params.config), Stopwatch()
 for series, path in zip(snakemake.input.series, snakemake.output.spectra, strict=True):
     record = read_record(series)
     spectra = stopwatch.time("spectra", case_spectra, config, record)

@@ -1,7 +1,7 @@
 """Simulate the stand-in for a measured campaign and write it by the campaign contract."""
 
 from vibroimpact.campaign.file import write_campaign
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.reduction.model_file import read_model
@@ -9,7 +9,7 @@ from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.synthetic_campaign import synthetic_campaign
 
 redirect_output(snakemake.log[0])
-config, stopwatch = Settings(snakemake.params.config), Stopwatch()
+config, stopwatch = StageSettings(snakemake.params.config), Stopwatch()
 campaign = synthetic_campaign(
     config, read_model(snakemake.input.model), snakemake.params.loads, stopwatch
 )

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study.timing import timing
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
@@ -11,5 +11,5 @@ from vibroimpact.study.timing import study_timing
 redirect_output(snakemake.log[0])
 rows = study_timing(snakemake.input.benchmarks, snakemake.params.logs)
 write_table(rows, snakemake.output.table)
-for sheet in timing(Settings(snakemake.params.config), rows):
+for sheet in timing(StageSettings(snakemake.params.config), rows):
     sheet.save(Path(snakemake.output.figures[0]).parent)

@@ -1,5 +1,5 @@
-"""Checks of a configuration's geometry: the tube, what is on it, and the clearances. Each yields
-(place, value, text), see config_checks.
+"""The checks of a configuration's geometry: the tube, the points and supports on it, and the gaps.
+Each yields (place, value, text), see checks.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Checks that what a configuration names is there. Each yields (place, value, text), see
-config_checks.
+"""The checks of names: every point, element and support that a configuration names is there. Each
+yields (place, value, text), see checks.
 """
 
 from __future__ import annotations

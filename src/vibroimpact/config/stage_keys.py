@@ -1,8 +1,8 @@
-"""Which keys of the configuration each stage of the workflow uses.
+"""The keys of the configuration that each stage of the workflow uses.
 
-The rules put stage_params into `params:` and a stage sees nothing else of the configuration
-(settings.Settings), so that a changed key reruns just the stages that use it, and a stage can not
-come to use a key in secret.
+The rules put stage_params into `params:`, and a stage reads nothing else of the configuration (see
+StageSettings). A changed key therefore reruns just the stages that use it, and no stage can use a
+key that it does not declare.
 """
 
 from __future__ import annotations
@@ -135,13 +135,14 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
 
 
 def stage_params(config: Config, stage: str) -> dict[str, Any]:
-    """Return {dotted key: value} of the keys that a stage uses, in plain values. Raises KeyError
-    when the stage is unknown.
+    """Return {dotted key: value} of the keys that a stage uses, in plain values.
+
+    Raises KeyError when the stage is unknown.
     """
     return select(config.model_dump(mode="json"), STAGE_KEYS[stage])
 
 
-def select(values: dict, keys: tuple[str, ...]) -> dict[str, Any]:
+def select(values: dict[str, Any], keys: tuple[str, ...]) -> dict[str, Any]:
     """Return {dotted key: value} of nested values."""
     return {key: _value_at(values, key.split(".")) for key in keys}
 

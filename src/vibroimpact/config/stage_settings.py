@@ -1,5 +1,5 @@
 """The part of a configuration that a stage of the workflow is given, with the attribute names of
-the configuration.
+Config.
 """
 
 from __future__ import annotations
@@ -8,12 +8,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 
-class Settings(Mapping):
-    """Nested values read as attributes, `settings.record.duration_s`, or as a mapping,
-    `settings.points["apex"]`. Lists are tuples.
+class StageSettings(Mapping[str, Any]):
+    """The view of a configuration that a stage gets: its keys read as attributes,
+    `settings.record.duration_s`, or as a mapping, `settings.points["apex"]`. Lists are tuples.
 
-    values: {key: value}; a dotted key such as "record.duration_s" fills one part of a section.
-    Reading a key that was not given raises AttributeError (KeyError as a mapping); the message says
+    values: {key: value}, as stage_keys.stage_params gives them; a dotted key such as
+    "record.duration_s" fills one part of a section.
+    Reading a key that was not given raises AttributeError (KeyError as a mapping). The message says
     where a stage declares its keys.
     """
 
@@ -38,7 +39,7 @@ class Settings(Mapping):
         except KeyError:
             raise AttributeError(
                 f"key '{self.__dict__.get('_place', '')}{name}' was not given to this stage:"
-                " declare it in STAGE_KEYS of stages.py, or correct its name"
+                " declare it in STAGE_KEYS of config/stage_keys.py, or correct its name"
             ) from None
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -54,13 +55,13 @@ class Settings(Mapping):
         return len(self._values)
 
     def __repr__(self) -> str:
-        return f"Settings({self._values!r})"
+        return f"StageSettings({self._values!r})"
 
 
 def _frozen(value: Any, place: str) -> Any:
-    """Return a value with sections as Settings and lists as tuples."""
+    """Return a value with its sections as StageSettings and its lists as tuples."""
     if isinstance(value, Mapping):
-        return Settings(value, place)
+        return StageSettings(value, place)
     if isinstance(value, (list, tuple)):
         return tuple(_frozen(item, place) for item in value)
     return value

@@ -4,7 +4,7 @@ the degrees of freedom and laws.
 
 import numpy as np
 
-from vibroimpact.geometry.centreline import unit_vector
+from vibroimpact.geometry.directions import unit_vector
 
 from .laws import LocalLaws
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.geometry.centreline import SAME_PLACE_M, transverse_directions
+from vibroimpact.geometry.centreline import SAME_PLACE_M
+from vibroimpact.geometry.directions import transverse_directions
 
 from .laws import ContactLaws
 

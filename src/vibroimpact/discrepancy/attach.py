@@ -20,7 +20,7 @@ def attach(config, campaign):
     """Return the ModalModel of `config` that has the campaign's channels as sensors and its forces
     as drives, and nothing else to keep.
 
-    config: a checked Config or Settings of a tube. Sensors are the displacements along
+    config: a checked Config or StageSettings of a tube. Sensors are the displacements along
     channel_direction, positive in its sense, in the order of the channels. Raises CampaignError
     when a channel or force is farther than 5 mm from the structure; the message lists all of them.
     """

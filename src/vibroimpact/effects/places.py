@@ -5,7 +5,8 @@ configuration.
 import numpy as np
 
 from vibroimpact.config.structure import Path, UTube
-from vibroimpact.geometry.centreline import build_centreline, transverse_directions
+from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.geometry.directions import transverse_directions
 
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
 SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of a limit

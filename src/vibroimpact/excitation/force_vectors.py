@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from vibroimpact.config.name_checks import TUBES
-from vibroimpact.geometry.centreline import build_centreline, unit_vector
+from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.geometry.directions import unit_vector
 
 GAUSS = (
     (-0.8611363115940526, 0.3478548451374538),

@@ -1,1 +1,1 @@
-"""Where a tube runs in space: its centreline, the mesh on it, and directions across it."""
+"""Where a tube runs in space: its centreline, directions across it, and the mesh along it."""

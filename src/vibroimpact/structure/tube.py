@@ -12,10 +12,9 @@ from vibroimpact.geometry.centreline import (
     SAME_PLACE_M,
     Centreline,
     build_centreline,
-    mesh_arc_lengths,
-    transverse_directions,
-    unit_vector,
 )
+from vibroimpact.geometry.directions import transverse_directions, unit_vector
+from vibroimpact.geometry.mesh import mesh_arc_lengths
 from vibroimpact.memo import Kept
 
 from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, tube_beam

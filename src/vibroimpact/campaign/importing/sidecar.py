@@ -10,8 +10,9 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError
 
 from vibroimpact.campaign.file import KINDS
+from vibroimpact.config.problems import PLAIN_WORDS, ConfigError
 from vibroimpact.config.quantities import Frequency_Hz, Number, Range, Section, Vector, Whole
-from vibroimpact.config.reading import PLAIN_WORDS, ConfigError, read_yaml
+from vibroimpact.config.yaml_file import read_yaml
 
 from .signals import ImportProblem
 

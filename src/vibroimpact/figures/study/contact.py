@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -180,7 +180,7 @@ def model_with_points(config, points):
         {**support, **plain, "stiffness_N_per_m": float(np.sum(support.stiffness_N_per_m))}
         for support in config.supports
     )
-    return build_model(Settings({**config, "supports": supports}))
+    return build_model(StageSettings({**config, "supports": supports}))
 
 
 def figure_04_first_frequency(config):

@@ -13,10 +13,10 @@ Gaussian records throughout; what impacts add is in convergence_impacts.
 """
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 
+from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear.equivalent_linear import frf, synthesise_records
 from vibroimpact.spectra.welch import (
@@ -73,10 +73,8 @@ DECIBEL = 10.0 / np.log(10.0)
 
 
 def averaging(segment_s, overlap, window):
-    """Return an object with segment_s, overlap and window, as the configuration's `spectra` has
-    them.
-    """
-    return SimpleNamespace(segment_s=segment_s, overlap=overlap, window=window)
+    """Return the section `spectra` of a configuration."""
+    return Spectra(segment_s=segment_s, overlap=overlap, window=window)
 
 
 def degrees_of_freedom(estimates):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import sparse
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.structure.beam_elements import element_matrices
 from vibroimpact.structure.tube import build_structure, element_geometry
@@ -147,9 +147,9 @@ def _straight_beam(structure):
         "end": clamped,
         "mesh": {"elements_per_span": 40, "elements_per_bend": 1},
     }
-    return plane_frequencies(build_structure(Settings({"structure": path, "supports": ()})), TO_HZ)[
-        0
-    ]
+    return plane_frequencies(
+        build_structure(StageSettings({"structure": path, "supports": ()})), TO_HZ
+    )[0]
 
 
 def oval_bend_rows(config, stiffness=SOLID_STIFFNESS):

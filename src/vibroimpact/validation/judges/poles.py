@@ -4,11 +4,10 @@ and scipy's averaged spectra.
 The records are those of the linear tube with a bilateral support, whose poles are known exactly.
 """
 
-from types import SimpleNamespace
-
 import numpy as np
 from scipy import signal
 
+from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.identify.half_spectra import half_spectra, lag_window
 from vibroimpact.identify.lscf import NormalEquations
@@ -31,7 +30,7 @@ SUPPORT = (
     62.0525,
 )  # N/m and N s/m per support: the damping doubles the first mode's damping ratio
 RATE_HZ, DURATION_S, PERIOD_S, BAND_HZ = 256.0, 49.0, 51.0, (5.0, 100.0)
-SEGMENTS = SimpleNamespace(segment_s=10.0, overlap=0.65, window="hann")
+SEGMENTS = Spectra(segment_s=10.0, overlap=0.65, window="hann")
 SEEDS, REFERENCES = 16, (0, 1)
 EMA_STEP_HZ, EMA_BAND_HZ, EMA_ORDER, EMA_MODES = 0.05, (6.0, 240.0), 20, 3
 ORDERS = (4, 8, 12, 24)
@@ -253,7 +252,7 @@ def spectrum_checks(model) -> list[Check]:
     motion, checks = record(model, 0), []
     for window in ("hann", "boxcar"):
         spectra = segment_spectra(
-            motion, RATE_HZ, SimpleNamespace(segment_s=10.0, overlap=0.65, window=window)
+            motion, RATE_HZ, Spectra(segment_s=10.0, overlap=0.65, window=window)
         )
         length = round(10.0 * RATE_HZ)
         layout = {

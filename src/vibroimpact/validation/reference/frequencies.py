@@ -5,7 +5,7 @@ forms and published numbers.
 import numpy as np
 from scipy import linalg, optimize
 
-from vibroimpact.config.stage_settings import Settings
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.structure.beam_elements import element_matrices, tube_beam
 from vibroimpact.structure.tube import build_structure, element_geometry
@@ -95,7 +95,7 @@ def tube_path(segments, ends, elements, theory, supports=()):
         "end": {"kind": ends[1]},
         "mesh": {"elements_per_span": elements[0], "elements_per_bend": elements[1]},
     }
-    return build_structure(Settings({"structure": structure, "supports": supports}))
+    return build_structure(StageSettings({"structure": structure, "supports": supports}))
 
 
 def plane_frequencies(structure, to_Hz, stiffness=0.0):
@@ -111,7 +111,7 @@ def plane_frequencies(structure, to_Hz, stiffness=0.0):
 
 def bending_frequency(root, length):
     """Return Hz of an Euler-Bernoulli tube whose mode has beta L = root."""
-    beam = tube_beam(Settings(SECTION), Settings(MATERIAL), "euler_bernoulli")
+    beam = tube_beam(StageSettings(SECTION), StageSettings(MATERIAL), "euler_bernoulli")
     return (
         (np.asarray(root) / length) ** 2
         * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
@@ -225,8 +225,10 @@ def ring_checks(count=60):
     """Return the Checks of the free ring (NAFEMS): radius 1 m, solid section of radius 0.05 m,
     `count` straight elements.
     """
-    bar = Settings({"outer_diameter_m": 0.1, "wall_thickness_m": 0.05, "shear_coefficient": 0.9})
-    steel = Settings(
+    bar = StageSettings(
+        {"outer_diameter_m": 0.1, "wall_thickness_m": 0.05, "shear_coefficient": 0.9}
+    )
+    steel = StageSettings(
         {"young_modulus_Pa": 2.0e11, "poisson_ratio": 0.3, "density_kg_per_m3": 8000.0}
     )
     beam = tube_beam(bar, steel, "euler_bernoulli")
