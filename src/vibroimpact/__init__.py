@@ -1,5 +1,61 @@
-"""vibroimpact: tubes that rattle in their supports, and the linear support that is equivalent to
-them.
+"""vibroimpact: vibration of tubes and other structures with gap supports, and the linear support
+that is equivalent to them.
+
+The names of `vibroimpact.__all__` are the interface for notebooks and scripts of users. Each is
+imported when it is first used. Modules of the library and scripts of the workflow import from the
+modules themselves, so that the workflow sees which files a stage depends on.
 """
 
+from importlib import import_module
+
 __version__ = "0.1.0"
+
+# Name -> module that defines it. The file __init__.pyi states the same for type checkers.
+PUBLIC = {
+    "Config": "config.schema",
+    "ConfigError": "config.problems",
+    "load_config": "config.reading",
+    "check_config": "config.reading",
+    "json_schema": "config.json_schema",
+    "build_model": "reduction.reduced_model",
+    "quality_report": "reduction.reduced_model",
+    "read_model": "reduction.model_file",
+    "write_model": "reduction.model_file",
+    "Case": "study.cases",
+    "all_cases": "study.cases",
+    "cases_of_load": "study.cases",
+    "simulate_cases": "study.simulation",
+    "statistics_rows": "study.statistics_table",
+    "case_spectra": "study.case_spectra",
+    "segment_spectra": "spectra.welch",
+    "psd_statistics": "spectra.welch",
+    "natural_frequencies": "linear.equivalent_linear",
+    "frf": "linear.equivalent_linear",
+    "identify_case": "identify.case",
+    "Estimate": "identify.estimate",
+    "Channel": "campaign.file",
+    "Level": "campaign.file",
+    "CampaignError": "campaign.file",
+    "campaign_dataset": "campaign.file",
+    "read_campaign": "campaign.file",
+    "write_campaign": "campaign.file",
+    "check_campaign": "campaign.checks.file_checks",
+    "import_folder": "campaign.importing.assemble",
+    "read_record": "records",
+    "write_record": "records",
+}
+__all__ = ["__version__", *PUBLIC]
+
+
+def __getattr__(name):
+    """Return a public name, imported from its module. Raises AttributeError for any other name."""
+    if name not in PUBLIC:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    value = getattr(import_module(f"{__name__}.{PUBLIC[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    """Return the public names."""
+    return sorted(__all__)

@@ -312,7 +312,7 @@ class Config(Section):
     """A whole study."""
 
     study: Study_name = Field(
-        description="Name of the study. Results go to the folder results/<study>.",
+        description="Name of the study. Results go to the folder of this name in results.",
         examples=["my_tube"],
     )
     seed: Annotated[Whole, Range("any whole number", at_least=0, at_most=2**63)] = Field(

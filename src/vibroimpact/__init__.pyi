@@ -1,0 +1,48 @@
+"""The public names, for type checkers and editors: see PUBLIC in __init__.py."""
+
+from .campaign.checks.file_checks import check_campaign as check_campaign
+from .campaign.file import (
+    CampaignError as CampaignError,
+)
+from .campaign.file import (
+    Channel as Channel,
+)
+from .campaign.file import (
+    Level as Level,
+)
+from .campaign.file import (
+    campaign_dataset as campaign_dataset,
+)
+from .campaign.file import (
+    read_campaign as read_campaign,
+)
+from .campaign.file import (
+    write_campaign as write_campaign,
+)
+from .campaign.importing.assemble import import_folder as import_folder
+from .config.json_schema import json_schema as json_schema
+from .config.problems import ConfigError as ConfigError
+from .config.reading import check_config as check_config
+from .config.reading import load_config as load_config
+from .config.schema import Config as Config
+from .identify.case import identify_case as identify_case
+from .identify.estimate import Estimate as Estimate
+from .linear.equivalent_linear import frf as frf
+from .linear.equivalent_linear import natural_frequencies as natural_frequencies
+from .records import read_record as read_record
+from .records import write_record as write_record
+from .reduction.model_file import read_model as read_model
+from .reduction.model_file import write_model as write_model
+from .reduction.reduced_model import build_model as build_model
+from .reduction.reduced_model import quality_report as quality_report
+from .spectra.welch import psd_statistics as psd_statistics
+from .spectra.welch import segment_spectra as segment_spectra
+from .study.case_spectra import case_spectra as case_spectra
+from .study.cases import Case as Case
+from .study.cases import all_cases as all_cases
+from .study.cases import cases_of_load as cases_of_load
+from .study.simulation import simulate_cases as simulate_cases
+from .study.statistics_table import statistics_rows as statistics_rows
+
+__version__: str
+PUBLIC: dict[str, str]

@@ -1,0 +1,214 @@
+"""The command line: check a file, print the JSON schema or the reference of the configuration.
+
+Commands import what they need when they run, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from vibroimpact import __version__
+
+NETCDF = (".nc", ".nc4", ".cdf")
+# How netCDF files begin, of the classic format and of HDF5.
+SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Return the exit code of a command: 0 for success, 1 for a file with problems.
+
+    arguments: those of the command line where None. Raises SystemExit with code 2 for arguments
+    that are no command.
+    """
+    asked = _parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], int] = asked.command
+    try:
+        code = command(asked)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:  # the reader of a pipe, such as `| head`, has closed it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(
+        prog="vibroimpact",
+        description="Vibration of tubes and other structures with gap supports. Studies are run"
+        " with snakemake or make; these commands check what they read.",
+    )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    check = commands.add_parser(
+        "check",
+        help="check a file and print every problem at once",
+        description="Check a study configuration (.yaml), a measured campaign (.nc), the"
+        " campaign.yaml of a folder of measurements, or the small file that asks for an identified"
+        " structure. Prints one line per problem, or one line that says what the file is. The exit"
+        " code is 1 where there are problems.",
+    )
+    check.add_argument("file", metavar="FILE")
+    check.set_defaults(command=_check)
+    for name, command, what in (
+        ("schema", _schema, "print the JSON schema of a study configuration"),
+        ("reference", _reference, "print the reference of every configuration key as Markdown"),
+    ):
+        printer = commands.add_parser(name, help=what, description=f"{what.capitalize()}.")
+        printer.set_defaults(command=command)
+    return parser
+
+
+def _check(asked: argparse.Namespace) -> int:
+    """Check a file. Return 1 where it has problems."""
+    checked = _campaign if _is_netcdf(asked.file) else _configuration
+    summary, problems = checked(asked.file)
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    if summary:
+        print(f"{asked.file}: {summary}")
+    return 0 if summary else 1
+
+
+def _schema(asked: argparse.Namespace) -> int:
+    """Print the JSON schema."""
+    import json
+
+    from vibroimpact.config.json_schema import json_schema
+
+    print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    return 0
+
+
+def _reference(asked: argparse.Namespace) -> int:
+    """Print the key reference."""
+    from vibroimpact.config.key_reference import markdown
+
+    print(markdown())
+    return 0
+
+
+def _is_netcdf(path: str) -> bool:
+    """Whether a file is netCDF, by its name or its first bytes."""
+    if not Path(path).is_file():
+        return False
+    if Path(path).suffix.lower() in NETCDF:
+        return True
+    try:
+        with open(path, "rb") as file:
+            return file.read(4) in SIGNATURES
+    except OSError:
+        return False  # reading it as a configuration says why
+
+
+def _campaign(path: str) -> tuple[str | None, list[str]]:
+    """Return (what a campaign is, None where it is refused; its problems and warnings)."""
+    from vibroimpact.campaign.checks.file_checks import check_file, refused
+
+    campaign, rows = check_file(path)
+    problems = [
+        f"{path}: {'warning: ' if row['level'] == 'warn' else ''}{row['message']}"
+        for row in rows
+        if row["level"] != "pass"
+    ]
+    if campaign is None or refused(rows):
+        return None, problems
+    sizes = campaign.sizes
+    return (
+        f"a campaign of {_count(sizes['record'], 'record')},"
+        f" {_count(sizes['channel'], 'channel')} and"
+        f" {_count(sizes['force_channel'], 'force channel')}",
+        problems,
+    )
+
+
+def _configuration(path: str) -> tuple[str | None, list[str]]:
+    """Return (what a YAML file is, None where it has problems; its problems)."""
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.yaml_file import read_yaml
+
+    try:
+        data = read_yaml(path)
+        structure = data.get("structure")
+        if "channels" in data and structure is None:
+            return _sidecar(path)
+        if isinstance(structure, dict) and structure.get("kind") == "identified":
+            if "modes" not in structure:
+                return _structure_file(path)
+        return _study(data, path)
+    except ConfigError as error:
+        return None, error.problems
+
+
+def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
+    """Return (what a study is, its problems). Raises ConfigError."""
+    from vibroimpact.config.reading import check_config
+    from vibroimpact.study.cases import all_cases
+
+    config = check_config(data, path)
+    problems = [f"{path}: {problem}" for problem in _problems_of_files(config)]
+    if problems:
+        return None, problems
+    aim = "with identification" if config.identification is not None else "without identification"
+    return (
+        f"study '{config.study}': structure of kind {config.structure.kind},"
+        f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
+        f" excitation of kind {config.excitation.kind},"
+        f" {_count(len(all_cases(config.grid)), 'case')} {aim}",
+        [],
+    )
+
+
+def _problems_of_files(config) -> list[str]:
+    """Return the problems of the matrices and of the measured force that a configuration names."""
+    problems = []
+    if config.structure.kind == "matrices":
+        from vibroimpact.structure.point_structure import build_point_structure
+
+        try:
+            build_point_structure(config)
+        except ValueError as error:
+            problems.append(str(error))
+    if config.excitation.kind == "measured":
+        from vibroimpact.excitation.force_files import ForceFileError, read_force
+
+        force = config.excitation
+        try:
+            read_force(force.file, force.variable, force.sampling_frequency_Hz)
+        except ForceFileError as error:
+            problems.append(str(error))
+    return problems
+
+
+def _sidecar(path: str) -> tuple[str | None, list[str]]:
+    """Return (what the campaign.yaml of a folder of measurements is, its problems)."""
+    from vibroimpact.campaign.importing.sidecar import read_sidecar
+    from vibroimpact.campaign.importing.signals import ImportProblem
+
+    try:
+        sidecar = read_sidecar(path)
+    except ImportProblem as problem:
+        return None, str(problem).split("\n")
+    return (
+        f"the description of a folder of measurements: {_count(len(sidecar.records), 'record')},"
+        f" {_count(len(sidecar.channels), 'channel')}, {_count(len(sidecar.forces), 'force')}",
+        [],
+    )
+
+
+def _structure_file(path: str) -> tuple[str | None, list[str]]:
+    """Return (what a file without modes asks for, its problems). Raises ConfigError."""
+    from vibroimpact.completion.structure_file import read_structure
+
+    stated = read_structure(path)
+    band = f"{stated.band_Hz[0]:g} to {stated.band_Hz[1]:g} Hz" if stated.band_Hz else "any band"
+    return f"a structure to be identified from its campaign, {band}", []
+
+
+def _count(number: int, what: str) -> str:
+    """Return "1 case", "2 cases"."""
+    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -1,0 +1,234 @@
+"""The declared keys of the configuration, section by section, as the key reference prints them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import NoneType
+from typing import Annotated, Any, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from .problems import kind_of, members
+from .quantities import Length, Pattern, Range, Section, Unit
+from .schema import Config
+
+# Ending of a key -> its unit.
+UNITS = {
+    "_m": "m",
+    "_s": "s",
+    "_Hz": "Hz",
+    "_N": "N",
+    "_Pa": "Pa",
+    "_kg": "kg",
+    "_deg": "deg",
+    "_per_s": "1/s",
+    "_per_m": "1/m",
+    "_s_per_m": "s/m",
+    "_m_per_s": "m/s",
+    "_N_per_m": "N/m",
+    "_N_per_m2": "N/m²",
+    "_N_per_m3": "N/m³",
+    "_N_per_m15": "N/m^1.5",
+    "_N_s_per_m": "N s/m",
+    "_N_s2_per_m2": "N s²/m²",
+    "_N_m_per_rad": "N m/rad",
+    "_kg_per_m3": "kg/m³",
+    "_per_second": "1/s",
+}
+
+
+@dataclass(frozen=True)
+class DeclaredKey:
+    """A key of a section.
+
+    holds: its type, in words; unit: "" for what is no number, "1" for a number without unit;
+    range: such as "> 0, ≤ 2"; default: as YAML writes it, None where the key is required; sections:
+    the sections that its value consists of.
+    """
+
+    name: str
+    holds: str
+    unit: str
+    range: str
+    default: str | None
+    meaning: str
+    example: str
+    sections: tuple[type[Section], ...]
+
+
+@dataclass(frozen=True)
+class DeclaredSection:
+    """A section at a place of the configuration.
+
+    place: dotted key, "" for the top level; `[]` follows a key that holds a list of sections.
+    kind: the value of `kind` that selects it, None where there is no choice.
+    meaning: what it is.
+    """
+
+    place: str
+    kind: str | None
+    meaning: str
+    keys: tuple[DeclaredKey, ...]
+
+
+def declared_sections() -> list[DeclaredSection]:
+    """Return every section of the configuration, from the top level down, each place once."""
+    return list(dict.fromkeys(_sections(Config, "")))
+
+
+def _sections(section: type[Section], place: str) -> Iterator[DeclaredSection]:
+    """Yield a section, then those inside it."""
+    keys = tuple(_declared(name, field) for name, field in section.model_fields.items())
+    yield DeclaredSection(place, kind_of(section), meaning_of(section), keys)
+    for key in keys:
+        inside = place_of(place, key.name) + ("[]" if key.holds.startswith("list") else "")
+        for inner in key.sections:
+            yield from _sections(inner, inside)
+
+
+def meaning_of(section: type[Section]) -> str:
+    """Return the docstring of a section, each paragraph in one line."""
+    paragraphs = (section.__doc__ or "").split("\n\n")
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+
+
+def place_of(section: str, key: str) -> str:
+    """Return the dotted place of a key of a section."""
+    return f"{section}.{key}" if section else key
+
+
+def unit_of(name: str, field: FieldInfo) -> str:
+    """Return the unit of a key: stated by its type, else by the ending of its name; "1" for whole
+    numbers, "" for what is no number.
+
+    Raises ValueError for a number whose unit is stated nowhere.
+    """
+    held = members(_annotation(field))
+    if not {float, int} & set(held):
+        return ""
+    stated = [each for each in _metadata(_annotation(field)) if isinstance(each, Unit)]
+    if stated:
+        return stated[-1].symbol
+    endings = [ending for ending in UNITS if name.endswith(ending)]
+    if endings:
+        return UNITS[max(endings, key=len)]
+    if float in held:
+        raise ValueError(f"key '{name}': state its unit in its name or with Unit in its type")
+    return "1"
+
+
+def _declared(name: str, field: FieldInfo) -> DeclaredKey:
+    """Return the DeclaredKey of a field."""
+    annotation = _annotation(field)
+    sections = _inner_sections(annotation)
+    return DeclaredKey(
+        name=name,
+        holds=_in_words(annotation),
+        unit=unit_of(name, field),
+        range=_range(annotation),
+        default=_default(field),
+        meaning=field.description or "",
+        example=", ".join(_written(example) for example in field.examples or ()),
+        sections=sections,
+    )
+
+
+def _annotation(field: FieldInfo) -> Any:
+    """Return the type of a field with the metadata that pydantic keeps apart from it."""
+    return Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
+
+
+def _metadata(annotation: Any) -> list[Any]:
+    """Return what Annotated adds anywhere inside a type, from the inside out."""
+    if get_origin(annotation) is Annotated:
+        inner, *own = get_args(annotation)
+        return [*_metadata(inner), *own]
+    return [each for argument in get_args(annotation) for each in _metadata(argument)]
+
+
+def _inner_sections(annotation: Any) -> tuple[type[Section], ...]:
+    """Return the sections that a value of a type consists of."""
+    return tuple(
+        member
+        for member in members(annotation)
+        if isinstance(member, type) and issubclass(member, Section)
+    )
+
+
+def _range(annotation: Any) -> str:
+    """Return the bounds of the numbers in a type, such as "> 0, ≤ 2"."""
+    bounds = [
+        f"{sign} {_number(bound)}"
+        for each in _metadata(annotation)
+        if isinstance(each, Range)
+        for sign, bound in each.bounds()
+    ]
+    return ", ".join(dict.fromkeys(bounds))
+
+
+def _number(bound: float) -> str:
+    """Return a bound in few digits."""
+    return f"{bound:g}".replace("e+0", "e").replace("e+", "e")
+
+
+WORDS = {float: "number", int: "whole number", bool: "true or false", str: "text"}
+
+
+def _in_words(annotation: Any) -> str:
+    """Return what a value of a type is, in words."""
+    if get_origin(annotation) is Annotated:
+        inner, *own = get_args(annotation)
+        lengths = [each.count for each in own if isinstance(each, Length)]
+        if any(isinstance(each, Pattern) for each in own):
+            return "name"
+        words = _in_words(inner)
+        return words.replace("list of", f"list of {lengths[0]}", 1) if lengths else words
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Literal:
+        *others, last = (f"`{value}`" for value in arguments)
+        return f"{', '.join(others)} or {last}" if others else last
+    if origin is tuple:
+        return f"list of {_several(_in_words(arguments[0]))}"
+    if origin is dict:
+        return f"block of {_in_words(arguments[0])}: {_in_words(arguments[1])}"
+    if arguments:
+        parts = dict.fromkeys(
+            "null" if argument is NoneType else _in_words(argument) for argument in arguments
+        )
+        return ", or ".join(parts)
+    return WORDS.get(annotation, "block of keys")
+
+
+def _several(words: str) -> str:
+    """Return the plural of what _in_words returns."""
+    for one, several in (("list of", "lists of"), ("block of keys", "blocks of keys")):
+        if words.startswith(one):
+            return words.replace(one, several, 1)
+    return f"{words}s" if words in ("number", "whole number", "text", "name") else words
+
+
+def _default(field: FieldInfo) -> str | None:
+    """Return the default as YAML writes it, None where the key is required."""
+    default = field.get_default()
+    if default is PydanticUndefined:
+        return None
+    if isinstance(default, Section):
+        given = default.model_dump(mode="json", exclude_unset=True)
+        return _written(given)
+    return _written(default)
+
+
+def _written(value: Any) -> str:
+    """Return a value as YAML writes it in one line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_written(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_written, value)) + "]"
+    if isinstance(value, float) and value and not 1.0e-3 <= abs(value) < 1.0e5:
+        mantissa, exponent = f"{value:.12e}".split("e")
+        digits = mantissa.rstrip("0")
+        return f"{digits}{'0' if digits.endswith('.') else ''}e{int(exponent):+d}"
+    return value if isinstance(value, str) else json.dumps(value)

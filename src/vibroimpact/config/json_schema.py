@@ -1,0 +1,43 @@
+"""The JSON schema of a configuration, for editors and for other programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
+
+from .declared_keys import meaning_of, unit_of
+from .schema import Config
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of a configuration.
+
+    Every key has a description, and every number its `unit`.
+    """
+    schema = Config.model_json_schema(schema_generator=_WithUnits)
+    return {
+        "$schema": GenerateJsonSchema.schema_dialect,
+        "title": "vibroimpact study",
+        **schema,
+    }
+
+
+class _WithUnits(GenerateJsonSchema):
+    """Pydantic's JSON schema with units of keys and without the titles it makes of their names."""
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        """Return False: a title made of the key's name says nothing new."""
+        return False
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
+        """Return the JSON schema of a section, with the unit of each key."""
+        section = super().model_schema(schema)
+        section.pop("title", None)
+        section["description"] = meaning_of(schema["cls"])
+        for name, field in schema["cls"].model_fields.items():
+            unit = unit_of(name, field)
+            if unit:
+                section["properties"][name]["unit"] = unit
+        return section

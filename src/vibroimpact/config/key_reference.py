@@ -1,0 +1,101 @@
+"""The reference of every configuration key as Markdown, generated from the declaration."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+from .declared_keys import DeclaredKey, DeclaredSection, declared_sections, place_of
+
+INTRODUCTION = """\
+# Configuration keys
+
+Every key of a study's configuration, generated from its declaration. A configuration is a YAML
+file. Quantities are in SI units, and the name of a key ends with its unit. A key that is not listed
+here is an error. Keys without a default are required.
+
+Unit 1 means a number without unit. In the place of a key, `[]` stands for each entry of a list.
+Write numbers in scientific notation as `4.0e+6`, with point and sign.
+"""
+COLUMNS = ("Key", "Type", "Unit", "Range", "Default", "Meaning", "Example")
+
+
+def markdown() -> str:
+    """Return the reference: one heading and table per section, one anchor per key.
+
+    The anchor of a key is its dotted place without brackets, such as `record.sensors.points`. In a
+    section with a `kind`, the kind precedes the key: `supports.profile.lobes.depth_m`.
+    """
+    parts = [INTRODUCTION]
+    for place, sections in groupby(_by_place(), key=lambda section: section.place):
+        parts += _at_place(place, list(sections))
+    return "\n".join(parts)
+
+
+def anchor(section: DeclaredSection, key: str = "") -> str:
+    """Return the anchor of a section, or of one of its keys."""
+    parts = (section.place.replace("[]", ""), section.kind, key)
+    return ".".join(filter(None, parts)) or "top-level"
+
+
+def _by_place() -> list[DeclaredSection]:
+    """Return the sections with those of the same place side by side."""
+    sections = declared_sections()
+    places = list(dict.fromkeys(section.place for section in sections))
+    return sorted(sections, key=lambda section: places.index(section.place))
+
+
+def _at_place(place: str, sections: list[DeclaredSection]) -> list[str]:
+    """Return the Markdown of the sections at a place: one, or one per kind."""
+    title = f"`{place}`" if place else "Top level"
+    level = min(2 + place.count("."), 4)
+    parts = []
+    if len(sections) > 1 or sections[0].kind:
+        kinds = ", ".join(f"[`{each.kind}`](#{anchor(each)})" for each in sections)
+        parts += [
+            f'<a id="{place.replace("[]", "")}"></a>\n\n{"#" * level} {title}\n',
+            f"The key `kind` selects one of: {kinds}.\n",
+        ]
+        title, level = title + ", kind ", min(level + 1, 5)
+    for section in sections:
+        kind = f"`{section.kind}`" if section.kind else ""
+        parts += [
+            f'<a id="{anchor(section)}"></a>\n\n{"#" * level} {title}{kind}\n',
+            f"{_escaped(section.meaning)}\n",
+            _table(section),
+        ]
+    return parts
+
+
+def _table(section: DeclaredSection) -> str:
+    """Return the table of a section's keys."""
+    rows = [COLUMNS, ("---",) * len(COLUMNS), *(_row(section, key) for key in section.keys)]
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def _row(section: DeclaredSection, key: DeclaredKey) -> tuple[str, ...]:
+    """Return the cells of a key."""
+    own, inside = anchor(section, key.name), place_of(section.place, key.name).replace("[]", "")
+    # A key that holds a section shares its place, and so its anchor, with the section's heading.
+    target = "" if key.sections and own == inside else f'<a id="{own}"></a>'
+    return (
+        f"{target}`{key.name}`",
+        _linked(key, inside),
+        key.unit,
+        key.range,
+        "required" if key.default is None else f"`{key.default}`",
+        _escaped(key.meaning).replace("|", "\\|"),
+        f"`{key.example}`" if key.example else "",
+    )
+
+
+def _linked(key: DeclaredKey, inside: str) -> str:
+    """Return the type of a key; blocks of keys are links to the anchor `inside`."""
+    for words in ("blocks of keys", "block of keys"):
+        if key.sections and words in key.holds:
+            return key.holds.replace(words, f"[{words}](#{inside})")
+    return key.holds
+
+
+def _escaped(text: str) -> str:
+    """Return a text whose angle brackets Markdown does not take for HTML."""
+    return text.replace("<", "&lt;").replace(">", "&gt;")
