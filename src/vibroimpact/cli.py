@@ -35,6 +35,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
 
 
+def require_yaml(arguments: Sequence[str]) -> None:
+    """Exit with every problem of a configuration file that is not YAML.
+
+    arguments: those of snakemake, whose --configfile names the files; without it, the file that the
+    Snakefile names. Snakemake parses these files before it reads the Snakefile, and its own message
+    says neither file nor line. Raises SystemExit.
+    """
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.yaml_file import read_yaml
+
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--configfile", "--configfiles", nargs="+", action="extend")
+    files = parser.parse_known_args(list(arguments))[0].configfile
+    problems = []
+    for file in files or filter(os.path.isfile, ["config/study.yaml"]):
+        try:
+            read_yaml(file)
+        except ConfigError as error:
+            problems += error.problems
+    if problems:
+        sys.exit("\n".join(problems))
+
+
 def _parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(

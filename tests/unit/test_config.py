@@ -361,11 +361,11 @@ def test_a_file_that_can_not_be_read_is_a_sentence(tmp_path):
     broken.write_text("a: [1\nb: 2")
     empty.write_text("")
     twice.write_text(STUDY.read_text() + "\nseed: 3\n")
-    with pytest.raises(ConfigError, match="broken.yaml: is not valid YAML"):
+    with pytest.raises(ConfigError, match="broken.yaml: line 2, column 2: the list"):
         load_config(broken)
     with pytest.raises(ConfigError, match="empty.yaml: holds no keys"):
         load_config(empty)
-    with pytest.raises(ConfigError, match="key 'seed' is given twice"):
+    with pytest.raises(ConfigError, match="line 83, column 1: key 'seed' is given twice"):
         load_config(twice)
 
 
@@ -394,7 +394,7 @@ def test_every_key_is_read_somewhere(kinds, request):
     library = [
         file
         for file in (ROOT / "src").rglob("*.py")
-        if not file.name.startswith(("config", "stages"))
+        if "config" not in file.relative_to(ROOT / "src").parts
     ]
     nodes = [node for file in library for node in ast.walk(ast.parse(file.read_text()))]
     read = {node.attr for node in nodes if isinstance(node, ast.Attribute)}

@@ -115,7 +115,7 @@ def _in_plain_words(error: yaml.MarkedYAMLError) -> str:
             f" between its entries, or close it with {closing}"
         )
     for part, words in PLAIN_WORDS:
-        if part in problem:
+        if part in f"{problem} {context}":
             return words.replace("{problem}", problem)
     return f"is not valid YAML ({', '.join(filter(None, [problem, context]))}): {ELSE}"
 
