@@ -1,8 +1,8 @@
 """The checks between keys of a configuration: geometry, sampling, names, bands.
 
-A check is a generator whose argument names are the top-level sections it reads; it yields a problem
-as (place, value, text). It runs when those sections are valid by themselves, so that one mistake
-elsewhere does not hide the others.
+A check is a generator whose argument names are the top-level sections it reads; it yields its
+problems as (place, value, text). It runs when those sections are valid by themselves, so that a
+mistake elsewhere does not hide the others.
 """
 
 from __future__ import annotations
@@ -10,28 +10,34 @@ from __future__ import annotations
 import inspect
 import math
 from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from . import geometry_checks
 from . import name_checks as names
+from .excitation import Excitation
+from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
+from .structure import Structure
+
+Problems = Iterator[tuple[str, Any, str]]
 
 STEPS_PER_EXCITED_PERIOD = 20
 FILTER_RATIO = 5  # kernels.RATIO, which only what integrates may import
-LARGEST_OMEGA_STEP = {
-    "newmark": 1.0,
-    "exact": 2.8,
-}  # rad; exact has no error in a mode alone, but must tell its phase: below pi
+# In rad. The exact scheme has no error in a mode alone; below pi, a mode is not aliased.
+LARGEST_OMEGA_STEP = {"newmark": 1.0, "exact": 2.8}
 MOST_STEPS_KEPT = 2e6
 TOLERANCE = 1e-9
 
 
-def cross_problems(sections):
-    """Return a list of (place, value, text), one per problem between the given {name: section} that
-    are valid by themselves.
+def cross_problems(sections: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
+    """Return [(place, value, text)], one per problem between sections.
+
+    sections: {name: section} of those that are valid by themselves.
     """
-    problems = []
+    problems: list[tuple[str, Any, str]] = []
     for check in CHECKS:
         wanted = list(inspect.signature(check).parameters)
         if all(sections.get(name) is not None for name in wanted) and _concerns(check, sections):
@@ -39,13 +45,13 @@ def cross_problems(sections):
     return problems
 
 
-def _concerns(check, sections):
-    """True unless a check is about tubes and the structure is none."""
+def _concerns(check: Callable[..., Problems], sections: Mapping[str, Any]) -> bool:
+    """Whether a check is about the kind of structure that there is."""
     tube = getattr(sections.get("structure"), "kind", "path") in names.TUBES
     return (tube or check not in TUBE_CHECKS) and not (tube and check in POINT_CHECKS)
 
 
-def _repeated_values(grid):
+def _repeated_values(grid: Grid) -> Problems:
     values = {
         "gap_m": grid.gap_m,
         "load_rms_N": grid.load_rms_N if isinstance(grid.load_rms_N, tuple) else (),
@@ -67,7 +73,7 @@ def _repeated_values(grid):
         )
 
 
-def _every_step(record, integration):
+def _every_step(record: RecordKeys, integration: Integration) -> Problems:
     steps = record.duration_s * integration.steps_per_second
     if record.every_step and steps > MOST_STEPS_KEPT:
         yield (
@@ -86,7 +92,7 @@ def _every_step(record, integration):
         )
 
 
-def _force(excitation):
+def _force(excitation: Excitation) -> Problems:
     if hasattr(excitation, "direction") and not np.any(excitation.direction):
         yield (
             "excitation.direction",
@@ -101,7 +107,7 @@ def _force(excitation):
         )
 
 
-def _overlay(overlay, grid):
+def _overlay(overlay: Overlay, grid: Grid) -> Problems:
     if overlay.campaign is not None and not Path(overlay.campaign).is_file():
         yield (
             "overlay.campaign",
@@ -116,7 +122,7 @@ def _overlay(overlay, grid):
         )
 
 
-def _bands_in_order(excitation, identification):
+def _bands_in_order(excitation: Excitation, identification: Identification) -> Problems:
     bands = {
         "identification.peak_search_Hz": identification.peak_search_Hz,
         "identification.lscf.band_Hz": identification.lscf.band_Hz,
@@ -130,7 +136,7 @@ def _bands_in_order(excitation, identification):
             yield key, [low, high], "is not in ascending order: give the lower end first"
 
 
-def _bands_below_nyquist(record, identification):
+def _bands_below_nyquist(record: RecordKeys, identification: Identification) -> Problems:
     nyquist = record.sampling_frequency_Hz / 2
     bands = {
         "peak_search_Hz": identification.peak_search_Hz,
@@ -146,7 +152,7 @@ def _bands_below_nyquist(record, identification):
             )
 
 
-def _broadband_is_excited(excitation, identification):
+def _broadband_is_excited(excitation: Excitation, identification: Identification) -> Problems:
     if excitation.kind != "band_limited":
         return
     low, high = excitation.band_Hz
@@ -162,7 +168,7 @@ def _broadband_is_excited(excitation, identification):
         )
 
 
-def _main_peak_is_excited(excitation, identification):
+def _main_peak_is_excited(excitation: Excitation, identification: Identification) -> Problems:
     if excitation.kind != "band_limited":
         return
     low, high = excitation.band_Hz
@@ -178,7 +184,7 @@ def _main_peak_is_excited(excitation, identification):
             )
 
 
-def _segments(record, spectra, identification):
+def _segments(record: RecordKeys, spectra: Spectra, identification: Identification) -> Problems:
     if spectra.segment_s > record.duration_s:
         yield (
             "spectra.segment_s",
@@ -197,7 +203,7 @@ def _segments(record, spectra, identification):
         )
 
 
-def _bands_resolved(spectra, identification):
+def _bands_resolved(spectra: Spectra, identification: Identification) -> Problems:
     bands = {
         "peak_search_Hz": identification.peak_search_Hz,
         "lscf.band_Hz": identification.lscf.band_Hz,
@@ -216,13 +222,8 @@ def _bands_resolved(spectra, identification):
             )
 
 
-def _step_and_force(excitation, integration):
-    source = excitation.signal if excitation.kind == "base_motion" else excitation
-    highest = {
-        "band_limited": lambda: source.band_Hz[1],
-        "measured": lambda: (source.sampling_frequency_Hz or 0) / 2,
-        "harmonic": lambda: source.frequency_Hz,
-    }.get(source.kind, lambda: 0.0)()
+def _step_and_force(excitation: Excitation, integration: Integration) -> Problems:
+    highest = _highest_frequency(excitation)
     needed = STEPS_PER_EXCITED_PERIOD * highest
     if integration.steps_per_second < needed:
         yield (
@@ -235,7 +236,19 @@ def _step_and_force(excitation, integration):
         )
 
 
-def _step_and_modes(structure, basis, integration):
+def _highest_frequency(excitation: Excitation) -> float:
+    """Return the highest excited frequency in Hz, 0 where none is stated."""
+    source = excitation.signal if excitation.kind == "base_motion" else excitation
+    if source.kind == "band_limited":
+        return source.band_Hz[1]
+    if source.kind == "measured":
+        return (source.sampling_frequency_Hz or 0.0) / 2
+    if source.kind == "harmonic":
+        return source.frequency_Hz
+    return 0.0
+
+
+def _step_and_modes(structure: Structure, basis: Basis, integration: Integration) -> Problems:
     omega_step = 2 * math.pi * basis.free_modes_to_Hz / integration.steps_per_second
     largest = LARGEST_OMEGA_STEP[integration.scheme]
     if omega_step > largest:
@@ -251,7 +264,7 @@ def _step_and_modes(structure, basis, integration):
         )
 
 
-def _step_and_samples(integration, record):
+def _step_and_samples(integration: Integration, record: RecordKeys) -> Problems:
     if record.every_step:
         return
     ratio = integration.steps_per_second / record.sampling_frequency_Hz
@@ -269,7 +282,7 @@ def _step_and_samples(integration, record):
         )
 
 
-def _whole_samples(record, integration):
+def _whole_samples(record: RecordKeys, integration: Integration) -> Problems:
     if record.every_step:
         return
     for place, duration in (
@@ -288,7 +301,7 @@ def _whole_samples(record, integration):
             )
 
 
-TUBE_CHECKS = (
+TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     geometry_checks.wall,
     geometry_checks.path_directions,
     geometry_checks.points_on_the_tube,
@@ -298,8 +311,8 @@ TUBE_CHECKS = (
     names.sensors_of_a_tube,
     _step_and_modes,
 )
-POINT_CHECKS = (names.point_supports,)
-CHECKS = (
+POINT_CHECKS: tuple[Callable[..., Problems], ...] = (names.point_supports,)
+CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
     *POINT_CHECKS,
     names.chain_names,

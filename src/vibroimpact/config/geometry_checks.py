@@ -5,15 +5,24 @@ Each yields (place, value, text), see checks.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M, build_centreline
+from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M, Centreline, build_centreline
+
+from .schema import Grid
+from .structure import Path, Structure, UTube
+from .supports import Support
+
+Problems = Iterator[tuple[str, Any, str]]
+Tube = UTube | Path
 
 TOLERANCE = 1e-9
 
 
-def wall(structure):
+def wall(structure: Tube) -> Problems:
     """Yield a problem unless the wall is thinner than the radius."""
     section = structure.section
     if section.wall_thickness_m >= section.outer_diameter_m / 2:
@@ -24,7 +33,7 @@ def wall(structure):
         )
 
 
-def path_directions(structure):
+def path_directions(structure: Tube) -> Problems:
     """Yield a problem unless start and bends of a path have directions."""
     if structure.kind != "path":
         return
@@ -54,12 +63,12 @@ def path_directions(structure):
         tangent = math.cos(angle) * tangent + math.sin(angle) * toward / np.linalg.norm(toward)
 
 
-def _centreline(structure):
-    """The centreline, or None where its directions are a problem already reported."""
+def _centreline(structure: Tube) -> Centreline | None:
+    """Return the centreline, or None where its directions are a problem already reported."""
     return None if any(path_directions(structure)) else build_centreline(structure)
 
 
-def _off_the_tube(centreline, place, position):
+def _off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) -> Problems:
     """Yield a problem when `position` (3,) m is farther from the centreline than the tolerance."""
     arc_length = min(
         (segment.nearest(np.array(position)) for segment in centreline.segments),
@@ -78,20 +87,23 @@ def _off_the_tube(centreline, place, position):
         )
 
 
-def points_on_the_tube(structure, points):
+def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -> Problems:
     """Yield a problem unless named points are on the tube."""
     centreline = _centreline(structure)
-    for name, position in points.items() if centreline else ():
+    if centreline is None:
+        return
+    for name, position in points.items():
         yield from _off_the_tube(centreline, f"points.{name}", position)
 
 
-def supports_on_the_tube(structure, supports):
+def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless supports are on one segment of the tube each and do not overlap."""
     centreline = _centreline(structure)
-    taken = []
-    for index, support in enumerate(supports if centreline else ()):
-        missing = [key for key in ("at_m", "height_m") if getattr(support, key) is None]
-        if missing or support.point is not None:
+    if centreline is None:
+        return
+    taken: list[tuple[str, float, float]] = []
+    for index, support in enumerate(supports):
+        if support.at_m is None or support.height_m is None or support.point is not None:
             yield (
                 f"supports[{index}]",
                 support.name,
@@ -125,13 +137,15 @@ def supports_on_the_tube(structure, supports):
         taken.append((support.name, low, high))
 
 
-def support_lists(supports):
+def support_lists(supports: Sequence[Support]) -> Problems:
     """Yield a problem unless lists of a support have one entry per contact point."""
     for index, support in enumerate(supports):
-        lists = {"stiffness_N_per_m": support.stiffness_N_per_m, "gap_factor": support.gap_factor}
-        lists["centre_offset_m"] = (
-            support.centre_offset_m if isinstance(support.centre_offset_m[0], tuple) else 0.0
-        )
+        offset = support.centre_offset_m
+        lists = {
+            "stiffness_N_per_m": support.stiffness_N_per_m,
+            "gap_factor": support.gap_factor,
+            "centre_offset_m": offset if isinstance(offset[0], tuple) else None,
+        }
         for key, value in lists.items():
             if isinstance(value, tuple) and len(value) != support.points:
                 yield (
@@ -144,7 +158,7 @@ def support_lists(supports):
                 )
 
 
-def gaps(structure, grid):
+def gaps(structure: Tube, grid: Grid) -> Problems:
     """Yield a problem unless gaps are clearances."""
     radius = structure.section.outer_diameter_m / 2
     for index, gap in enumerate(grid.gap_m):
@@ -159,7 +173,7 @@ def gaps(structure, grid):
             )
 
 
-def offsets(structure, supports):
+def offsets(structure: Tube, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless offsets are smaller than the tube."""
     radius = structure.section.outer_diameter_m / 2
     for index, support in enumerate(supports):
@@ -172,7 +186,7 @@ def offsets(structure, supports):
             )
 
 
-def gaps_of_supports(structure, supports):
+def gaps_of_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless only flat stops touch at rest."""
     for index, support in enumerate(supports):
         if support.gap_m is not None and support.gap_m <= 0.0 and support.profile.kind != "planes":

@@ -5,21 +5,30 @@ yields (place, value, text), see checks.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
+from typing import Any
 
 import numpy as np
+
+from .excitation import Excitation
+from .schema import Identification, RecordKeys
+from .structure import Structure
+from .supports import Initial, LocalElement, Support
+
+Problems = Iterator[tuple[str, Any, str]]
 
 TUBES = ("u_tube", "path")
 
 
-def names_twice(supports):
+def names_twice(supports: Sequence[Support]) -> Problems:
     """Yield a problem unless supports have names of their own."""
     for name, times in Counter(support.name for support in supports).items():
         if times > 1:
             yield "supports", name, f"names {times} supports: give each a name of its own"
 
 
-def drag_partners(elements):
+def drag_partners(elements: Sequence[LocalElement]) -> Problems:
     """Yield a problem unless elements that share the speed of a drag are there."""
     names = [element.name for element in elements]
     for index, element in enumerate(elements):
@@ -34,14 +43,16 @@ def drag_partners(elements):
             )
 
 
-def known_points(structure, points, excitation, record, supports, elements):
+def known_points(
+    structure: Structure,
+    points: Mapping[str, Sequence[float]],
+    excitation: Excitation,
+    record: RecordKeys,
+    supports: Sequence[Support],
+    elements: Sequence[LocalElement],
+) -> Problems:
     """Yield a problem unless points that the configuration names are there."""
-    known = {
-        "chain": lambda: [mass.name for mass in structure.masses],
-        "matrices": lambda: list(structure.points),
-        "identified": lambda: sorted({name for mode in structure.modes for name in mode.shape}),
-    }
-    names = known.get(structure.kind, lambda: list(points))()
+    names = _names_of_points(structure, points)
     named = list(_force_points(excitation))
     named += [
         (f"record.sensors.points[{i}]", name)
@@ -61,7 +72,18 @@ def known_points(structure, points, excitation, record, supports, elements):
             yield place, name, f"is not one of the named points: {remedy}"
 
 
-def _force_points(excitation):
+def _names_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> list[str]:
+    """Return the names of the points that a structure has."""
+    if structure.kind == "chain":
+        return [mass.name for mass in structure.masses]
+    if structure.kind == "matrices":
+        return list(structure.points)
+    if structure.kind == "identified":
+        return sorted({name for mode in structure.modes for name in mode.shape})
+    return list(points)
+
+
+def _force_points(excitation: Excitation) -> Iterator[tuple[str, str]]:
     """Yield (place, point) of everything that the excitation names."""
     if hasattr(excitation, "point"):
         yield "excitation.point", excitation.point
@@ -72,7 +94,7 @@ def _force_points(excitation):
         )
 
 
-def identified_points(record, identification):
+def identified_points(record: RecordKeys, identification: Identification) -> Problems:
     """Yield a problem unless points to identify from are recorded."""
     named = [
         ("identification.response_point", identification.response_point),
@@ -87,7 +109,9 @@ def identified_points(record, identification):
             yield place, name, "is not recorded: add it to record.sensors.points"
 
 
-def identification_needs(structure, excitation, record, identification):
+def identification_needs(
+    structure: Structure, excitation: Excitation, record: RecordKeys, identification: Identification
+) -> Problems:
     """Yield a problem unless what is identified is a tube under a broadband force."""
     if structure.kind not in TUBES:
         yield (
@@ -115,7 +139,7 @@ def identification_needs(structure, excitation, record, identification):
         )
 
 
-def point_supports(structure, supports):
+def point_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless supports of a structure that is no tube are at its points."""
     for index, support in enumerate(supports):
         if support.point is None or support.at_m is not None:
@@ -126,7 +150,7 @@ def point_supports(structure, supports):
             )
 
 
-def chain_names(structure):
+def chain_names(structure: Structure) -> Problems:
     """Yield a problem unless masses have names, and springs name them."""
     if structure.kind != "chain":
         return
@@ -144,7 +168,7 @@ def chain_names(structure):
                 )
 
 
-def initial_points(structure, initial):
+def initial_points(structure: Structure, initial: Initial) -> Problems:
     """Yield a problem unless only a chain or matrices start in motion."""
     if structure.kind in (*TUBES, "identified") and (
         initial.displacement_m or initial.velocity_m_per_s
@@ -156,7 +180,7 @@ def initial_points(structure, initial):
         )
 
 
-def sensors(record):
+def sensors(record: RecordKeys) -> Problems:
     """Yield a problem unless sensors are named once."""
     if record.sensors is None:
         return
@@ -166,7 +190,7 @@ def sensors(record):
                 yield f"record.sensors.{key}", name, f"stands {times} times: give each once"
 
 
-def sensors_of_a_tube(structure, record):
+def sensors_of_a_tube(structure: Structure, record: RecordKeys) -> Problems:
     """Yield a problem unless a tube has sensors, the shape line among their directions."""
     if record.sensors is None:
         yield (
@@ -185,7 +209,7 @@ def sensors_of_a_tube(structure, record):
         )
 
 
-def driven_direction_is_recorded(excitation, record):
+def driven_direction_is_recorded(excitation: Excitation, record: RecordKeys) -> Problems:
     """Yield a problem unless the direction of the force is recorded."""
     if record.sensors is None or not hasattr(excitation, "direction"):
         return
