@@ -1,3 +1,6 @@
-"""The configuration: its declaration, its reading with every problem at once, its checks, and what
-each stage sees of it.
+"""The configuration of a study: its declaration, its checks, its JSON schema and key reference, and
+the part of it that each stage of the workflow gets.
+
+Config is the declaration, checked and immutable. StageSettings is the view of it that a stage gets,
+with the same attribute names.
 """
