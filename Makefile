@@ -15,6 +15,7 @@ stamp = $(1)/ready-$(call digest,$(2))
 READY := $(call stamp,.venv,requirements.lock)
 READY_JUDGES := $(call stamp,.venv-judges,requirements-judges.lock)
 READY_BENCHMARK := $(call stamp,.venv-benchmark,requirements-benchmark.lock)
+READY_DOCS := $(call stamp,.venv-docs,requirements-docs.lock)
 
 # An environment (1) from a lock (2), with the library's own folder on its path.
 define environment
@@ -29,7 +30,7 @@ $(1)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --r
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study smoke test test-all lint format judges benchmark setup clean
+.PHONY: help study smoke test test-all lint format judges benchmark docs setup clean
 
 help: ## list the targets
 	@$(PYTHON) -c "import re; [print(f'make {name:<10} {text}') for name, text in \
@@ -65,6 +66,9 @@ benchmark: $(READY_BENCHMARK) ## speed beside other codes: writes docs/performan
 	.venv-benchmark/bin/python -m benchmarks.work_precision
 	.venv-benchmark/bin/python -m benchmarks
 
+docs: $(READY_DOCS) ## the documentation site: docs/_build/html/index.html
+	.venv-docs/bin/sphinx-build -q -W --keep-going -b html docs docs/_build/html
+
 setup: $(READY) ## only the environment
 
 clean: ## remove the results of one study: make clean STUDY=name (imported data stay)
@@ -78,3 +82,6 @@ $(READY_JUDGES):
 
 $(READY_BENCHMARK):
 	$(call environment,.venv-benchmark,requirements-benchmark.lock)
+
+$(READY_DOCS):
+	$(call environment,.venv-docs,requirements-docs.lock)

@@ -1,0 +1,125 @@
+"""The pages of the site that are made from the code: configuration keys, effects, command line and
+Python interface.
+"""
+
+import importlib
+import pkgutil
+import re
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import vibroimpact
+
+# The packages that a user's own program imports; the others serve the workflow.
+PUBLIC = (
+    "units",
+    "records",
+    "geometry",
+    "config",
+    "structure",
+    "contact",
+    "excitation",
+    "reduction",
+    "integration",
+    "spectra",
+    "linear",
+    "identify",
+    "study",
+    "campaign",
+    "effects",
+)
+ARGUMENT = re.compile(r"^\s*([A-Za-z_][\w.]*(?:, [A-Za-z_][\w.]*)*)(?: \([^)]*\))?: +\S")
+
+
+def write_generated_pages(folder):
+    """Write every generated page into `folder`."""
+    folder.mkdir(exist_ok=True)
+    _write(folder / "configuration_keys.md", _made_by("vibroimpact.config.key_reference"))
+    _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
+    _write(folder / "command_line.md", _command_line())
+    python = folder / "python"
+    python.mkdir(exist_ok=True)
+    pages = {f"{package}.rst": _package_page(package) for package in PUBLIC}
+    for stale in {path.name for path in python.glob("*.rst")} - set(pages):
+        (python / stale).unlink()
+    for name, text in pages.items():
+        _write(python / name, text)
+
+
+def docstring_as_rst(app, what, name, obj, options, lines):
+    """Turn a docstring in plain text into reStructuredText, in place: arguments become a list,
+    characters with a meaning in reStructuredText are shown as they are.
+    """
+    result, inside = [], False
+    for line in lines:
+        argument = ARGUMENT.match(line)
+        if not line.strip():
+            inside = False
+            result.append("")
+        elif argument and not line.strip().startswith(("http:", "https:")):
+            if not inside and result and result[-1]:
+                result.append("")
+            inside = True
+            result.append(f"* {_escaped(line.strip())}")
+        else:
+            result.append(("  " if inside else "") + _escaped(line.strip()))
+    lines[:] = [*result, ""]
+
+
+def _escaped(text):
+    """Return text with `code` as literals and every other special character escaped."""
+    parts = re.split(r"`+([^`]+)`+", text)
+    shown = [re.sub(r"([\\*|_`<>])", r"\\\1", part) for part in parts]
+    shown[1::2] = [f"\\ ``{part}``\\ " for part in parts[1::2]]
+    return "".join(shown)
+
+
+def _write(path, text):
+    """Write text where it differs from what is there, so that unchanged pages are not built
+    again.
+    """
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+def _made_by(module):
+    """Return module.markdown(), or a sentence where this version has no such module."""
+    if find_spec(module) is None:
+        return f"*This version has no `{module}`; `config/study.yaml` shows every key.*\n"
+    return importlib.import_module(module).markdown()
+
+
+def _command_line():
+    """Return the help texts of the command line as Markdown."""
+    root = Path(vibroimpact.__file__).parents[1]
+    if find_spec("vibroimpact.__main__") is None:
+        return "*This version has no `python -m vibroimpact`.*\n"
+    shown = subprocess.run(
+        [sys.executable, "-m", "vibroimpact", "--help"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={"PYTHONPATH": str(root), "COLUMNS": "90"},
+    ).stdout
+    return f"```text\n{shown}```\n"
+
+
+def _package_page(package):
+    """Return the page of a package: its docstring, then every module with its functions."""
+    top = importlib.import_module(f"vibroimpact.{package}")
+    names = [f"vibroimpact.{package}"]
+    if hasattr(top, "__path__"):
+        names += sorted(
+            found.name
+            for found in pkgutil.walk_packages(top.__path__, f"vibroimpact.{package}.")
+            if not found.ispkg
+        )
+    title = f"vibroimpact.{package}"
+    parts = [title, "=" * len(title), ""]
+    for name in names:
+        if name != title:
+            parts += [name, "-" * len(name), ""]
+        parts += [f".. automodule:: {name}", ""]
+    return "\n".join(parts)
