@@ -6,8 +6,9 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT / "src"), str(ROOT / "docs")]
 
-import vibroimpact  # noqa: E402  (the library is found through the line above)
 from site_pages import docstring_as_rst, write_generated_pages  # noqa: E402
+
+import vibroimpact  # noqa: E402  (the library is found through the line above)
 
 project = "vibroimpact"
 author = "The vibroimpact authors"

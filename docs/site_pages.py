@@ -85,10 +85,30 @@ def _write(path, text):
 
 
 def _made_by(module):
-    """Return module.markdown(), or a sentence where this version has no such module."""
+    """Return module.markdown() to be included in a page, or a sentence where this version has no
+    such module.
+    """
     if find_spec(module) is None:
-        return f"*This version has no `{module}`; `config/study.yaml` shows every key.*\n"
-    return importlib.import_module(module).markdown()
+        return f"*This version has no `{module}`.*\n"
+    text = importlib.import_module(module).markdown()
+    return _links_as_html(re.sub(r"\A# .*\n+", "", text))
+
+
+def _links_as_html(text):
+    """Return text with its links to places of its own (`<a id="...">`) in HTML, where Sphinx leaves
+    them alone. Raises ValueError where such a place is missing.
+    """
+    places = set(re.findall(r'<a id="([^"]+)"', text))
+    links = re.compile(r"\[([^\]]+)\]\(#([^)]+)\)")
+    missing = {target for _, target in links.findall(text)} - places if places else set()
+    if missing:
+        raise ValueError(f"links to places that are not there: {sorted(missing)}")
+
+    def html(match):
+        shown = re.sub(r"`([^`]+)`", r"<code>\1</code>", match[1])
+        return f'<a class="reference internal" href="#{match[2]}">{shown}</a>'
+
+    return links.sub(html, text) if places else text
 
 
 def _command_line():
