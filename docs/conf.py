@@ -22,7 +22,7 @@ exclude_patterns = ["_build", "examples", "generated/*.md"]
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
-autodoc_default_options = {"members": True, "show-inheritance": False}
+autodoc_default_options = {"members": True}
 add_module_names = False
 
 # Nothing is fetched: the theme uses the fonts of the system, MathJax comes with its extension.
@@ -38,5 +38,5 @@ write_generated_pages(ROOT / "docs" / "generated")
 
 
 def setup(app):
-    """Make plain docstrings readable to Sphinx, and wrap wide tables so that they scroll."""
+    """Make plain docstrings readable to Sphinx."""
     app.connect("autodoc-process-docstring", docstring_as_rst)

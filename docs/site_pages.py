@@ -30,7 +30,8 @@ PUBLIC = (
     "campaign",
     "effects",
 )
-ARGUMENT = re.compile(r"^\s*([A-Za-z_][\w.]*(?:, [A-Za-z_][\w.]*)*)(?: \([^)]*\))?: +\S")
+# An argument's line in a docstring, "name: meaning" or "name, name (shape): meaning".
+ARGUMENT = re.compile(r"^\s*(?!Source|Raises|Returns?\b)[a-z_]\w*(?:, \w+)*(?: \([^)]*\))?: +\S")
 
 
 def write_generated_pages(folder):
@@ -52,20 +53,17 @@ def docstring_as_rst(app, what, name, obj, options, lines):
     """Turn a docstring in plain text into reStructuredText, in place: arguments become a list,
     characters with a meaning in reStructuredText are shown as they are.
     """
-    result, inside = [], False
+    result, inside = [""], False
     for line in lines:
-        argument = ARGUMENT.match(line)
         if not line.strip():
             inside = False
             result.append("")
-        elif argument and not line.strip().startswith(("http:", "https:")):
-            if not inside and result and result[-1]:
-                result.append("")
+        elif ARGUMENT.match(line) and (inside or not result[-1]):
             inside = True
             result.append(f"* {_escaped(line.strip())}")
         else:
             result.append(("  " if inside else "") + _escaped(line.strip()))
-    lines[:] = [*result, ""]
+    lines[:] = [*result[1:], ""]
 
 
 def _escaped(text):
