@@ -54,15 +54,20 @@ def docstring_as_rst(app, what, name, obj, options, lines):
     characters with a meaning in reStructuredText are shown as they are.
     """
     result, inside = [""], False
-    for line in lines:
-        if not line.strip():
+    for line in map(str.strip, lines):
+        item = line.startswith("- ") or (ARGUMENT.match(line) and (inside or not result[-1]))
+        if inside and not item and line.startswith(("Raises", "Source", "Returns")):
             inside = False
             result.append("")
-        elif ARGUMENT.match(line) and (inside or not result[-1]):
+        if not line:
+            inside = False
+            result.append("")
+        elif item:
+            result += [""] if result[-1] and not inside else []
             inside = True
-            result.append(f"* {_escaped(line.strip())}")
+            result.append(f"* {_escaped(line.removeprefix('- '))}")
         else:
-            result.append(("  " if inside else "") + _escaped(line.strip()))
+            result.append(("  " if inside else "") + _escaped(line))
     lines[:] = [*result[1:], ""]
 
 
