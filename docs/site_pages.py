@@ -30,6 +30,8 @@ PUBLIC = (
     "campaign",
     "effects",
 )
+# The sixth column of the tables of keys holds sentences.
+MEANING_IS_WIDE = "<style>article td:nth-child(6) { min-width: 17em; }</style>\n\n"
 # An argument's line in a docstring, "name: meaning" or "name, name (shape): meaning".
 ARGUMENT = re.compile(r"^\s*(?!Source|Raises|Returns?\b)[a-z_]\w*(?:, \w+)*(?: \([^)]*\))?: +\S")
 
@@ -37,7 +39,8 @@ ARGUMENT = re.compile(r"^\s*(?!Source|Raises|Returns?\b)[a-z_]\w*(?:, \w+)*(?: \
 def write_generated_pages(folder):
     """Write every generated page into `folder`."""
     folder.mkdir(exist_ok=True)
-    _write(folder / "configuration_keys.md", _made_by("vibroimpact.config.key_reference"))
+    keys = _made_by("vibroimpact.config.key_reference")
+    _write(folder / "configuration_keys.md", MEANING_IS_WIDE + keys)
     _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
     _write(folder / "command_line.md", _command_line())
     python = folder / "python"
