@@ -14,24 +14,37 @@ SMALL_TO_HZ = SMALL_BASIS["basis.free_modes_to_Hz"]
 
 INTRODUCTION = f"""# Performance
 
-Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmark.csv`, `growth.csv`, `peers.csv` and `machine.csv`.
+Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmark.csv`, \
+`growth.csv`, `peers.csv` and `machine.csv`.
 
-The problem is the study's stand-in tube: a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 degrees of the bend, two plates of five contact
-points, {GAP_M * 1e3:.3f} mm of gap. "Modes" counts free modes and the residual vectors that carry the local flexibility
-of the contacts; these reach 130 kHz and set the step of every explicit method, so that one case keeps free modes alone. 99 modes are the study's
-basis, 61 a smaller one (free modes to {SMALL_TO_HZ:g} Hz). At {LOAD_N:g} N RMS, the study's highest load, a plate bears a force half of the time.
+The problem is the study's stand-in tube: a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
+degrees of the bend, two plates of five contact
+points, {GAP_M * 1e3:.3f} mm of gap. "Modes" counts free modes and the residual vectors that \
+carry the local flexibility
+of the contacts; these reach 130 kHz and set the step of every explicit method, so that one case \
+keeps free modes alone. 99 modes are the study's
+basis, 61 a smaller one (free modes to {SMALL_TO_HZ:g} Hz). At {LOAD_N:g} N RMS, the study's \
+highest load, a plate bears a force half of the time.
 
-- Every code solves the same problem, and is checked before its time is quoted: displacement at three sensors over {CHECK_S:g} s without contact,
-  over the first impacts (to {FIRST_IMPACTS_S:g} s), and its RMS over all of it; obstacles moved off the axis, so that both directions touch.
-- Ours goes through its public path (`march_lanes`): set-up, output filter, statistics, energies and records included. The peers keep three
+- Every code solves the same problem, and is checked before its time is quoted: displacement at \
+three sensors over {CHECK_S:g} s without contact,
+  over the first impacts (to {FIRST_IMPACTS_S:g} s), and its RMS over all of it; obstacles moved \
+off the axis, so that both directions touch.
+- Ours goes through its public path (`march_lanes`): set-up, output filter, statistics, energies \
+and records included. The peers keep three
   displacements. Forces are made beforehand for all.
-- A time is CPU time of one core, compiled beforehand. Ours and a peer run in turns in one process; a ratio belongs to a pair measured next
-  to each other: median (smallest to largest). A short stretch of a slow peer is compared per simulated second; it holds less
+- A time is CPU time of one core, compiled beforehand. Ours and a peer run in turns in one \
+process; a ratio belongs to a pair measured next
+  to each other: median (smallest to largest). A short stretch of a slow peer is compared per \
+simulated second; it holds less
   contact than a long record, which favours the peer.
-- Ours integrates eight runs side by side, one per element of a 512-bit vector. One run alone fills one element of eight and costs nearly as
-  much as eight: it is about as fast as a plain compiled loop. The bits of a run do not depend on how many run beside it. The plain loop, and JAX
+- Ours integrates eight runs side by side, one per element of a 512-bit vector. One run alone \
+fills one element of eight and costs nearly as
+  much as eight: it is about as fast as a plain compiled loop. The bits of a run do not depend \
+on how many run beside it. The plain loop, and JAX
   without its batch, take one case after the other.
-- Ours steps as the plain loop, JAX and Exudyn do: Newmark, {RATE} steps per second. "At the study's step" is the scheme and rate of
+- Ours steps as the plain loop, JAX and Exudyn do: Newmark, {RATE} steps per second. "At the \
+study's step" is the scheme and rate of
   `config/study.yaml`; [what a step is worth](#what-a-step-is-worth) is below.
 - Absolute times are those of this machine. Compare ratios.
 """

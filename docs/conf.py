@@ -1,21 +1,18 @@
 """How Sphinx builds the documentation site; `make docs` runs it."""
 
 import sys
+from importlib import import_module
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT / "src"), str(ROOT / "docs")]
 
-from site_pages import docstring_as_rst, write_generated_pages  # noqa: E402
-
-import vibroimpact  # noqa: E402  (the library is found through the line above)
-
 project = "vibroimpact"
 author = "The vibroimpact authors"
-release = version = vibroimpact.__version__
+release = version = import_module("vibroimpact").__version__
 html_title = f"vibroimpact {release}"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx-mathjax-offline"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx-mathjax-offline", "site_pages"]
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 4
 exclude_patterns = ["_build", "examples", "generated/*.md"]
@@ -33,10 +30,3 @@ html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False
 pygments_style = "friendly"
-
-write_generated_pages(ROOT / "docs" / "generated")
-
-
-def setup(app):
-    """Make plain docstrings readable to Sphinx."""
-    app.connect("autodoc-process-docstring", docstring_as_rst)

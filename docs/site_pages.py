@@ -10,6 +10,8 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+from docutils import nodes
+
 import vibroimpact
 
 # The packages that a user's own program imports; the others serve the workflow.
@@ -36,8 +38,17 @@ MEANING_IS_WIDE = "<style>article td:nth-child(6) { min-width: 17em; }</style>\n
 ARGUMENT = re.compile(r"^\s*(?!Source|Raises|Returns?\b)[a-z_]\w*(?:, \w+)*(?: \([^)]*\))?: +\S")
 
 
-def write_generated_pages(folder):
-    """Write every generated page into `folder`."""
+def setup(app):
+    """Connect this module, an extension of Sphinx, to the build of the site."""
+    app.connect("config-inited", write_generated_pages)
+    app.connect("autodoc-process-docstring", docstring_as_rst)
+    app.connect("doctree-read", captions_from_alternative_text)
+    return {"parallel_read_safe": True}
+
+
+def write_generated_pages(app, config):
+    """Write every generated page into docs/generated."""
+    folder = Path(app.srcdir, "generated")
     folder.mkdir(exist_ok=True)
     keys = _made_by("vibroimpact.config.key_reference")
     _write(folder / "configuration_keys.md", MEANING_IS_WIDE + keys)
@@ -72,6 +83,22 @@ def docstring_as_rst(app, what, name, obj, options, lines):
         else:
             result.append(("  " if inside else "") + _escaped(line))
     lines[:] = [*result[1:], ""]
+
+
+def captions_from_alternative_text(app, doctree):
+    """Give every picture that stands alone a caption, its alternative text, unless a paragraph in
+    italics follows, which is its caption already.
+    """
+    for number, image in enumerate(list(doctree.findall(nodes.image)), 1):
+        alone = image.parent
+        if not isinstance(alone, nodes.paragraph) or len(alone) > 1 or not image.get("alt"):
+            continue
+        follows = alone.next_node(descend=False, siblings=True)
+        if isinstance(follows, nodes.paragraph) and isinstance(follows[0], nodes.emphasis):
+            continue
+        caption = nodes.caption("", "", nodes.Text(image["alt"]))
+        figure = nodes.figure("", image.deepcopy(), caption, ids=[f"figure-{number}"])
+        alone.replace_self(figure)
 
 
 def _escaped(text):
