@@ -30,3 +30,4 @@ html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False
 pygments_style = "friendly"
+highlight_language = "text"

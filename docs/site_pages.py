@@ -32,8 +32,7 @@ PUBLIC = (
     "campaign",
     "effects",
 )
-# The sixth column of the tables of keys holds sentences.
-MEANING_IS_WIDE = "<style>article td:nth-child(6) { min-width: 17em; }</style>\n\n"
+MEANING_IS_WIDE = "<style>article td:nth-child(2) { min-width: 16em; }</style>\n\n"
 # An argument's line in a docstring, "name: meaning" or "name, name (shape): meaning".
 ARGUMENT = re.compile(r"^\s*(?!Source|Raises|Returns?\b)[a-z_]\w*(?:, \w+)*(?: \([^)]*\))?: +\S")
 
@@ -51,7 +50,7 @@ def write_generated_pages(app, config):
     folder = Path(app.srcdir, "generated")
     folder.mkdir(exist_ok=True)
     keys = _made_by("vibroimpact.config.key_reference")
-    _write(folder / "configuration_keys.md", MEANING_IS_WIDE + keys)
+    _write(folder / "configuration_keys.md", MEANING_IS_WIDE + _meaning_second(keys))
     _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
     _write(folder / "command_line.md", _command_line())
     python = folder / "python"
@@ -125,6 +124,25 @@ def _made_by(module):
         return f"*This version has no `{module}`.*\n"
     text = importlib.import_module(module).markdown()
     return _links_as_html(re.sub(r"\A# .*\n+", "", text))
+
+
+def _meaning_second(text):
+    """Return text with the column "Meaning" of its tables beside the first one, where a narrow
+    screen shows it.
+    """
+    lines, place = [], None
+    for line in text.splitlines():
+        cells = re.split(r"(?<!\\)\|", line)[1:-1] if line.startswith("|") else []
+        if not cells:
+            place = None
+        elif place is None:
+            names = [cell.strip() for cell in cells]
+            place = names.index("Meaning") if "Meaning" in names else 1
+        if cells:
+            cells.insert(1, cells.pop(place))
+            line = f"|{'|'.join(cells)}|"
+        lines.append(line)
+    return "\n".join(lines) + "\n"
 
 
 def _links_as_html(text):
