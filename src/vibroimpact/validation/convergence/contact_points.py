@@ -45,7 +45,7 @@ PUBLISHED = {
 }
 PUBLISHED_TOLERANCE = 1.0e-4
 FIVE_SUFFICE = (
-    3.0e-3  # relative: what a modal frequency of a model is trusted to (docs/method/identification.md)
+    3.0e-3  # relative: what a modal frequency of a model is trusted to (docs/method.md)
 )
 SHARING = (("equal", 1), ("equal", 2), ("equal", 3), ("equal", 5), ("equal", 9), ("trapezoidal", 5))
 
