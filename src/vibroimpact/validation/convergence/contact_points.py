@@ -44,9 +44,7 @@ PUBLISHED = {
     (1.0e9, 9): 33.173,
 }
 PUBLISHED_TOLERANCE = 1.0e-4
-FIVE_SUFFICE = (
-    3.0e-3  # relative: what a modal frequency of a model is trusted to (docs/method.md)
-)
+FIVE_SUFFICE = 3.0e-3  # relative: what a modal frequency of a model is trusted to (docs/method.md)
 SHARING = (("equal", 1), ("equal", 2), ("equal", 3), ("equal", 5), ("equal", 9), ("trapezoidal", 5))
 
 
