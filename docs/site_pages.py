@@ -3,6 +3,7 @@ Python interface.
 """
 
 import importlib
+import inspect
 import pkgutil
 import re
 import subprocess
@@ -54,12 +55,14 @@ def write_generated_pages(app, config):
     _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
     _write(folder / "command_line.md", _command_line())
     python = folder / "python"
-    python.mkdir(exist_ok=True)
+    packages = python / "packages"
+    packages.mkdir(parents=True, exist_ok=True)
+    _write(python / "vibroimpact.rst", _public_page())
     pages = {f"{package}.rst": _package_page(package) for package in PUBLIC}
-    for stale in {path.name for path in python.glob("*.rst")} - set(pages):
-        (python / stale).unlink()
+    for stale in {path.name for path in packages.glob("*.rst")} - set(pages):
+        (packages / stale).unlink()
     for name, text in pages.items():
-        _write(python / name, text)
+        _write(packages / name, text)
 
 
 def docstring_as_rst(app, what, name, obj, options, lines):
@@ -175,6 +178,19 @@ def _command_line():
         env={"PYTHONPATH": str(root), "COLUMNS": "90"},
     ).stdout
     return f"```text\n{shown}```\n"
+
+
+def _public_page():
+    """Return the page of the names that can be imported from vibroimpact itself."""
+    title = "vibroimpact: the public interface"
+    parts = [title, "=" * len(title), "", ".. currentmodule:: vibroimpact", ""]
+    for name, module in vibroimpact.PUBLIC.items():
+        value = getattr(vibroimpact, name)
+        kind = "autofunction"
+        if inspect.isclass(value):
+            kind = "autoexception" if issubclass(value, Exception) else "autoclass"
+        parts += [f".. {kind}:: vibroimpact.{module}.{name}", "   :no-index:", ""]
+    return "\n".join(parts)
 
 
 def _package_page(package):
