@@ -19,7 +19,7 @@ exclude_patterns = ["_build", "examples", "generated/*.md"]
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
-autodoc_default_options = {"members": True}
+autodoc_default_options = {"members": True, "exclude-members": "model_config"}
 add_module_names = False
 
 # Nothing is fetched: the theme uses the fonts of the system, MathJax comes with its extension.

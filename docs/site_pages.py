@@ -42,6 +42,7 @@ def setup(app):
     """Connect this module, an extension of Sphinx, to the build of the site."""
     app.connect("config-inited", write_generated_pages)
     app.connect("autodoc-process-docstring", docstring_as_rst)
+    app.connect("autodoc-process-signature", short_signature)
     app.connect("doctree-read", captions_from_alternative_text)
     return {"parallel_read_safe": True}
 
@@ -85,6 +86,13 @@ def docstring_as_rst(app, what, name, obj, options, lines):
         else:
             result.append(("  " if inside else "") + _escaped(line))
     lines[:] = [*result[1:], ""]
+
+
+def short_signature(app, what, name, obj, options, signature, returned):
+    """Return the signature of a section of the configuration without its keys, which have a page of
+    their own; None leaves other signatures as they are.
+    """
+    return ("(keys)", "") if hasattr(obj, "model_fields") else None
 
 
 def captions_from_alternative_text(app, doctree):
