@@ -26,6 +26,7 @@ PACKAGES = (
     "job_log",
     "least_squares",
     "records",
+    "verdict",
     "geometry",
     "config",
     "contact",
