@@ -25,6 +25,7 @@ PACKAGES = (
     "stopwatch",
     "job_log",
     "least_squares",
+    "random_streams",
     "records",
     "verdict",
     "geometry",
