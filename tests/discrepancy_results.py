@@ -5,6 +5,8 @@ in a tube that has none in its model.
 import numpy as np
 import xarray as xr
 
+from vibroimpact.verdict.content import Verdict
+
 CHANNELS = [
     "apex_y",
     "apex_x",
@@ -169,8 +171,8 @@ def made_up_candidates():
     ]
 
 
-def made_up_verdict(kind="named"):
-    """verdict.json of one kind by the contract."""
+def made_up_verdict(kind="named", **changes):
+    """A Verdict of one kind, with other values of some keys."""
     friction = {
         "id": "dry_friction",
         "location": "all",
@@ -214,7 +216,7 @@ def made_up_verdict(kind="named"):
     split = {"before_dB": 5.8, "after_dB": 1.4, "floor_dB": 1.2, "closed_fraction": 0.87}
     nothing = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
     tested = kind != "not_testable"
-    return {
+    values = {
         "verdict": kind,
         "effects": [friction] if named else [],
         "ambiguity_set": sets.get(kind, []),
@@ -269,3 +271,4 @@ def made_up_verdict(kind="named"):
         "simulations": 3120,
         "provenance": {"versions": "python 3.11 numpy 2.4", "config_digest": "0123456789abcdef"},
     }
+    return Verdict.from_values(values | changes)

@@ -1,8 +1,12 @@
-"""Levenberg-Marquardt least squares, with trial points that may fail and a Jacobian that may come
-from differences.
+"""Levenberg-Marquardt least squares. Trial points may fail, and the Jacobian may come from
+differences.
+
+Source: K. Levenberg, Quart. Appl. Math. 2 (1944) 164-168; D.W. Marquardt, SIAM J. Appl. Math. 11
+(1963) 431-441. Departure: the damping acts along each value by the length of its column.
 """
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +16,17 @@ RAISE, LOWER = 4.0, 0.2
 TRIES = 8
 SETTLED = 2.0e-4  # relative decrease of the cost at which it ends
 
+# What a function of the values returns: its error, and its error with the Jacobian.
+ErrorOf = Callable[[np.ndarray], np.ndarray | None]
+Evaluate = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """values (value,); error (residual,) there; slope (residual, value) at the last accepted point
-    but one or itself; cost = |error|².
+    """The end of a minimisation.
+
+    values (value,); error (residual,) there; slope (residual, value): the Jacobian at the point of
+    the last step; passes: steps that were tried; cost = |error|².
     """
 
     values: np.ndarray
@@ -25,22 +35,33 @@ class Minimum:
     passes: int
 
     @property
-    def cost(self):
+    def cost(self) -> float:
         """Return the sum of squares."""
         return float(self.error @ self.error)
 
 
-def minimise(evaluate, start, passes, settled=SETTLED, seconds=np.inf, told=None, error_of=None):
-    """Return the Minimum of |error|² from a start.
+def minimise(
+    evaluate: Evaluate,
+    start: np.ndarray,
+    passes: int,
+    settled: float = SETTLED,
+    seconds: float = np.inf,
+    told: Callable[[int, float], None] | None = None,
+    error_of: ErrorOf | None = None,
+) -> Minimum:
+    """Return the Minimum of |error|² from a start (value,).
 
-    evaluate(values) -> (error (residual,), slope (residual, value)); error_of(values) -> error or
-    None where there is none, evaluate's own when left out: what a step is tried with. A step is
-    damped along each value by its slope's length. Ends when the cost settles, no step lowers it,
-    after so many passes or seconds. told(pass, cost) is called after each pass. Raises ValueError
-    when the start has no finite error.
+    evaluate(values): (error (residual,), Jacobian (residual, value)).
+    error_of(values): the error of a trial step, None where it fails; that of evaluate by default.
+    passes, seconds: the most of both.
+    settled: relative decrease of the cost in a pass at which it ends.
+    told(pass, cost): called after each pass.
+
+    It also ends where no step lowers the cost. Raises ValueError where the start has no finite
+    error.
     """
     began, values, damping = time.monotonic(), np.asarray(start, float), FIRST_DAMPING
-    error_of = error_of or (lambda trial: evaluate(trial)[0])
+    error_at: ErrorOf = error_of or (lambda trial: evaluate(trial)[0])
     error, slope = evaluate(values)
     if not np.isfinite(error).all():
         raise ValueError("the least squares have no finite error at their start")
@@ -52,7 +73,7 @@ def minimise(evaluate, start, passes, settled=SETTLED, seconds=np.inf, told=None
         before = error @ error
         for _ in range(TRIES):
             step = -np.linalg.solve(normal + damping * np.eye(values.size), gradient) / length
-            tried = error_of(values + step)
+            tried = error_at(values + step)
             if tried is not None and np.isfinite(tried).all() and tried @ tried < before:
                 break
             damping *= RAISE
@@ -71,9 +92,12 @@ def minimise(evaluate, start, passes, settled=SETTLED, seconds=np.inf, told=None
     return Minimum(values, error, slope, done)
 
 
-def differences(error_of, values, error, steps):
-    """Return the slope (residual, value) by forward differences with steps (value,); a column is 0
-    where the trial fails.
+def differences(
+    error_of: ErrorOf, values: np.ndarray, error: np.ndarray, steps: np.ndarray
+) -> np.ndarray:
+    """Return the Jacobian (residual, value) by forward differences with steps (value,).
+
+    error: that at values. A column is 0 where the trial fails.
     """
     slope = np.zeros((error.size, values.size))
     for index, step in enumerate(steps):

@@ -129,18 +129,14 @@ def test_the_verdict_names_the_joint_and_the_completed_model_runs_in_the_study()
     verdict, rows, completed = conclude(
         campaign, STUDY, linear, candidates, [], told=lambda text: None
     )
-    assert verdict["verdict"] == "named" and verdict["ambiguity_set"] == [["coulomb_friction"]]
-    told = verdict["effects"][0]["parameters"]["force"]
-    assert (
-        told["low"] <= joint.SLIP * 1.02
-        and told["high"] >= joint.SLIP * 0.98
-        and told["unit"] == "N"
-    )
+    assert verdict.verdict == "named" and verdict.ambiguity_set == [["coulomb_friction"]]
+    told = verdict.effects[0].parameters["force"]
+    assert told.low <= joint.SLIP * 1.02 and told.high >= joint.SLIP * 0.98 and told.unit == "N"
     held = [row for row in rows if row["split"] == "holdout"]
     assert len(held) == 3 and all(
         row["error_completed"] < 0.3 * row["error_linear"] for row in held
     )
-    assert verdict["misfit"]["holdout"]["closed_fraction"] > 0.7
+    assert verdict.misfit.holdout.closed_fraction > 0.7
     model = build_model(check_config(configuration(completed, campaign, STUDY), "updated"))
     assert model.sensor_names == (
         "a1.x",

@@ -12,9 +12,9 @@ import xarray as xr
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.identify.case import identify_case
 from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.random_streams import random_generator
 from vibroimpact.spectra.window_leakage import spectral_kernel
 from vibroimpact.study.case_spectra import case_spectra
-from vibroimpact.study.cases import random_stream
 
 DOUBLING = {
     1.0e3: 28.0656,
@@ -108,7 +108,7 @@ class LinearTube:
     def record(self, seed):
         """The record of one seed as far as case_spectra reads it."""
         force = band_limited_noise(
-            random_stream(self.config.seed, seed, STREAM),
+            random_generator(self.config.seed, seed, STREAM),
             self.period,
             self.rate,
             self.config.excitation.band_Hz,

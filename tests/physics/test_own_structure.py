@@ -105,15 +105,13 @@ def test_a_cubic_spring_between_the_masses_is_named_where_it_is(tmp_path):
     verdict, rows, completed, study, campaign = judged("cubic", tmp_path)
     assert study.mounting == "upper-lower"
     assert (
-        set(verdict) == KEYS
-        and verdict["verdict"] == "named"
-        and verdict["ambiguity_set"] == [["cubic_stiffness"]]
+        set(verdict.to_values()) == KEYS
+        and verdict.verdict == "named"
+        and verdict.ambiguity_set == [["cubic_stiffness"]]
     )
-    effect = verdict["effects"][0]
-    assert effect["location"] == "upper-lower: between upper and lower"
-    assert effect["parameters"]["cubic_stiffness"]["value"] == pytest.approx(
-        two_masses.CUBIC, rel=0.05
-    )
+    effect = verdict.effects[0]
+    assert effect.location == "upper-lower: between upper and lower"
+    assert effect.parameters["cubic_stiffness"].value == pytest.approx(two_masses.CUBIC, rel=0.05)
     assert all(
         row["error_completed"] < 0.1 < row["error_linear"]
         for row in rows
@@ -126,15 +124,13 @@ def test_a_cubic_spring_between_the_masses_is_named_where_it_is(tmp_path):
 
 def test_where_nothing_is_hidden_nothing_is_named(tmp_path):
     verdict = judged("nothing", tmp_path)[0]
-    assert (
-        verdict["verdict"] == "none" and verdict["effects"] == [] and verdict["ambiguity_set"] == []
-    )
+    assert verdict.verdict == "none" and verdict.effects == [] and verdict.ambiguity_set == []
 
 
 def test_hysteresis_that_the_catalogue_lacks_is_friction_at_most(tmp_path):
     verdict = judged("bouc_wen", tmp_path)[0]
-    assert verdict["verdict"] in ("named", "partly_explained", "ambiguous", "unknown")
-    assert {each for ids in verdict["ambiguity_set"] for each in ids} <= {
+    assert verdict.verdict in ("named", "partly_explained", "ambiguous", "unknown")
+    assert {each for ids in verdict.ambiguity_set for each in ids} <= {
         "coulomb_friction",
         "saturation_stiffness",
     }
@@ -143,10 +139,10 @@ def test_hysteresis_that_the_catalogue_lacks_is_friction_at_most(tmp_path):
 def test_a_law_is_found_in_records_without_period(tmp_path):
     verdict, rows, *_ = judged("cubic", tmp_path, periodic=False)
     assert (
-        verdict["verdict"] in ("named", "partly_explained")
-        and verdict["effects"][0]["id"] == "cubic_stiffness"
+        verdict.verdict in ("named", "partly_explained")
+        and verdict.effects[0].id == "cubic_stiffness"
     )
-    assert verdict["effects"][0]["parameters"]["cubic_stiffness"]["value"] == pytest.approx(
+    assert verdict.effects[0].parameters["cubic_stiffness"].value == pytest.approx(
         two_masses.CUBIC, rel=0.1
     )
 
@@ -163,9 +159,11 @@ def test_two_levels_are_not_testable_and_say_what_to_measure(tmp_path):
     campaign = two_masses.campaign("nothing", periods=3, levels=(1.0, 4.0), splits=("fit", "fit"))
     values, kept, linear, _ = prepared_of(campaign, tmp_path)
     verdict, rows, completed = outcome(kept, None, values, plain(linear), [], [], {}, silent)
-    assert set(verdict) == KEYS and verdict["verdict"] == "not_testable" and completed is None
+    assert (
+        set(verdict.to_values()) == KEYS and verdict.verdict == "not_testable" and completed is None
+    )
     assert "record a third level" in next(
-        row["message"] for row in verdict["checks"] if row["level"] == "refuse"
+        row.message for row in verdict.checks if row.level == "refuse"
     )
     assert len(rows) == 4
 
@@ -179,7 +177,7 @@ def test_a_response_that_does_not_follow_the_force_is_refused(tmp_path):
     assert (
         values["refused"]
         and linear == {}
-        and outcome(kept, None, values, {}, [], [], {}, silent)[0]["verdict"] == "not_testable"
+        and outcome(kept, None, values, {}, [], [], {}, silent)[0].verdict == "not_testable"
     )
 
 

@@ -17,7 +17,6 @@ from vibroimpact.study.cases import (
     ids_of_load,
     load_values,
     loads_by_half_decade,
-    random_stream,
     value_text,
 )
 
@@ -102,25 +101,3 @@ def test_the_cases_of_a_load_are_those_of_the_grid():
     assert [name for load in ("0.5", "4") for name in ids_of_load(whole, load)] == [
         case.id for case in all_cases(whole)
     ]
-
-
-def test_a_stream_is_the_same_wherever_it_is_made():
-    # The words of the spawn key come from SHA-256 of the name. They must never change: old results
-    # would lose their seed.
-    sequence = np.random.SeedSequence(
-        2012, spawn_key=(0, 1963806770, 1426574848, 1861853377, 3272633336)
-    )
-    words = np.random.Generator(np.random.PCG64(sequence)).integers(0, 2**32, 3)
-    assert random_stream(2012, 0, "force").integers(0, 2**32, 3).tolist() == words.tolist()
-
-
-def test_streams_of_other_names_and_seeds_are_independent():
-    keys = [
-        (seed, index, name)
-        for seed in (1, 2)
-        for index in (0, 1)
-        for name in ("force", "imperfection")
-    ]
-    draws = np.array([random_stream(*key).standard_normal(20000) for key in keys])
-    correlation = np.corrcoef(draws)
-    assert np.abs(correlation - np.eye(len(keys))).max() < 5 / np.sqrt(20000)

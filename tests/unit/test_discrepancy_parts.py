@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.discrepancy_results import made_up_verdict
 from vibroimpact.discrepancy import naming, priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.emulator import Emulator
@@ -224,23 +225,27 @@ def test_the_exact_alias_is_told_how_to_break():
     assert next_measurement([["gap"]]) is None
 
 
-def verdict(name, sets, first):
-    return {
-        "verdict": name,
-        "ambiguity_set": sets,
-        "ranking": [{"ids": first}],
-        "checks": [],
-        "effects": [],
-        "misfit": {
-            "holdout": {"before_dB": 4.0, "after_dB": 1.1, "floor_dB": 1.0, "closed_fraction": 0.9}
-        },
+def verdict(name, sets, first, before_dB=4.0):
+    """A Verdict in the parts that the suite reads."""
+    misfit = {
+        "before_dB": before_dB,
+        "after_dB": 1.1,
+        "floor_dB": 1.0,
+        "closed_fraction": 0.9,
     }
+    return made_up_verdict(
+        name,
+        ambiguity_set=sets,
+        ranking=[{"ids": first, "heldout_score": None, "closed_fraction": None}],
+        checks=[],
+        effects=[],
+        misfit={"fit": None, "holdout": misfit},
+    )
 
 
 @pytest.mark.parametrize(("before_dB", "arm"), [(1.1, "weak"), (2.0, "medium"), (4.0, "strong")])
 def test_the_arm_is_that_of_the_excess_over_the_floor(before_dB, arm):
-    found = verdict("named", [["gap"]], ["gap"])
-    found["misfit"]["holdout"]["before_dB"] = before_dB
+    found = verdict("named", [["gap"]], ["gap"], before_dB)
     assert judged(found, {"arm": "medium", "effects": [["gap", {"factor": 1.2}]]})["arm"] == arm
     assert judged(found, {"arm": "stranger", "effects": [["loose_mass", {}]]})["arm"] == "stranger"
 

@@ -26,8 +26,8 @@ from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
 from vibroimpact.figures.discrepancy.spectra import chosen_channels, chosen_records
 from vibroimpact.records import write_record, write_table
 from vibroimpact.reports.discrepancy_page import discrepancy_page, verdict_sentence
-
-KINDS = ("none", "named", "ambiguous", "partly_explained", "unknown", "not_testable")
+from vibroimpact.verdict.content import CONCLUSIONS, Estimate, FoundEffect
+from vibroimpact.verdict.file import write_verdict
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def folder(tmp_path_factory):
     """The files of a run that named friction."""
     folder = tmp_path_factory.mktemp("named")
     (folder / "candidates").mkdir()
-    (folder / "verdict.json").write_text(json.dumps(made_up_verdict()))
+    write_verdict(made_up_verdict(), folder / "verdict.json")
     write_record(made_up_map(9.0), folder / "map.nc")
     write_record(made_up_map(0.8, 2), folder / "map_after.nc")
     write_table(made_up_ranking(), folder / "ranking.csv")
@@ -151,9 +151,13 @@ def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair
     def candidate(law, value, ids=("foliate_obstacle",), name="angle"):
         return {"ids": list(ids), "name": law, "parameters": {name: {"value": value}}}
 
+    angle, factor = (
+        Estimate(value=value, unit=unit, low=value, high=value)
+        for value, unit in ((0.4, "rad"), (1.2, "1"))
+    )
     effects = [
-        {"id": "foliate_obstacle", "parameters": {"angle": {"value": 0.4}}},
-        {"id": "gap", "parameters": {"gap_factor": {"value": 1.2}}},
+        FoundEffect(id="foliate_obstacle", location="all", parameters={"angle": angle}),
+        FoundEffect(id="gap", location="all", parameters={"gap_factor": factor}),
     ]
     lands, lobes = candidate("foliate_lands@all", 0.4), candidate("foliate_obstacle@all", 0.5)
     pair = candidate("pair", 0.4, ("foliate_obstacle", "gap"), "foliate_obstacle.angle")
@@ -161,8 +165,8 @@ def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair
     assert named_of([lobes, lands, pair], effects) == [pair]
     assert named_of([lobes, lands], []) == [lobes]
     assert (
-        found_of(effects, "gap.gap_factor") == {"value": 1.2}
-        and found_of(effects, "angle") == {"value": 0.4}
+        found_of(effects, "gap.gap_factor") == factor
+        and found_of(effects, "angle") == angle
         and found_of(effects, "gap.angle") is None
     )
     assert axis_label("foliate_obstacle.angle", "deg") == "foliate obstacle, angle (deg)"
@@ -192,16 +196,21 @@ def test_parameters_are_shown_in_units_of_the_field():
 
 def test_what_came_nearest_is_told_where_nothing_is_named():
     told = verdict_sentence(
-        made_up_verdict("unknown")
-        | {"most_probable": [{"id": "clearance"}, {"id": "support_offset"}]}
+        made_up_verdict(
+            "unknown",
+            most_probable=[
+                {"id": name, "location": "all", "parameters": {}}
+                for name in ("clearance", "support_offset")
+            ],
+        )
     )
     assert told.endswith("What came nearest, clearance and support offset, is not it.")
     assert "nearest" not in verdict_sentence(made_up_verdict("unknown"))
 
 
 def test_of_several_the_most_probable_is_shown_with_its_parameters():
-    named = made_up_verdict()["effects"]
-    page = discrepancy_page("campaign", made_up_verdict("ambiguous") | {"most_probable": named}, [])
+    named = made_up_verdict().to_values()["effects"]
+    page = discrepancy_page("campaign", made_up_verdict("ambiguous", most_probable=named), [])
     assert (
         "The most probable of them" in page
         and "0.149" in page
@@ -211,7 +220,7 @@ def test_of_several_the_most_probable_is_shown_with_its_parameters():
         "campaign", made_up_verdict("ambiguous"), []
     )
     assert "0.149" not in discrepancy_page(
-        "campaign", made_up_verdict("unknown") | {"most_probable": named}, []
+        "campaign", made_up_verdict("unknown", most_probable=named), []
     )
 
 
@@ -241,7 +250,7 @@ def test_a_quick_look_says_what_it_gives_up():
 
 
 def test_a_run_without_map_or_candidates_says_so(tmp_path):
-    (tmp_path / "verdict.json").write_text(json.dumps(made_up_verdict("not_testable")))
+    write_verdict(made_up_verdict("not_testable"), tmp_path / "verdict.json")
     sheets = discrepancy_figures(read_results(tmp_path))
     assert len(sheets) == 5 and all(sheet.tables == [] for sheet in sheets)
     for sheet in sheets:
@@ -292,7 +301,7 @@ def test_the_page_is_one_file_with_everything_in_it(folder, figures):
         assert part in page, part
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", CONCLUSIONS)
 def test_every_verdict_has_its_sentence_and_page(kind):
     verdict = made_up_verdict(kind)
     sentence = verdict_sentence(verdict)
@@ -313,22 +322,21 @@ def test_every_verdict_has_its_sentence_and_page(kind):
 
 
 def test_a_region_tells_the_modes_near_it_each_once():
-    region = made_up_verdict()["regions"][0]
+    region = made_up_verdict().to_values()["regions"][0]
     page = discrepancy_page(
         "campaign",
-        made_up_verdict()
-        | {"regions": [region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]},
+        made_up_verdict(regions=[region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]),
         [],
     )
     assert "<td>104, 105, 171, 172</td>" in page
     assert "<td>104, 171</td>" in discrepancy_page(
         "campaign",
-        made_up_verdict() | {"regions": [region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]},
+        made_up_verdict(regions=[region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]),
         [],
     )
     without = {
         key: region[key] for key in region if key != "nearest_modes_Hz"
     }  # a structure that is known by its measured responses alone
     assert "nearest modes" not in discrepancy_page(
-        "campaign", made_up_verdict() | {"regions": [without]}, []
+        "campaign", made_up_verdict(regions=[without]), []
     )

@@ -18,7 +18,7 @@ from vibroimpact.excitation.random_force import (
     fast_length,
     resample_measured,
 )
-from vibroimpact.study.cases import random_stream
+from vibroimpact.random_streams import random_generator
 
 BAND = (5.0, 200.0)
 
@@ -42,7 +42,7 @@ def test_noise_is_gaussian_with_unit_rms():
 
 def test_seeds_are_independent_and_reproducible():
     one, other, again = (
-        band_limited_noise(random_stream(2012, seed, "force"), 2**17, 2048.0, BAND)
+        band_limited_noise(random_generator(2012, seed, "force"), 2**17, 2048.0, BAND)
         for seed in (0, 1, 0)
     )
     assert np.array_equal(one, again)

@@ -2,20 +2,22 @@
 
 import pytest
 
+from tests.discrepancy_results import made_up_verdict
 from vibroimpact.discrepancy.suite_check import CHECKS, table
 
 
 def verdict(kind, *sets, factor=None):
-    """The part of verdict.json that is looked at."""
-    rows = (
-        [] if factor is None else [{"id": "gap", "parameters": {"gap_factor": {"value": factor}}}]
-    )
-    return {
-        "verdict": kind,
-        "ambiguity_set": [list(row) for row in sets],
-        "effects": [],
-        "most_probable": rows,
+    """A Verdict in the parts that are looked at."""
+    factors = {
+        "gap_factor": {"value": factor, "unit": "1", "low": factor, "high": factor},
     }
+    found = {"id": "gap", "location": "all", "parameters": factors}
+    return made_up_verdict(
+        kind,
+        ambiguity_set=[list(row) for row in sets],
+        effects=[],
+        most_probable=[] if factor is None else [found],
+    )
 
 
 @pytest.mark.parametrize(

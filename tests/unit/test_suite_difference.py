@@ -10,6 +10,7 @@ from tests.unit.test_suite_page import effect, truth_of, verdict_of
 from vibroimpact.discrepancy.dag import suite_name, suite_of
 from vibroimpact.discrepancy.suite_difference import AGREE, agreement, differences
 from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.verdict.file import write_verdict
 
 FOUND = effect("dry_friction", "mu", 0.2, 0.16, 0.24)
 MOVED = effect("dry_friction", "mu", 0.22, 0.2, 0.24)
@@ -53,7 +54,7 @@ def written(folder, verdicts):
     for number, verdict in enumerate(verdicts):
         name = f"campaign_{number:04d}"
         (folder / name).mkdir(parents=True)
-        (folder / name / "verdict.json").write_text(json.dumps(verdict))
+        write_verdict(verdict, folder / name / "verdict.json")
         (folder / "truth").mkdir(exist_ok=True)
         (folder / "truth" / f"{name}.json").write_text(
             json.dumps(truth_of("strong", ("dry_friction", {"mu": 0.2})))

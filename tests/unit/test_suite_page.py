@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import expit, logit
 
+from tests.discrepancy_results import made_up_verdict
 from vibroimpact.discrepancy.detection import (
     detection,
     detection_curve,
@@ -20,26 +21,26 @@ from vibroimpact.figures.suite.sheets import suite_figures
 from vibroimpact.reports.suite_page import suite_page, suite_sentence
 from vibroimpact_truth import hidden
 
+MISFIT = {"before_dB": 4.0, "after_dB": 1.1, "floor_dB": 1.0, "closed_fraction": 0.9}
 LIMIT = 2.0  # floors, of the campaigns drawn here
 
 
 def verdict_of(kind, sets=(), effects=(), before_dB=4.0):
-    """The parts of a verdict.json that the suite reads."""
-    return {
-        "verdict": kind,
-        "ambiguity_set": [list(row) for row in sets],
-        "ranking": [{"ids": list(sets[0]) if sets else ["clearance"]}],
-        "checks": [],
-        "effects": list(effects),
-        "misfit": {
-            "holdout": {
-                "before_dB": before_dB,
-                "after_dB": 1.1,
-                "floor_dB": 1.0,
-                "closed_fraction": 0.9,
+    """A Verdict in the parts that the suite reads."""
+    return made_up_verdict(
+        kind,
+        ambiguity_set=[list(row) for row in sets],
+        ranking=[
+            {
+                "ids": list(sets[0]) if sets else ["clearance"],
+                "heldout_score": None,
+                "closed_fraction": None,
             }
-        },
-    }
+        ],
+        checks=[],
+        effects=list(effects),
+        misfit={"fit": None, "holdout": MISFIT | {"before_dB": before_dB}},
+    )
 
 
 def effect(name, parameter, value, low, high):
@@ -137,8 +138,7 @@ def test_a_parameter_by_its_other_name_is_held_against_its_truth():
 
 
 def test_a_refused_campaign_has_no_strength_and_no_parameter():
-    refused = verdict_of("not_testable")
-    refused["misfit"]["holdout"] = dict.fromkeys(refused["misfit"]["holdout"])
+    refused = made_up_verdict("not_testable")
     row = judged(refused, truth_of("strong", ("gap", {"factor": 1.2})))
     assert (
         row["arm"] == "strong"

@@ -6,12 +6,12 @@ from vibroimpact.figures.discrepancy.completion import saved_sheets
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_table, write_text
 from vibroimpact.reports.discrepancy_page import NOISE, discrepancy_page
+from vibroimpact.verdict.file import read_verdict
 
 redirect_output(snakemake.log[0])
 files = snakemake.input
-prepared, linear, completed, verdict = (
-    read_values(path) for path in (files.study, files.linear, files.completed, files.verdict)
-)
+prepared, linear, completed = map(read_values, (files.study, files.linear, files.completed))
+verdict = read_verdict(files.verdict)
 tables = read_table(files.mounting), read_table(files.prediction)
 shown = saved_sheets(
     snakemake.output.figures,

@@ -9,6 +9,7 @@ from vibroimpact.completion.study import STUDIES
 from vibroimpact.completion.updated_model import write_configuration
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
+from vibroimpact.verdict.file import write_verdict
 
 redirect_output(snakemake.log[0])
 campaign, study = read_campaign(snakemake.input.campaign), STUDIES[snakemake.wildcards.structure]
@@ -22,4 +23,4 @@ verdict, rows, completed = conclude(
 write_table(rows, snakemake.output.prediction)
 write_values(completed, snakemake.output.completed)
 write_configuration(completed, campaign, study, snakemake.output.model)
-write_values(verdict, snakemake.output.verdict)
+write_verdict(verdict, snakemake.output.verdict)

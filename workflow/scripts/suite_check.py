@@ -2,17 +2,15 @@
 say instead.
 """
 
-import json
-from pathlib import Path
-
 from vibroimpact.discrepancy.suite_check import table
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
+from vibroimpact.verdict.file import read_verdict
 
 redirect_output(snakemake.log[0])
 rows = table(
     {
-        name: json.loads(Path(file).read_text(encoding="utf-8"))
+        name: read_verdict(file)
         for name, file in zip(snakemake.params.checks, snakemake.input.verdicts, strict=True)
     }
 )

@@ -1,12 +1,15 @@
-"""A campaign's signals in SI as its checks read them, and the spectra of one record: force to
-response, coherence, excited band.
+"""The signals of a campaign in SI units, and the spectra of one record: response per force,
+coherence, and the band of both.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.spectra.periodic_lines import PeriodError, find_period
 from vibroimpact.spectra.welch import segment_spectra
@@ -16,6 +19,9 @@ from .file import CampaignError, channel_factor, force_factor, valid_count
 SEGMENT_S = 8.0
 FEWEST_SEGMENTS = 12
 EXCITED_SHARE = 0.01  # of the typical PSD of the force: what lies below is not excited
+
+DEFAULT_BAND_HZ = (5.0, 200.0)
+EXCITED_PSD = 1.0e-3  # of the largest lines of the smoothed PSD of all forces
 
 
 @dataclass(frozen=True)
@@ -28,31 +34,71 @@ class Averaging:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """A campaign in SI. rate Hz; force, response: per record (force_channel, time) and (channel,
-    time), valid samples alone; unit_faults, force_unit_faults {channel: sentence}: these signals
-    stay in their stored unit; period_samples: stated, or found, 0 for none.
+class CampaignSignals:
+    """A campaign in SI units.
+
+    rate: sampling frequency, Hz; records, channels, forces: names; kinds (channel,); splits
+    (record,) "fit" or "holdout"; load_rms (record,) N; gap (record,) m, NaN where there is none;
+    points (channel, xyz) m; directions (channel, xyz) and force_directions (force_channel, xyz):
+    unit vectors; stated_period: samples of a period as the file states it, 0 for none;
+    transient_periods: periods at the start of a record that are not steady yet; starts_at_rest.
+
+    force, response: one array per record, (force_channel, sample) and (channel, sample), cut to
+    its valid samples. factors (channel,), force_factors (force_channel,): SI units per stored
+    unit. unit_faults, force_unit_faults {channel index: sentence}: signals whose unit can not be
+    used; they stay in their stored unit, with a factor of 1.
     """
 
     rate: float
-    records: list
-    channels: list
-    forces: list
-    kinds: list
+    records: list[str]
+    channels: list[str]
+    forces: list[str]
+    kinds: list[str]
     load_rms: np.ndarray
-    splits: list
+    gap: np.ndarray
+    splits: list[str]
     points: np.ndarray
     directions: np.ndarray
     force_directions: np.ndarray
-    period_samples: int
+    stated_period: int
     transient_periods: int
     starts_at_rest: bool
-    force: list
-    response: list
-    unit_faults: dict
-    force_unit_faults: dict
+    force: list[np.ndarray]
+    response: list[np.ndarray]
+    factors: np.ndarray
+    force_factors: np.ndarray
+    unit_faults: dict[int, str]
+    force_unit_faults: dict[int, str]
 
-    def lowest(self):
+    @property
+    def valid_samples(self) -> np.ndarray:
+        """Return (record,) the number of valid samples."""
+        return np.array([force.shape[-1] for force in self.force])
+
+    @cached_property
+    def period_samples(self) -> int:
+        """Return the samples of a period: as stated, or found in the forces; 0 for none."""
+        return self.stated_period or common_period([force[0] for force in self.force])
+
+    def require_units(self) -> CampaignSignals:
+        """Return the signals themselves. Raises CampaignError where a unit can not be used."""
+        for fault in (*self.unit_faults.values(), *self.force_unit_faults.values()):
+            raise CampaignError(fault)
+        return self
+
+    def padded(self, samples: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return force (record, force_channel, sample) and response (record, channel, sample).
+
+        samples: length of the last axis, at least the longest record; NaN beyond valid samples.
+        """
+        force = np.full((len(self.records), len(self.forces), samples), np.nan)
+        response = np.full((len(self.records), len(self.channels), samples), np.nan)
+        for record, count in enumerate(self.valid_samples):
+            force[record, :, :count] = self.force[record]
+            response[record, :, :count] = self.response[record]
+        return force, response
+
+    def lowest(self) -> int | None:
         """Return the record of the lowest load whose force and at least one response are finite
         throughout, or None.
         """
@@ -68,13 +114,13 @@ class Measured:
             None,
         )
 
-    def finite(self, record):
-        """Return (channel,) whether a channel of a record holds numbers alone."""
+    def finite(self, record: int) -> np.ndarray:
+        """Return (channel,) whether all samples of a channel of a record are finite."""
         return np.isfinite(self.response[record]).all(axis=-1)
 
 
-def measured_signals(campaign):
-    """Return the Measured signals of a campaign Dataset that keeps the contract."""
+def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
+    """Return the CampaignSignals of a campaign Dataset that keeps the contract."""
     factors, faults = _factors(campaign, campaign.sizes["channel"], channel_factor)
     force_factors, force_faults = _factors(campaign, campaign.sizes["force_channel"], force_factor)
     counts = [valid_count(campaign, record) for record in range(campaign.sizes["record"])]
@@ -88,36 +134,42 @@ def measured_signals(campaign):
     ]
     texts = {
         name: [str(value) for value in campaign[name].values]
-        for name in ("record_name", "channel_name", "force_channel_name", "channel_kind", "split")
+        for name in ("record_name", "channel_name", "force_channel_name", "channel_kind")
     }
-    return Measured(
+    return CampaignSignals(
         rate=float(campaign.attrs["sampling_frequency"]),
         records=texts["record_name"],
         channels=texts["channel_name"],
         forces=texts["force_channel_name"],
         kinds=texts["channel_kind"],
         load_rms=campaign["load_rms"].values.astype(float),
-        splits=texts["split"],
+        gap=campaign["gap"].values.astype(float),
+        splits=(
+            [str(value) for value in campaign["split"].values]
+            if "split" in campaign
+            else ["fit"] * len(counts)
+        ),
         points=campaign["channel_point"].values.astype(float),
         directions=campaign["channel_direction"].values.astype(float),
         force_directions=campaign["force_channel_direction"].values.astype(float),
-        period_samples=int(campaign.attrs.get("period_samples", 0))
-        or common_period([signals[0] for signals in force]),
+        stated_period=int(campaign.attrs.get("period_samples", 0)),
         transient_periods=int(campaign.attrs.get("transient_periods", 0)),
         starts_at_rest=campaign.attrs.get("start_up") == "rest",
         force=force,
         response=response,
+        factors=factors,
+        force_factors=force_factors,
         unit_faults=faults,
         force_unit_faults=force_faults,
     )
 
 
-def common_period(forces):
+def common_period(forces: list[np.ndarray]) -> int:
     """Return the samples of the period that all forces (time,) have, at least twice each; 0 where
     they have none in common.
 
-    Also of a file that does not say so: the peaks of a periodic record come back in every period,
-    and would be taken for flat tops.
+    It is looked for where the file does not state one: the peaks of a periodic record come back
+    in every period, and a check would take them for clipping.
     """
     periods = set()
     for force in forces:
@@ -129,7 +181,9 @@ def common_period(forces):
     return periods.pop() if len(periods) == 1 else 0
 
 
-def _factors(campaign, count, factor_of):
+def _factors(
+    campaign: xr.Dataset, count: int, factor_of: Callable[[xr.Dataset, int], float]
+) -> tuple[np.ndarray, dict[int, str]]:
     """Return (factors (count,), {index: sentence}); a factor of 1 where the unit can not be
     used.
     """
@@ -156,25 +210,25 @@ class Transfer:
     averages: int
 
 
-def transfer(measured, record):
+def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
     """Return the Transfer from force channel 0 of a record, at lines that the force excites; None
     for a record too short to average.
     """
-    force, response = measured.force[record][:1], measured.response[record]
+    force, response = signals.force[record][:1], signals.response[record]
     averaging = Averaging(
-        min(SEGMENT_S, force.shape[-1] / measured.rate / (0.5 * FEWEST_SEGMENTS + 0.5))
+        min(SEGMENT_S, force.shape[-1] / signals.rate / (0.5 * FEWEST_SEGMENTS + 0.5))
     )
-    if measured.period_samples:
-        start = measured.period_samples * measured.transient_periods
-        whole = (force.shape[-1] - start) // measured.period_samples * measured.period_samples
-        if whole < 2 * measured.period_samples:
+    if signals.period_samples:
+        start = signals.period_samples * signals.transient_periods
+        whole = (force.shape[-1] - start) // signals.period_samples * signals.period_samples
+        if whole < 2 * signals.period_samples:
             return None
         force, response = force[:, start : start + whole], response[:, start : start + whole]
-        averaging = Averaging(measured.period_samples / measured.rate, 0.0, "boxcar")
-    if averaging.segment_s * measured.rate < 64:
+        averaging = Averaging(signals.period_samples / signals.rate, 0.0, "boxcar")
+    if averaging.segment_s * signals.rate < 64:
         return None
     spectra = segment_spectra(
-        np.concatenate([force, np.nan_to_num(response)]), measured.rate, averaging
+        np.concatenate([force, np.nan_to_num(response)]), signals.rate, averaging
     )
     force_psd = np.mean(np.abs(spectra.values[0]) ** 2, axis=0)
     kept = _excited(force_psd)
@@ -194,7 +248,7 @@ def transfer(measured, record):
     )
 
 
-def _excited(psd):
+def _excited(psd: np.ndarray) -> np.ndarray:
     """Return (line,) whether the force has power there: above a share of the PSD at which half of
     its power lies.
     """
@@ -207,10 +261,39 @@ def _excited(psd):
     return kept
 
 
-def excited_band(measured):
-    """Return (low, high) in Hz of what the force of the lowest usable record excites, or None where
-    nothing can be told.
+def transfer_band(signals: CampaignSignals) -> tuple[float, float] | None:
+    """Return (low, high) in Hz: the first and last line of the transfer of the lowest usable
+    record; None where there is none.
     """
-    record = measured.lowest()
-    spectra = transfer(measured, record) if record is not None else None
+    record = signals.lowest()
+    spectra = transfer(signals, record) if record is not None else None
     return None if spectra is None else (float(spectra.frequency[0]), float(spectra.frequency[-1]))
+
+
+def excited_band(force: np.ndarray, rate: float) -> tuple[float, float]:
+    """Return (low, high) in Hz: where the PSD of the first force, summed over all records, is above
+    EXCITED_PSD of its largest lines.
+
+    force (record, force_channel, sample) N, NaN beyond valid samples; rate: Hz. Ends close to
+    DEFAULT_BAND_HZ become those.
+    """
+    length = int(4.0 * rate)
+    window = np.hanning(length)
+    power = np.zeros(length // 2 + 1)
+    for series in np.nan_to_num(force[:, 0]):
+        for first in range(0, max(len(series) - length, 0) + 1, length // 2):
+            power += (
+                np.abs(np.fft.rfft(window * np.resize(series[first : first + length], length))) ** 2
+            )
+    frequency = np.fft.rfftfreq(length, 1.0 / rate)
+    smooth = np.convolve(power, np.ones(5) / 5.0, mode="same")
+    inside = (
+        np.flatnonzero(
+            smooth[1:] > EXCITED_PSD * np.median(np.sort(smooth[1:])[-len(smooth) // 50 :])
+        )
+        + 1
+    )
+    low, high = frequency[inside[0]] + 0.5, frequency[inside[-1]] - 0.5
+    if abs(low - DEFAULT_BAND_HZ[0]) < 1.5 and abs(high - DEFAULT_BAND_HZ[1]) < 3.0:
+        return DEFAULT_BAND_HZ
+    return float(max(low, 2.0 / (force.shape[-1] / rate))), float(high)

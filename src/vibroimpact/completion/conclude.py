@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from vibroimpact.spectra.periodic_lines import line_power
+from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
 
 from .intervals import told_parameters
 from .levels import levels_of
@@ -26,9 +27,11 @@ PERIODS_BEFORE = 4  # before the period that is compared: the transient is gone
 SPLITS = ("fit", "holdout")
 
 
-def conclude(campaign, study, linear, singles, additions, told=print):
-    """Return (verdict, rows of prediction.csv, completed {chosen, trial, choice}) of a campaign
+def conclude(campaign, study, linear, singles, additions, told=print, checks=(), provenance=None):
+    """Return (Verdict, rows of prediction.csv, completed {chosen, trial, choice}) of a campaign
     from its candidates' values.
+
+    checks: rows of what was checked before; provenance: see provenance.origin.
     """
     began = time.monotonic()
     levels, names, _ = levels_of(campaign)
@@ -99,14 +102,16 @@ def conclude(campaign, study, linear, singles, additions, told=print):
     verdict = _verdict(
         study, choice, kind, alone, before, completed, told_parameters(fit, minimum, trial), trial
     )
-    verdict["checks"] = check_periods(levels, names, study.band_Hz)
+    verdict["checks"] = [*checks, *check_periods(levels, names, study.band_Hz)]
     simulations = sum(each["passes"] for each in (*singles, *additions)) + minimum.passes
     verdict |= {
         "seconds": time.monotonic() - began,
         "simulations": simulations * fit.values(fit.start).size * len(fitted.levels),
     }
+    if provenance is not None:
+        verdict["provenance"] = provenance
     return (
-        verdict,
+        Verdict.from_values(verdict),
         rows,
         {
             "chosen": choice.chosen,
@@ -206,8 +211,8 @@ def _verdict(study, choice, kind, records, before, after, parameters, trial):
     ]
     return {
         "verdict": kind,
-        "effects": effects if kind in ("named", "partly_explained") else [],
-        "ambiguity_set": choice.ambiguity if kind not in ("none", "unknown") else [],
+        "effects": effects if kind in WITH_EFFECTS else [],
+        "ambiguity_set": choice.ambiguity if kind in WITH_AMBIGUITY_SET else [],
         "ranking": ranking,
         "next_measurement": _next(kind, choice),
         "broken_invariances": _broken(records, before, trial),

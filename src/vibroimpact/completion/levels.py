@@ -2,7 +2,7 @@
 back.
 """
 
-from vibroimpact.campaign.file import channel_factor, force_signal, valid_count
+from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.spectra.periodic_lines import level_lines
 
 from .long_records import long_record_lines
@@ -19,21 +19,13 @@ def levels_of(campaign):
     Records are taken as without period where the attribute whole_records says so (long_records).
     Raises multisine.PeriodError for any other record without period.
     """
-    names, kinds = (
-        [str(value) for value in campaign[f"channel_{key}"].values] for key in ("name", "kind")
-    )
-    factors = [channel_factor(campaign, channel) for channel in range(len(names))]
-    levels = []
-    for record in range(campaign.sizes["record"]):
-        count = valid_count(campaign, record)
-        response = campaign["response"].values[record, :, :count].astype(float) * [
-            [factor] for factor in factors
-        ]
+    signals, levels = campaign_signals(campaign).require_units(), []
+    for record, name in enumerate(signals.records):
         told = (
-            str(campaign["record_name"].values[record]),
-            str(campaign["split"].values[record]),
-            force_signal(campaign, record)[:count],
-            response,
+            name,
+            signals.splits[record],
+            signals.force[record][0],
+            signals.response[record],
             campaign.attrs["sampling_frequency"],
         )
         if campaign.attrs.get("whole_records", 0):
@@ -48,7 +40,7 @@ def levels_of(campaign):
                     int(campaign.attrs["transient_periods"]),
                 )
             )
-    return sorted(levels, key=lambda level: level.load_rms), names, kinds
+    return sorted(levels, key=lambda level: level.load_rms), signals.channels, signals.kinds
 
 
 def naming_split(levels):

@@ -6,6 +6,8 @@ import numpy as np
 
 from vibroimpact.records import write_table, write_text
 from vibroimpact.spectra.periodic_lines import PeriodError
+from vibroimpact.verdict.content import not_testable
+from vibroimpact.verdict.file import write_verdict
 
 from .conclude import conclude
 from .levels import levels_of
@@ -19,7 +21,7 @@ PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "er
 
 
 def outcome(campaign, study, prepared, linear, singles, additions, provenance, told=print):
-    """Return (verdict, rows of prediction.csv, completed or None) of a user's campaign; prepared:
+    """Return (Verdict, rows of prediction.csv, completed or None) of a user's campaign; prepared:
     values of prepare.prepared.
 
     completed is None where no linear model stands either.
@@ -27,14 +29,11 @@ def outcome(campaign, study, prepared, linear, singles, additions, provenance, t
     if prepared["refused"]:
         return _refused(campaign, study, prepared, linear, prepared["refused"], provenance)
     try:
-        verdict, rows, completed = conclude(campaign, study, linear, singles, additions, told)
+        return conclude(
+            campaign, study, linear, singles, additions, told, prepared["checks"], provenance
+        )
     except ValueError as error:
         return _refused(campaign, study, prepared, linear, str(error), provenance)
-    return (
-        {**verdict, "checks": [*prepared["checks"], *verdict["checks"]], "provenance": provenance},
-        rows,
-        completed,
-    )
 
 
 def write_outcome(told, campaign, study, files):
@@ -51,7 +50,7 @@ def write_outcome(told, campaign, study, files):
             "# There is no model: the campaign could not be tested, see verdict.json.\n",
             files.model,
         )
-    write_values(verdict, files.verdict)
+    write_verdict(verdict, files.verdict)
 
 
 def _refused(campaign, study, prepared, linear, sentence, provenance):
@@ -69,31 +68,14 @@ def _refused(campaign, study, prepared, linear, sentence, provenance):
                 "message": sentence,
             }
         )
-    verdict = {
-        "verdict": "not_testable",
-        "effects": [],
-        "ambiguity_set": [],
-        "ranking": [],
-        "next_measurement": None,
-        "broken_invariances": [],
-        "regions": [],
-        "misfit": {"fit": None, "holdout": None},
-        "p_global_before": None,
-        "p_global_after": None,
-        "checks": checks,
-        "seconds": 0.0,
-        "simulations": 0,
-        "provenance": provenance,
-    }
     if not linear:
-        return verdict, _nothing(campaign), None
+        return not_testable(checks, provenance), _nothing(campaign), None
     levels, names, _ = levels_of(campaign)
     base, records = modes_of(linear["base"]), Records(tuple(levels), study.band_Hz)
     before = [
         base.frf(level.frequency[records.kept(level)]) * level.force[records.kept(level)]
         for level in levels
     ]
-    verdict["regions"] = regions(records, before, names)
     rows = []
     for level in levels:
         first = linear_errors(base, level, study.band_Hz)
@@ -110,7 +92,7 @@ def _refused(campaign, study, prepared, linear, sentence, provenance):
             for index, name in enumerate(names)
         ]
     return (
-        verdict,
+        not_testable(checks, provenance, regions=regions(records, before, names)),
         rows,
         {
             "chosen": "the linear model alone",

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.campaign.checks.file_checks import check_file, usable_signals
 from vibroimpact.campaign.file import ALONG, NEAR_M, valid_count
-from vibroimpact.campaign.signals import excited_band, measured_signals
+from vibroimpact.campaign.signals import campaign_signals, transfer_band
 
 from .long_records import mean_coherences, quick_length
 
@@ -58,7 +58,7 @@ def own_records(path):
         )
     force &= _one_gap(campaign, force, rows)
     kept = _named_apart(campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown)))
-    measured = measured_signals(kept)
+    measured = campaign_signals(kept)
     _one_force(measured, rows)
     if measured.period_samples:
         transient = max(
@@ -70,7 +70,7 @@ def own_records(path):
             rows,
             measured,
         )
-    band = excited_band(measured)
+    band = transfer_band(measured)
     if band is None:
         raise Unusable("The records are too short to tell which lines the force excites.", rows)
     _coherent(measured, band, rows)

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from vibroimpact.campaign.file import valid_count
-from vibroimpact.campaign.signals import excited_band
+from vibroimpact.campaign.signals import transfer_band
 from vibroimpact.identify.modal_fit import identify_modes
 from vibroimpact.records import plain
 from vibroimpact.spectra.periodic_lines import line_power
@@ -64,7 +64,7 @@ def prepared(name, path, asked, told=print):
     try:
         levels, names, kinds = levels_of(usable)
         levels = [level for level in levels if level.split == "fit"] or levels
-        excited = asked.band_Hz or excited_band(measured)
+        excited = asked.band_Hz or transfer_band(measured)
         if excited is None:
             raise ValueError("The force excites too few lines: give band_Hz.")
         study = own_study(

@@ -12,6 +12,15 @@ import xarray as xr
 
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.records import plain, read_text, write_record, write_table, write_text
+from vibroimpact.verdict.content import (
+    WITH_AMBIGUITY_SET,
+    WITH_EFFECTS,
+    Misfit,
+    MisfitBySplit,
+    Verdict,
+    not_testable,
+)
+from vibroimpact.verdict.file import write_verdict
 
 from . import jobs, mapping, misfit, naming, power_balance, priors, verdict
 from .by_level import by_level
@@ -36,24 +45,16 @@ BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
 def refused(folder, prepared, provenance):
     """Write the verdict of a campaign that can not be tested."""
     folder = Path(folder)
-    empty = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
-    content = {
-        "verdict": "not_testable",
-        "effects": [],
-        "ambiguity_set": [],
-        "ranking": [],
-        "next_measurement": prepared.refusal,
-        "broken_invariances": [],
-        "regions": [],
-        "misfit": {"fit": empty, "holdout": empty},
-        "p_global_before": None,
-        "p_global_after": None,
-        "checks": contract_checks(prepared.checks),
-        "seconds": 0.0,
-        "simulations": 0,
-        "provenance": provenance,
-    }
-    write_text(json.dumps(content, indent=1), folder / "verdict.json")
+    empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
+    write_verdict(
+        not_testable(
+            contract_checks(prepared.checks),
+            provenance,
+            next_measurement=prepared.refusal,
+            misfit=MisfitBySplit(fit=empty, holdout=empty),
+        ),
+        folder / "verdict.json",
+    )
     write_table([], folder / "ranking.csv", columns=COLUMNS)
     for name in ("map", "map_after"):
         write_record(
@@ -147,14 +148,10 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "verdict": decision.verdict,
         "effects": (
             verdict.effects_of(prepared, decision, bench.bare)
-            if decision.verdict in ("named", "partly_explained")
+            if decision.verdict in WITH_EFFECTS
             else []
         ),
-        "ambiguity_set": (
-            decision.ambiguity
-            if decision.verdict in ("named", "ambiguous", "partly_explained")
-            else []
-        ),
+        "ambiguity_set": (decision.ambiguity if decision.verdict in WITH_AMBIGUITY_SET else []),
         "ranking": [
             {
                 "ids": row["ids"].split("+"),
@@ -181,7 +178,7 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "most_probable": most_probable,
         "provenance": provenance,
     }
-    write_text(json.dumps(plain(content), indent=1), folder / "verdict.json")
+    write_verdict(Verdict.from_values(content), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
     write_record(
         mapping.map_dataset(before_bench, before.features, before.shown), folder / "map.nc"

@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.campaign.checks.against_model import compare_with_model
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
 from vibroimpact.campaign.file import CampaignError, read_campaign
-from vibroimpact.campaign.signals import measured_signals, transfer
+from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.records import read_text, write_text
 
 from . import priors
@@ -429,7 +429,7 @@ def mixed_up(bench):
     """
     if not bench.linear_stage:
         return []
-    measured = measured_signals(bench.campaign)
+    measured = campaign_signals(bench.campaign)
     spectra = transfer(measured, bench.signals.lowest)
     if spectra is None:
         return []

@@ -9,15 +9,17 @@ from pathlib import Path
 import xarray as xr
 
 from vibroimpact.records import read_dataset, read_table, read_text
+from vibroimpact.verdict.content import Verdict
+from vibroimpact.verdict.file import read_verdict
 
 
 @dataclass(frozen=True)
 class Results:
-    """Content of verdict.json, maps before and after (None where there is none), rows of
+    """Verdict, maps before and after (None where there is none), rows of
     ranking.csv, contents of candidates/*.json, best first.
     """
 
-    verdict: dict
+    verdict: Verdict
     before: xr.Dataset | None
     after: xr.Dataset | None
     ranking: list
@@ -29,7 +31,7 @@ def read_results(folder):
     where the campaign was refused.
     """
     folder = Path(folder)
-    verdict = json.loads(read_text(folder / "verdict.json"))
+    verdict = read_verdict(folder / "verdict.json")
     ranking = read_table(folder / "ranking.csv") if (folder / "ranking.csv").is_file() else []
     order = ["+".join(sorted(str(row["ids"]).split("+"))) for row in ranking]
     candidates = [
@@ -43,15 +45,6 @@ def read_results(folder):
     )
     return Results(
         verdict, _map(folder / "map.nc"), _map(folder / "map_after.nc"), ranking, candidates
-    )
-
-
-def shown_effects(verdict):
-    """Return the effects of a verdict; where it can not tell which of several, the most probable
-    ones, which its completed model holds.
-    """
-    return verdict["effects"] or (
-        verdict.get("most_probable", []) if verdict["verdict"] == "ambiguous" else []
     )
 
 

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.campaign.file import channel_signal, force_signal
+from vibroimpact.campaign.signals import campaign_signals, excited_band
 
 BANDS = 24
-DEFAULT_BAND_HZ = (5.0, 200.0)
-EXCITED = 1.0e-3  # of the largest smoothed force PSD: above it a line is excited
 QUIET = 0.75  # of half the sampling frequency: where the anti-alias filter begins
 QUIET_ABOVE = 1.6  # times the band's upper end
 LEAST_QUIET = 50  # lines above the band: with fewer, the record was not sampled to tell its noise
@@ -81,69 +79,30 @@ def signals_of(campaign, longest_s=None):
     """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given;
     band, noise and loads are those of whole records.
     """
-    rate = float(campaign.attrs["sampling_frequency"])
-    records = campaign.sizes["record"]
-    channels = campaign.sizes["channel"]
-    samples = campaign.sizes["time"]
+    measured = campaign_signals(campaign).require_units()
+    rate, samples = measured.rate, campaign.sizes["time"]
     kept = samples if longest_s is None else min(samples, round(longest_s * rate))
-    response = np.full((records, channels, samples), np.nan)
-    for record in range(records):
-        for channel in range(channels):
-            signal = channel_signal(campaign, record, channel)
-            response[record, channel, : len(signal)] = signal
-    force = np.full((records, campaign.sizes["force_channel"], samples), np.nan)
-    for record, channel in np.ndindex(force.shape[:2]):
-        signal = force_signal(campaign, record, channel)
-        force[record, channel, : len(signal)] = signal
+    force, response = measured.padded(samples)
     valid = np.isfinite(response).all(axis=1)
     force = np.where(valid[:, None], force, np.nan)
     band = excited_band(force, rate)
     load = np.sqrt(np.nanmean(force[:, 0] ** 2, axis=-1))
-    gap = np.asarray(campaign["gap"].values, float)
-    split = (
-        np.array([str(value) for value in campaign["split"].values])
-        if "split" in campaign
-        else np.full(records, "fit")
-    )
+    gap = measured.gap
     lowest = int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), load))[0])
     return Signals(
         force=force[..., :kept],
         response=response[..., :kept],
         rate=rate,
         band_Hz=band,
-        kinds=np.array([str(kind) for kind in campaign["channel_kind"].values]),
-        names=tuple(map(str, campaign["channel_name"].values)),
+        kinds=np.array(measured.kinds),
+        names=tuple(measured.channels),
         gap=gap,
         load=load,
-        split=split,
-        record_names=tuple(map(str, campaign["record_name"].values)),
+        split=np.array(measured.splits),
+        record_names=tuple(measured.records),
         noise=noise_of(campaign, response[lowest], rate, band),
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
     )
-
-
-def excited_band(force, rate):
-    """Return (low, high) Hz: where the PSD of the first force of all records is above EXCITED of
-    its largest, within 1 % of a decade.
-    """
-    length = int(4.0 * rate)
-    window = np.hanning(length)
-    power = np.zeros(length // 2 + 1)
-    for series in np.nan_to_num(force[:, 0]):
-        for first in range(0, max(len(series) - length, 0) + 1, length // 2):
-            power += (
-                np.abs(np.fft.rfft(window * np.resize(series[first : first + length], length))) ** 2
-            )
-    frequency = np.fft.rfftfreq(length, 1.0 / rate)
-    smooth = np.convolve(power, np.ones(5) / 5.0, mode="same")
-    inside = (
-        np.flatnonzero(smooth[1:] > EXCITED * np.median(np.sort(smooth[1:])[-len(smooth) // 50 :]))
-        + 1
-    )
-    low, high = frequency[inside[0]] + 0.5, frequency[inside[-1]] - 0.5
-    if abs(low - DEFAULT_BAND_HZ[0]) < 1.5 and abs(high - DEFAULT_BAND_HZ[1]) < 3.0:
-        return DEFAULT_BAND_HZ
-    return float(max(low, 2.0 / (force.shape[-1] / rate))), float(high)
 
 
 def noise_of(campaign, response, rate, band):

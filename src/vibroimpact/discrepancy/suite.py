@@ -9,6 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy import stats
 
+from vibroimpact.verdict.content import OPEN
+from vibroimpact.verdict.file import read_verdict
+
 from .misfit import excess
 
 FAULT_CHECKS = {
@@ -93,10 +96,10 @@ def strength_of(verdict, truth):
     """
     if "strength" in truth:
         return float(truth["strength"]["excess_over_floor"])
-    gap = verdict["misfit"]["holdout"]
+    gap = verdict.misfit.holdout
     return (
-        excess(gap["before_dB"], gap["floor_dB"]) / gap["floor_dB"]
-        if gap["before_dB"] is not None and gap["floor_dB"]
+        excess(gap.before_dB, gap.floor_dB) / gap.floor_dB
+        if gap.before_dB is not None and gap.floor_dB
         else float("nan")
     )
 
@@ -112,34 +115,34 @@ def arm_of(verdict, truth):
 
 
 def judged(verdict, truth):
-    """Return the row of one campaign from the contents of its two files: arm, strength, what was
-    hidden and what was said of it, which of the suite's questions it answers with yes, and the
-    first named parameter that both codes state.
+    """Return the row of one campaign from its Verdict and the content of its truth file: arm,
+    strength, what was hidden and what was said of it, which of the suite's questions it answers
+    with yes, and the first named parameter that both codes state.
     """
     hidden = sorted(name for name, _ in truth["effects"])
-    sets = [sorted(row) for row in verdict["ambiguity_set"]]
+    sets = [sorted(row) for row in verdict.ambiguity_set]
     named = {name for row in sets for name in row}
-    first = sorted(verdict["ranking"][0]["ids"]) if verdict["ranking"] else []
+    first = sorted(verdict.ranking[0].ids) if verdict.ranking else []
     flagged = bool(
-        {row["check"] for row in verdict["checks"] if row["level"] != "pass"} & FAULT_CHECKS
+        {row.check for row in verdict.checks if row.level != "pass"} & FAULT_CHECKS
     ) or bool(named & SENSOR)
-    single = verdict["verdict"] == "named"
+    single = verdict.verdict == "named"
     return {
         "arm": arm_of(verdict, truth),
         "strength": strength_of(verdict, truth),
         "hidden": "+".join(hidden),
-        "verdict": verdict["verdict"],
+        "verdict": verdict.verdict,
         "named": "|".join("+".join(row) for row in sets),
         "first_name": "+".join(first),
         "in_set": hidden in sets,
         "first": first == hidden,
         "one_right": bool(set(hidden) & named),
         "wrong": single and hidden not in sets,
-        "any_name": bool(sets) and verdict["verdict"] in ("named", "ambiguous"),
-        "open": verdict["verdict"] in ("unknown", "partly_explained", "not_testable"),
+        "any_name": bool(sets) and verdict.verdict in ("named", "ambiguous"),
+        "open": verdict.verdict in OPEN,
         "flagged": flagged,
         "both": len(hidden) == 1 and {hidden[0], ALIASES.get(hidden[0])} <= named,
-        "closed": verdict["misfit"]["holdout"]["closed_fraction"],
+        "closed": verdict.misfit.holdout.closed_fraction,
         **_parameter(verdict, truth),
     }
 
@@ -151,22 +154,17 @@ def _parameter(verdict, truth):
     """
     for name, parameters in truth["effects"]:
         own = SAME_QUANTITY.get(name)
-        for effect in verdict["effects"]:
-            if (
-                own
-                and effect["id"] == name
-                and own[0] in parameters
-                and own[1] in effect["parameters"]
-            ):
-                found, true = effect["parameters"][own[1]], parameters[own[0]]
+        for effect in verdict.effects:
+            if own and effect.id == name and own[0] in parameters and own[1] in effect.parameters:
+                found, true = effect.parameters[own[1]], parameters[own[0]]
                 return {
                     "parameter": f"{name}.{own[1]}",
                     "true": true,
-                    "value": found["value"],
-                    "low": found["low"],
-                    "high": found["high"],
-                    "parameter_error": abs(found["value"] / true - 1.0),
-                    "covered": float(found["low"] <= true <= found["high"]),
+                    "value": found.value,
+                    "low": found.low,
+                    "high": found.high,
+                    "parameter_error": abs(found.value / true - 1.0),
+                    "covered": float(found.low <= true <= found.high),
                 }
     return {
         "parameter": "",
@@ -343,9 +341,10 @@ def read(folder):
     for file in sorted(Path(folder).glob("*/verdict.json")):
         truth = Path(folder) / "truth" / f"{file.parent.name}.json"
         if truth.is_file():
-            said, hidden = (json.loads(path.read_text(encoding="utf-8")) for path in (file, truth))
+            hidden = json.loads(truth.read_text(encoding="utf-8"))
             rows.append(
-                {"suite": Path(folder).name, "campaign": file.parent.name} | judged(said, hidden)
+                {"suite": Path(folder).name, "campaign": file.parent.name}
+                | judged(read_verdict(file), hidden)
             )
     return rows
 

@@ -43,15 +43,11 @@ class Check:
         return config
 
     def faults(self, verdict):
-        """Return the sentences of what a verdict (content of verdict.json) gets wrong, none where
-        it is right.
-        """
-        sets = [sorted(row) for row in verdict["ambiguity_set"]]
-        said = f"the verdict is {verdict['verdict']} with {sets}"
+        """Return the sentences of what a Verdict gets wrong, none where it is right."""
+        sets = [sorted(row) for row in verdict.ambiguity_set]
+        said = f"the verdict is {verdict.verdict} with {sets}"
         wrong = (
-            []
-            if self.wanted or verdict["verdict"] == "none"
-            else [f"nothing is hidden, but {said}"]
+            [] if self.wanted or verdict.verdict == "none" else [f"nothing is hidden, but {said}"]
         )
         wrong += [
             f"{ids} is not in the set: {said}" for ids in self.wanted if sorted(ids) not in sets
@@ -59,13 +55,13 @@ class Check:
         rows = (
             [
                 row
-                for effect in (*verdict["effects"], *verdict["most_probable"])
-                for row in effect["parameters"].items()
+                for effect in (*verdict.effects, *verdict.most_probable)
+                for row in effect.parameters.items()
             ]
             if self.within
             else []
         )
-        found = {name: row["value"] for name, row in rows}
+        found = {name: row.value for name, row in rows}
         wrong += [
             f"{name} must be from {low} to {high}, but is {found.get(name)}: {said}"
             for name, (low, high) in self.within.items()
@@ -109,9 +105,7 @@ COMPARED_S = 10.0  # of each record: from rest, all of it counts
 
 
 def table(verdicts):
-    """Return rows {check, hidden, verdict, ambiguity_set, right, faults} of {check name: content of
-    verdict.json}.
-    """
+    """Return rows {check, hidden, verdict, ambiguity_set, right, faults} of {check: Verdict}."""
     rows = []
     for name, verdict in verdicts.items():
         faults = CHECKS[name].faults(verdict)
@@ -119,8 +113,8 @@ def table(verdicts):
             {
                 "check": name,
                 "hidden": "+".join(effect for effect, _ in CHECKS[name].hidden) or "nothing",
-                "verdict": verdict["verdict"],
-                "ambiguity_set": "|".join("+".join(row) for row in verdict["ambiguity_set"]),
+                "verdict": verdict.verdict,
+                "ambiguity_set": "|".join("+".join(row) for row in verdict.ambiguity_set),
                 "right": not faults,
                 "faults": "; ".join(faults),
             }

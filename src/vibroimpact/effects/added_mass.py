@@ -1,10 +1,10 @@
 """A mass at a point of the structure."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a point mass at a named point."""
     if parameters["mass"] == 0.0:
         return values
@@ -19,8 +19,9 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="added_mass",
     explanation="the structure carries a mass that the model lacks",
+    law="inertia force = mass times the acceleration of the point, in all directions",
     source="rigid point mass",
-    parameters=(Parameter("mass", "kg", 0.002, 2.0, 0.0, per="mass"),),
+    parameters=(Parameter("mass", "kg", 0.002, 2.0, 0.0, per="mass", meaning="the point mass"),),
     apply=apply,
     linear=True,
     broken=("T1",),

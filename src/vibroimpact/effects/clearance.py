@@ -1,10 +1,10 @@
 """A stop behind a clearance, at a point that the model leaves free."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a pair of flat stops at a point, across the tube along the
     force.
     """
@@ -24,7 +24,8 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="clearance",
     explanation="a stop behind a clearance that the model lacks",
-    source="dead zone: stiffness (|u| - half_gap) beyond half_gap",
+    law="force = stiffness (|u| - half_gap) beyond half_gap, 0 within it; u along the force",
+    source="dead zone",
     parameters=(
         Parameter(
             "half_gap",
@@ -35,9 +36,17 @@ EFFECT = Effect(
             per="displacement",
             design=(0.3, 0.55, 0.8),
             gain_power=1.0,
+            meaning="distance to the stop on either side",
         ),
         Parameter(
-            "stiffness", "N/m", 0.1, 1000.0, None, per="tube_translation", design=(0.12, 0.35, 0.7)
+            "stiffness",
+            "N/m",
+            0.1,
+            1000.0,
+            None,
+            per="tube_translation",
+            design=(0.12, 0.35, 0.7),
+            meaning="stiffness of the stops",
         ),
     ),
     apply=apply,

@@ -1,10 +1,10 @@
 """Kelvin-Voigt damping of a support: it pushes, and never pulls."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the total damping of the supports of a location."""
     return places.with_supports(
         values, location, lambda support: {"damping_N_s_per_m": parameters["damping"]}
@@ -14,8 +14,19 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="contact_damping",
     explanation="the contact dissipates with the speed of the indentation",
-    source="Kelvin-Voigt: max(0, k p + c dp/dt)",
-    parameters=(Parameter("damping", "N s/m", 2.0e-6, 3.0e-3, 0.0, per="contact_stiffness"),),
+    law="force = max(0, k p + damping dp/dt); it never pulls",
+    source="Kelvin-Voigt",
+    parameters=(
+        Parameter(
+            "damping",
+            "N s/m",
+            2.0e-6,
+            3.0e-3,
+            0.0,
+            per="contact_stiffness",
+            meaning="damping of a support, total of its contact points",
+        ),
+    ),
     apply=apply,
     locations=places.supports,
     aliases=("hunt_crossley",),

@@ -1,12 +1,12 @@
 """Dry friction of constant force at a point."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 STICK_PER_FORCE = 1.0e5  # 1/m: it slips after 10 micrometres
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a slider between a point and the ground, along the force."""
     laws = {
         "slip_limit_N": parameters["force"],
@@ -17,9 +17,9 @@ def apply(values, parameters, location):
     )
 
 
-def stiff(values, parameters, location):
-    """Return the configuration with a slider that sticks to a spring twice as stiff: how far a
-    joint gives before it slips is its own matter.
+def stiff(values: Values, parameters: dict[str, float], location: str) -> Values:
+    """Return the configuration with a slider whose stick spring is twice as stiff: the stiffness
+    before slip belongs to the joint and is not known.
     """
     laws = {
         "slip_limit_N": parameters["force"],
@@ -30,10 +30,11 @@ def stiff(values, parameters, location):
     )
 
 
-def gradual(values, parameters, location):
-    """Return the configuration with sliders that give way one after another, as stiff and as strong
-    in all: a joint slips here before it slips there, and loses energy before it slips as a whole
-    (W.D. Iwan, J. Appl. Mech. 33 (1966) 893-900).
+def gradual(values: Values, parameters: dict[str, float], location: str) -> Values:
+    """Return the configuration with parallel sliders that slip one after another, of the same total
+    stiffness and limit: a joint loses energy before it slips as a whole.
+
+    Source: W.D. Iwan, J. Appl. Mech. 33 (1966) 893-900.
     """
     laws = {
         "slip_limit_N": parameters["force"],
@@ -47,8 +48,20 @@ def gradual(values, parameters, location):
 EFFECT = Effect(
     id="coulomb_friction",
     explanation="something rubs with a constant force",
-    source="Coulomb with an elastic stick spring (Jenkins element)",
-    parameters=(Parameter("force", "N", 0.003, 2.0, 0.0, per="load", gain_power=1.0),),
+    law="elastic stick spring that slips at +-force; u along the force",
+    source="Coulomb friction with an elastic stick spring (Jenkins element)",
+    parameters=(
+        Parameter(
+            "force",
+            "N",
+            0.003,
+            2.0,
+            0.0,
+            per="load",
+            gain_power=1.0,
+            meaning="force at which it slips",
+        ),
+    ),
     apply=apply,
     below_contact=True,
     broken=("T1", "T2", "T5"),

@@ -1,10 +1,10 @@
 """A spring that stiffens with the cube of its stretch."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a cubic spring between a point and the ground, along the
     force.
     """
@@ -20,8 +20,20 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="cubic_stiffness",
     explanation="a spring stiffens with the amplitude",
-    source="Duffing: force = coefficient u^3",
-    parameters=(Parameter("coefficient", "N/m^3", 0.01, 300.0, 0.0, per="cubic", gain_power=-2.0),),
+    law="force = coefficient u^3, u along the force",
+    source="Duffing spring",
+    parameters=(
+        Parameter(
+            "coefficient",
+            "N/m^3",
+            0.01,
+            300.0,
+            0.0,
+            per="cubic",
+            gain_power=-2.0,
+            meaning="coefficient of the cube",
+        ),
+    ),
     apply=apply,
     below_contact=True,
     broken=("T1", "T2"),

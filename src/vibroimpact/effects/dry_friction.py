@@ -1,10 +1,10 @@
 """Coulomb friction of the contact, in proportion to its force."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with friction at the supports of a location."""
     return places.with_supports(values, location, lambda support: {"friction": parameters["mu"]})
 
@@ -12,8 +12,9 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="dry_friction",
     explanation="the contact rubs",
-    source="Coulomb; elastic stick spring of the contact stiffness",
-    parameters=(Parameter("mu", "1", 0.01, 1.0, 0.0),),
+    law="tangential stick spring of the contact stiffness that slips at mu times the normal force",
+    source="Coulomb friction",
+    parameters=(Parameter("mu", "1", 0.01, 1.0, 0.0, meaning="coefficient of friction"),),
     apply=apply,
     locations=places.supports,
     broken=("T5",),

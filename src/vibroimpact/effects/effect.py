@@ -4,8 +4,12 @@ bounds and a neutral value.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
-# What each invariance test is broken by; see docs/method.md.
+Values = dict[str, Any]  # a configuration in plain values, as Config.model_dump gives it
+Apply = Callable[[Values, dict[str, float], str], Values]
+
+# Invariances of the bare model, which an effect may break; see docs/method.md.
 TESTS = {
     "T1": "linearity below contact",
     "T2": "scaling with load over gap",
@@ -15,18 +19,41 @@ TESTS = {
     "T6": "stationarity",
 }
 
+# What the bounds of a parameter are multiples of; discrepancy.scales computes the sizes.
+SCALES = {
+    "one": "1",
+    "gap": "the largest nominal clearance",
+    "load": "the largest RMS force",
+    "displacement": "the RMS displacement of the drive point at the highest load",
+    "contact_stiffness": "the stiffness of the support in the model",
+    "hertz": "the Hertz coefficient as stiff as the model's contact",
+    "gap_force": "the force that closes the clearance",
+    "mass": "the modal mass of the first mode at the drive point",
+    "mass_per_length": "that modal mass over the length of the structure",
+    "tube_translation": "the static stiffness at the drive point",
+    "tube_rotation": "that stiffness times a hundredth of the squared length",
+    "tube_damping": "the modal damping constant of the first mode at the drive point",
+    "damping_per_length": "that damping constant over the length of the structure",
+    "cubic": "the static stiffness over the squared RMS displacement",
+    "quadratic": "the static stiffness over the RMS displacement",
+    "drag": "the damping constant over length and RMS velocity of the drive point",
+}
+FAMILIES = ("contact", "nonlinear structure", "linear structure", "measurement")
+
 
 @dataclass(frozen=True)
 class Parameter:
     """A parameter of an effect.
 
-    unit; low, high: bounds in units of the scale named `per` (a key of scales.scales, "one" for SI
-    as it is); neutral: value without the effect in SI, None where the effect has no neutral limit;
-    log: searched in its logarithm; design: values to try first, as fractions from low (0) to high
-    (1) of the searched range; over: the parameter that this one is searched as a multiple of (the
-    range is that of a value of 1 in its scale), where the two together set what is seen;
-    gain_power: with which power of a gain common to force and responses the value that explains the
-    records grows: such a gain is a length scaled and can not be told from one.
+    meaning: what it is, in words.
+    low, high: bounds, as multiples of the size that `per` names in SCALES.
+    neutral: value in SI at which the effect vanishes, None where there is no such value.
+    log: whether it is searched in its logarithm.
+    design: values to try first, as fractions of the searched range.
+    over: another parameter of the effect; this one is searched as a multiple of it, where their
+        ratio sets what is seen.
+    gain_power: a gain common to force and responses scales lengths; the value that explains the
+        records grows with this power of it.
     """
 
     name: str
@@ -39,32 +66,39 @@ class Parameter:
     design: tuple[float, ...] = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
     over: str | None = None
     gain_power: float = 0.0
+    meaning: str = ""
 
 
 @dataclass(frozen=True)
 class Effect:
     """An entry of the catalogue.
 
-    apply(values, parameters, location) -> values: values are a configuration in plain values
-    (Config.model_dump), which are not changed; parameters {name: value in SI}. locations(values) ->
-    names of the places that the effect may sit at. broken: the invariances it breaks; aliases: ids
-    of effects that look alike; source: where the law is from; linear: it acts in the linear
-    structure below contact too, and keeps it linear; below_contact: it is not linear, yet acts
-    where nothing touches, and may be taken for a linear effect there; measured: it changes what was
-    measured, not the model (see measurement.py); needs: what the campaign must hold; law_of: id of
-    the effect of the catalogue that it is another law of, under which it is reported; quantity:
-    what several effects of the catalogue are laws of; other_laws: what may stand in the place of
-    apply, the same effect by laws that differ from it in what no measurement of a structure in use
-    tells; unlimited(values, location) -> (id, location) of the effect that it is where its limit is
-    never reached, None where the catalogue has none.
+    explanation: what it is, in a clause.
+    law: its equation, or the equation in words; p: indentation of a contact, u: displacement.
+    source: where the law comes from.
+    apply(values, parameters, location): the configuration with the effect; values are not changed;
+        parameters {name: value in SI}; None where the effect acts on the measurement.
+    locations(values): names of the places where the effect may act.
+    broken: keys of TESTS, the invariances that the effect breaks.
+    aliases: ids of effects with a similar signature.
+    linear: it changes the linear structure, also below contact.
+    below_contact: it is nonlinear and acts without contact, so that it resembles a linear effect.
+    measured: it changes the measurement, not the model.
+    needs: variables that the campaign must hold.
+    law_of: id of the effect under which this one is reported, where it is another law of it.
+    other_laws: alternatives to apply that a measurement in service can not distinguish from it.
+    quantity: name of what several effects of the catalogue are laws of.
+    unlimited(values, location): (id, location) of the effect that this one equals where its limit
+        is never reached, None where the catalogue has none.
     """
 
     id: str
     explanation: str
     source: str
     parameters: tuple[Parameter, ...]
-    apply: Callable = None
-    locations: Callable = field(default=lambda values: ["all"])
+    law: str = ""
+    apply: Apply | None = None
+    locations: Callable[[Values], list[str]] = field(default=lambda values: ["all"])
     broken: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
     linear: bool = False
@@ -72,16 +106,31 @@ class Effect:
     measured: bool = False
     needs: tuple[str, ...] = ()
     law_of: str = ""
-    other_laws: tuple[Callable, ...] = ()
+    other_laws: tuple[Apply, ...] = ()
     quantity: str = ""
-    unlimited: Callable = field(default=lambda values, location: None)
+    unlimited: Callable[[Values, str], tuple[str, str] | None] = field(
+        default=lambda values, location: None
+    )
 
     @property
-    def reported(self):
+    def family(self) -> str:
+        """Return the one of FAMILIES that says where the effect acts."""
+        if self.measured:
+            return "measurement"
+        if self.linear:
+            return "linear structure"
+        return "nonlinear structure" if self.below_contact else "contact"
+
+    @property
+    def reported(self) -> str:
         """Return the id under which the effect is reported."""
         return self.law_of or self.id
 
-    def neutral(self):
+    def neutral(self) -> dict[str, float] | None:
         """Return {name: neutral value}; None when a parameter has none."""
-        values = {parameter.name: parameter.neutral for parameter in self.parameters}
-        return None if None in values.values() else values
+        values = {
+            parameter.name: parameter.neutral
+            for parameter in self.parameters
+            if parameter.neutral is not None
+        }
+        return values if len(values) == len(self.parameters) else None

@@ -3,10 +3,10 @@
 import math
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the mass as density of the wall and the drag as damping in
     proportion to the mass.
     """
@@ -28,11 +28,28 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="fluid_added_mass_damping",
     explanation="a fluid adds mass and damping along the tube",
-    source="added mass and linear drag per length",
+    law="force per length = mass a + damping v, along the whole tube",
+    source="added mass and linear drag",
     parameters=(
-        Parameter("mass", "kg/m", 0.005, 2.0, 0.0, per="mass_per_length"),
         Parameter(
-            "damping", "N s/m^2", 0.0, 20.0, 0.0, per="damping_per_length", log=False, design=(0.1,)
+            "mass",
+            "kg/m",
+            0.005,
+            2.0,
+            0.0,
+            per="mass_per_length",
+            meaning="added mass per length of tube",
+        ),
+        Parameter(
+            "damping",
+            "N s/m^2",
+            0.0,
+            20.0,
+            0.0,
+            per="damping_per_length",
+            log=False,
+            design=(0.1,),
+            meaning="damping per length of tube",
         ),
     ),
     apply=apply,

@@ -3,11 +3,11 @@
 import math
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 from .foliate_obstacle import LOBES
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with four flat lands at the supports of a location, as far from the
     centre as the circle was.
     """
@@ -21,12 +21,21 @@ EFFECT = Effect(
     id="foliate_lands",
     law_of="foliate_obstacle",
     explanation="the hole is not circular: four flat lands, the limit of its lobes",
-    source=(
-        "distance of each land from the centre = gap; force along its normal, one of them at angle"
+    law=(
+        "four planes at the distance gap from the centre, the first one at angle; force along the"
+        " normal of the plane"
     ),
+    source="limit of the lobes of foliate_obstacle",
     parameters=(
         Parameter(
-            "angle", "rad", 0.0, 1.5707963267948966, None, log=False, design=(0.0, 0.25, 0.5, 0.75)
+            "angle",
+            "rad",
+            0.0,
+            1.5707963267948966,
+            None,
+            log=False,
+            design=(0.0, 0.25, 0.5, 0.75),
+            meaning="direction of the first land",
         ),
     ),
     apply=apply,

@@ -3,10 +3,10 @@
 import math
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with four lobes at the supports of a location."""
     profile = {
         "kind": "lobes",
@@ -23,16 +23,32 @@ LOBES = 4
 EFFECT = Effect(
     id="foliate_obstacle",
     explanation="the hole is not circular: lobes, or flat lands as their limit",
-    source=(
+    law=(
         "r(theta) = gap + depth (1 - cos(4 (theta - angle))) / 2; force along the normal of the"
         " profile"
     ),
+    source="profile with four lobes",
     parameters=(
         Parameter(
-            "depth", "m", 0.03, 1.5, 0.0, per="gap", design=(0.25, 0.65, 1.0), gain_power=1.0
+            "depth",
+            "m",
+            0.03,
+            1.5,
+            0.0,
+            per="gap",
+            design=(0.25, 0.65, 1.0),
+            gain_power=1.0,
+            meaning="depth of the lobes",
         ),
         Parameter(
-            "angle", "rad", 0.0, 1.5707963267948966, 0.0, log=False, design=(0.0, 0.25, 0.5, 0.75)
+            "angle",
+            "rad",
+            0.0,
+            1.5707963267948966,
+            0.0,
+            log=False,
+            design=(0.0, 0.25, 0.5, 0.75),
+            meaning="direction of the first land",
         ),
     ),
     apply=apply,

@@ -3,10 +3,10 @@
 import math
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the force turned by an angle, about_z or about_tube: the
     tangent where it acts.
     """
@@ -25,8 +25,9 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="force_misalignment",
     explanation="the force is not along its stated direction",
+    law="the direction of the force is turned by angle, about z or about the tube",
     source="geometry",
-    parameters=(Parameter("angle", "rad", -1.2, 1.2, 0.0, log=False),),
+    parameters=(Parameter("angle", "rad", -1.2, 1.2, 0.0, log=False, meaning="angle of the turn"),),
     apply=apply,
     linear=True,
     broken=("T1", "T4"),

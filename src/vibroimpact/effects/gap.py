@@ -1,21 +1,21 @@
 """A support whose clearance is not the nominal one."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the clearances of a location multiplied by gap_factor."""
     factor = parameters["gap_factor"]
 
-    def change(support):
+    def change(support: Values) -> Values:
         own = {} if support["gap_m"] is None else {"gap_m": factor * support["gap_m"]}
         return own | {"gap_factor": _times(support["gap_factor"], factor)}
 
     return places.with_supports(values, location, change)
 
 
-def _times(given, factor):
+def _times(given: float | list[float], factor: float) -> float | list[float]:
     """A number, or a list of them, times a factor."""
     return (
         [factor * value for value in given] if isinstance(given, (list, tuple)) else factor * given
@@ -25,7 +25,8 @@ def _times(given, factor):
 EFFECT = Effect(
     id="gap",
     explanation="the radial clearance differs from the nominal one",
-    source="scaling: q/gap depends on force/gap alone",
+    law="clearance = gap_factor times the nominal clearance",
+    source="scaling: q / gap depends on force / gap alone",
     parameters=(
         Parameter(
             "gap_factor",
@@ -35,6 +36,7 @@ EFFECT = Effect(
             1.0,
             design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9),
             gain_power=1.0,
+            meaning="clearance over its nominal value",
         ),
     ),
     apply=apply,

@@ -1,10 +1,10 @@
 """A contact that stiffens with the indentation."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with Hertz contacts, the coefficient that of one contact point."""
     return places.with_supports(
         values,
@@ -16,9 +16,19 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="hertz",
     explanation="the contact stiffens with the indentation (Hertz)",
-    source="H. Hertz (1882): force = coefficient p^1.5",
+    law="force = coefficient p^1.5 at each contact point",
+    source="H. Hertz (1882)",
     parameters=(
-        Parameter("coefficient", "N/m^1.5", 0.005, 5.0, None, per="hertz", gain_power=-0.5),
+        Parameter(
+            "coefficient",
+            "N/m^1.5",
+            0.005,
+            5.0,
+            None,
+            per="hertz",
+            gain_power=-0.5,
+            meaning="coefficient of one contact point",
+        ),
     ),
     apply=apply,
     locations=places.supports,

@@ -3,13 +3,13 @@
 import numpy as np
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 DIRECTIONS = {"along_x": (1.0, 0.0, 0.0), "along_y": (0.0, 1.0, 0.0), "along_z": (0.0, 0.0, 1.0)}
 ALONG = 1.0 - 1.0e-6  # cosine
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a spring and a damper at the drive point, along a global
     axis.
     """
@@ -22,9 +22,10 @@ def apply(values, parameters, location):
     )
 
 
-def along_the_force(values, point):
-    """Return the (id, axis) of a stinger that holds as a spring along the force at a point does,
-    None off the drive point, or where the force is along no axis.
+def along_the_force(values: Values, point: str) -> tuple[str, str] | None:
+    """Return (id, axis) of the stinger that equals a spring along the force at a point.
+
+    None where the point is not the drive point, or the force is along no axis.
     """
     force = np.array(values["excitation"]["direction"]) / np.linalg.norm(
         values["excitation"]["direction"]
@@ -36,10 +37,29 @@ def along_the_force(values, point):
 EFFECT = Effect(
     id="lateral_stinger",
     explanation="the rod of the shaker holds the structure sideways or along the force",
-    source="spring and damper between the drive point and the ground",
+    law="force = stiffness u + damping du/dt at the drive point, along a global axis",
+    source="spring and damper",
     parameters=(
-        Parameter("stiffness", "N/m", 0.02, 20.0, 0.0, per="tube_translation"),
-        Parameter("damping", "N s/m", 0.0, 1.0, 0.0, per="tube_damping", log=False, design=(0.1,)),
+        Parameter(
+            "stiffness",
+            "N/m",
+            0.02,
+            20.0,
+            0.0,
+            per="tube_translation",
+            meaning="stiffness of the rod",
+        ),
+        Parameter(
+            "damping",
+            "N s/m",
+            0.0,
+            1.0,
+            0.0,
+            per="tube_damping",
+            log=False,
+            design=(0.1,),
+            meaning="damping of the rod",
+        ),
     ),
     apply=apply,
     linear=True,

@@ -1,9 +1,9 @@
 """Damping of the modes other than assumed."""
 
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with all modal damping ratios multiplied by a factor."""
     damping = dict(values["damping"])
     for key in ("other_ratio", "mass_coefficient_per_s", "stiffness_coefficient_s"):
@@ -19,8 +19,9 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="modal_damping",
     explanation="the modes are damped otherwise than assumed",
+    law="damping ratio of every mode = factor times the assumed one",
     source="viscous modal damping",
-    parameters=(Parameter("factor", "1", 0.08, 12.0, 1.0),),
+    parameters=(Parameter("factor", "1", 0.08, 12.0, 1.0, meaning="damping over the assumed one"),),
     apply=apply,
     linear=True,
     broken=("T1", "T5"),

@@ -1,9 +1,9 @@
 """A mode whose frequency is not the computed one."""
 
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the frequency of mode_<n> multiplied by a factor."""
     mode = int(location.removeprefix("mode_"))
     factors = [
@@ -17,8 +17,13 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="mode_frequency_error",
     explanation="a mode has another frequency than computed",
+    law="frequency of one mode = factor times the computed one",
     source="model error of the linear structure",
-    parameters=(Parameter("factor", "1", 0.7, 1.4, 1.0, log=True),),
+    parameters=(
+        Parameter(
+            "factor", "1", 0.7, 1.4, 1.0, log=True, meaning="frequency over the computed one"
+        ),
+    ),
     apply=apply,
     linear=True,
     broken=("T1",),

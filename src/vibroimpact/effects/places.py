@@ -2,33 +2,40 @@
 configuration.
 """
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import numpy as np
 
 from vibroimpact.config.structure import Path, UTube
-from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.geometry.centreline import Centreline, build_centreline
 from vibroimpact.geometry.directions import transverse_directions
 
+from .effect import Values
+
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
-SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of a limit
-TUBES = {"u_tube": UTube, "path": Path}
+SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is split
+TUBES: dict[str, type[UTube] | type[Path]] = {"u_tube": UTube, "path": Path}
 
 
-def supports(values):
+def supports(values: Values) -> list[str]:
     """Return the places of an effect of contact: all supports together, then each by itself."""
     names = [support["name"] for support in values["supports"] if support["name"] != STOP]
     return ["all", *names] if len(names) > 1 else ["all"]
 
 
-def driven(values):
+def driven(values: Values) -> list[str]:
     """Return the name of the drive point."""
     return [values["excitation"]["point"]]
 
 
-def masses_and_springs(values):
+def masses_and_springs(values: Values) -> list[str]:
     """Return the named points of a structure that an element may be put at: the drive point first,
     then the others, one per place.
     """
-    first, seen, names = values["excitation"].get("point"), [], []
+    first = values["excitation"].get("point")
+    seen: list[np.ndarray] = []
+    names: list[str] = []
     for name in sorted(values["points"], key=lambda point: point != first):
         place = np.array(values["points"][name])
         if all(np.linalg.norm(place - other) > 1.0e-3 for other in seen):
@@ -37,7 +44,7 @@ def masses_and_springs(values):
     return names
 
 
-def with_supports(values, location, change):
+def with_supports(values: Values, location: str, change: Callable[[Values], Values]) -> Values:
     """Return the configuration with change(support) -> {key: value} merged into the supports of a
     location.
     """
@@ -49,16 +56,19 @@ def with_supports(values, location, change):
     }
 
 
-def sits_at(support, location):
-    """Return whether a support is at a location: by its name, or at all, which the stop that an
-    effect has added is not of.
+def sits_at(support: Values, location: str) -> bool:
+    """Return whether a support is at a location: a name, or "all" for every support but the stop
+    that an effect has added.
     """
     return location == support["name"] or (location == "all" and support["name"] != STOP)
 
 
-def with_element(values, name, point, direction, **laws):
-    """Return the configuration with a local element more between a point and the ground; laws: keys
-    of an element; unchanged where all are 0.
+def with_element(
+    values: Values, name: str, point: str, direction: Sequence[float], **laws: Any
+) -> Values:
+    """Return the configuration with another local element between a point and the ground.
+
+    laws: keys of an element. Unchanged where all are 0.
     """
     if not any(laws.values()):
         return values
@@ -66,9 +76,11 @@ def with_element(values, name, point, direction, **laws):
     return values | {"elements": [*values["elements"], element]}
 
 
-def side_by_side(values, name, point, direction, **laws):
-    """Return the configuration with SHARES of a local element side by side, all equally stiff: a
-    law that bends at once, as it is where it bends little by little.
+def side_by_side(
+    values: Values, name: str, point: str, direction: Sequence[float], **laws: float
+) -> Values:
+    """Return the configuration with a local element split into parallel ones, equally stiff, with
+    SHARES of its limit: the corner of its law becomes gradual.
 
     laws: keys of an element, its limit in N and its stiffness.
     """
@@ -82,12 +94,12 @@ def side_by_side(values, name, point, direction, **laws):
     return values
 
 
-def across(values, point):
+def across(values: Values, point: str) -> Sequence[float]:
     """Return the direction of an element at a point: that of the force."""
     return values["excitation"]["direction"]
 
 
-def across_deg(values, point):
+def across_deg(values: Values, point: str) -> float:
     """Return the angle in degrees, in a tube's section at a point, of the direction of the force:
     see supports for the axes, which turn with the tube.
     """
@@ -98,7 +110,7 @@ def across_deg(values, point):
     return float(np.rad2deg(np.arctan2(second, first)))
 
 
-def stations(values, count):
+def stations(values: Values, count: int) -> tuple[dict[str, list[float]], float]:
     """Return ({name: place}, tributary length in m) of `count` points evenly spaced along a tube,
     ends excluded.
     """
@@ -110,7 +122,7 @@ def stations(values, count):
     }, line.length / count
 
 
-def _centreline(values):
+def _centreline(values: Values) -> Centreline:
     """Return the Centreline of a configuration of a tube."""
     structure = values["structure"]
     return build_centreline(TUBES[structure["kind"]].model_validate(structure))

@@ -1,10 +1,10 @@
 """A plate that gives way: a mass on a spring carries the support."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the supports of a location on a plate of mass and stiffness."""
     plate = {
         "mass_kg": parameters["mass"],
@@ -20,7 +20,8 @@ DAMPING_RATIO = 0.02
 EFFECT = Effect(
     id="plate_flexibility",
     explanation="the support plate moves",
-    source="mass on a spring in both transverse directions",
+    law="the support sits on a mass on a spring, in both transverse directions; damping ratio 0.02",
+    source="single-degree-of-freedom plate",
     parameters=(
         Parameter(
             "stiffness",
@@ -31,8 +32,18 @@ EFFECT = Effect(
             per="contact_stiffness",
             design=(0.15, 0.4, 0.65, 0.8),
             over="mass",
+            meaning="stiffness of the plate",
         ),  # the plate's own frequency
-        Parameter("mass", "kg", 0.01, 3.0, None, per="mass", design=(0.2, 0.6, 1.0)),
+        Parameter(
+            "mass",
+            "kg",
+            0.01,
+            3.0,
+            None,
+            per="mass",
+            design=(0.2, 0.6, 1.0),
+            meaning="mass of the plate",
+        ),
     ),
     apply=apply,
     locations=places.supports,

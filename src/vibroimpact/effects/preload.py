@@ -1,10 +1,10 @@
 """A constant force that presses the tube towards one side."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a constant force along x and y at the middle of a support, or
     of each of them.
     """
@@ -27,7 +27,7 @@ def apply(values, parameters, location):
     }
 
 
-def locations(values):
+def locations(values: Values) -> list[str]:
     """Return all supports together, then one by one."""
     names = [
         support["name"]
@@ -40,6 +40,7 @@ def locations(values):
 EFFECT = Effect(
     id="preload",
     explanation="a constant force presses the tube to one side",
+    law="constant force on the tube at the middle of the support",
     source="statics",
     parameters=(
         Parameter(
@@ -52,6 +53,7 @@ EFFECT = Effect(
             log=False,
             design=(0.1, 0.5, 0.9),
             gain_power=1.0,
+            meaning="force along x",
         ),
         Parameter(
             "force_y",
@@ -63,6 +65,7 @@ EFFECT = Effect(
             log=False,
             design=(0.1, 0.5, 0.9),
             gain_power=1.0,
+            meaning="force along y",
         ),
     ),
     apply=apply,

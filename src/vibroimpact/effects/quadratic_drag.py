@@ -1,12 +1,12 @@
 """A fluid whose drag grows with the square of the speed."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 STATIONS = 8
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with drag at evenly spaced stations of the tube, in the two
     directions across x-y.
     """
@@ -31,12 +31,19 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="quadratic_drag",
     explanation="a fluid at rest brakes the tube with the square of its speed",
-    source=(
-        "J.R. Morison et al. (1950), drag term: force per length = coefficient |v| v, v the vector"
-        " across z"
-    ),
+    law="force per length = coefficient |v| v, v the velocity vector across z",
+    source="J.R. Morison et al. (1950), drag term",
     parameters=(
-        Parameter("coefficient", "N s^2/m^3", 0.02, 100.0, 0.0, per="drag", gain_power=-1.0),
+        Parameter(
+            "coefficient",
+            "N s^2/m^3",
+            0.02,
+            100.0,
+            0.0,
+            per="drag",
+            gain_power=-1.0,
+            meaning="drag per length of tube",
+        ),
     ),
     apply=apply,
     below_contact=True,

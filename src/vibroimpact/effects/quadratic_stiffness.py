@@ -1,10 +1,10 @@
 """A spring that is stiffer on one side."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a quadratic spring between a point and the ground, along the
     force.
     """
@@ -20,7 +20,8 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="quadratic_stiffness",
     explanation="a spring is stiffer to one side",
-    source="force = coefficient u^2",
+    law="force = coefficient u^2, u along the force",
+    source="spring with an even term",
     parameters=(
         Parameter(
             "coefficient",
@@ -32,6 +33,7 @@ EFFECT = Effect(
             log=False,
             design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
             gain_power=-1.0,
+            meaning="coefficient of the square",
         ),
     ),
     apply=apply,

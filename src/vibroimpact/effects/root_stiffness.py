@@ -1,10 +1,10 @@
 """Ends that give way: springs in place of clamps."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with both ends of the tube on springs."""
     ends = {
         "kind": "springs",
@@ -18,13 +18,28 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="root_stiffness",
     explanation="the roots are not clamped",
-    source="springs against translation and rotation at both ends",
+    law="force = translation u and moment = rotation times the slope, at both ends",
+    source="springs in place of clamps",
     parameters=(
         Parameter(
-            "translation", "N/m", 30.0, 3.0e5, None, per="tube_translation", design=(0.3, 0.6, 1.0)
+            "translation",
+            "N/m",
+            30.0,
+            3.0e5,
+            None,
+            per="tube_translation",
+            design=(0.3, 0.6, 1.0),
+            meaning="stiffness against translation",
         ),
         Parameter(
-            "rotation", "N m/rad", 1.0, 1.0e3, None, per="tube_rotation", design=(0.2, 0.5, 0.8)
+            "rotation",
+            "N m/rad",
+            1.0,
+            1.0e3,
+            None,
+            per="tube_rotation",
+            design=(0.2, 0.5, 0.8),
+            meaning="stiffness against rotation",
         ),
     ),
     apply=apply,

@@ -1,11 +1,11 @@
 """A spring whose force saturates."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 from .lateral_stinger import along_the_force
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a saturating spring between a point and the ground, along the
     force.
     """
@@ -18,9 +18,9 @@ def apply(values, parameters, location):
     )
 
 
-def rounded(values, parameters, location):
-    """Return the configuration with a spring that saturates little by little: the limit of a grip,
-    or of a clamp that opens, has no corner.
+def rounded(values: Values, parameters: dict[str, float], location: str) -> Values:
+    """Return the configuration with a spring that saturates gradually, as a grip does, or a clamp
+    that opens.
     """
     laws = {
         "saturation_stiffness_N_per_m": parameters["stiffness"],
@@ -34,13 +34,29 @@ def rounded(values, parameters, location):
 EFFECT = Effect(
     id="saturation_stiffness",
     explanation="a spring holds up to a limit only",
-    source="force = clip(stiffness u, +-limit)",
+    law="force = stiffness u, at most +-limit; u along the force",
+    source="spring with a limit",
     parameters=(
         Parameter(
-            "stiffness", "N/m", 0.05, 50.0, 0.0, per="tube_translation", design=(0.2, 0.5, 0.8)
+            "stiffness",
+            "N/m",
+            0.05,
+            50.0,
+            0.0,
+            per="tube_translation",
+            design=(0.2, 0.5, 0.8),
+            meaning="stiffness below the limit",
         ),
         Parameter(
-            "limit", "N", 0.02, 10.0, 0.0, per="load", design=(0.2, 0.5, 0.8), gain_power=1.0
+            "limit",
+            "N",
+            0.02,
+            10.0,
+            0.0,
+            per="load",
+            design=(0.2, 0.5, 0.8),
+            gain_power=1.0,
+            meaning="largest force",
         ),
     ),
     apply=apply,

@@ -1,10 +1,10 @@
 """The shaker's moving parts belong to the structure."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the armature at the drive point."""
     if parameters["mass"] > 0.0:
         values = values | {
@@ -25,14 +25,30 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="shaker_interaction",
     explanation="the moving parts of the shaker are carried by the structure",
-    source=(
-        "armature of mass, spring and damper at the drive point, along the force; G.R. Tomlinson,"
-        " JSV 63 (1979)"
-    ),
+    law="force = mass d2u/dt2 + damping du/dt + stiffness u at the drive point, along the force",
+    source="G.R. Tomlinson, JSV 63 (1979)",
     parameters=(
-        Parameter("mass", "kg", 0.002, 0.5, 0.0, per="mass"),
-        Parameter("stiffness", "N/m", 0.02, 20.0, 0.0, per="tube_translation"),
-        Parameter("damping", "N s/m", 0.0, 1.0, 0.0, per="tube_damping", log=False, design=(0.1,)),
+        Parameter("mass", "kg", 0.002, 0.5, 0.0, per="mass", meaning="mass of the armature"),
+        Parameter(
+            "stiffness",
+            "N/m",
+            0.02,
+            20.0,
+            0.0,
+            per="tube_translation",
+            meaning="stiffness of its suspension",
+        ),
+        Parameter(
+            "damping",
+            "N s/m",
+            0.0,
+            1.0,
+            0.0,
+            per="tube_damping",
+            log=False,
+            design=(0.1,),
+            meaning="damping of its suspension",
+        ),
     ),
     apply=apply,
     linear=True,

@@ -1,10 +1,10 @@
 """A support whose centre is not where the tube is."""
 
 from . import places
-from .effect import Effect, Parameter
+from .effect import Effect, Parameter, Values
 
 
-def apply(values, parameters, location):
+def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the centres of a location moved; x and y are the support's two
     transverse directions.
     """
@@ -18,6 +18,7 @@ def apply(values, parameters, location):
 EFFECT = Effect(
     id="support_offset",
     explanation="the support is not centred on the tube",
+    law="the centre of the support lies at (offset_x, offset_y) in its plane",
     source="geometry",
     parameters=(
         Parameter(
@@ -30,6 +31,7 @@ EFFECT = Effect(
             log=False,
             design=(0.1, 0.5, 0.9),
             gain_power=1.0,
+            meaning="offset along the first transverse direction",
         ),
         Parameter(
             "offset_y",
@@ -41,6 +43,7 @@ EFFECT = Effect(
             log=False,
             design=(0.1, 0.5, 0.9),
             gain_power=1.0,
+            meaning="offset along the second transverse direction",
         ),
     ),
     apply=apply,

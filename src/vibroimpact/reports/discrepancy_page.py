@@ -9,10 +9,11 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from vibroimpact.discrepancy.results_folder import best_places, shown_effects
+from vibroimpact.discrepancy.results_folder import best_places
 from vibroimpact.display_units import shown_unit
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.verdict.content import Misfit
 
 from .page_style import STYLE
 
@@ -20,6 +21,7 @@ TEMPLATE = Path(__file__).with_suffix(".html")
 SPLITS = {"fit": "fitted", "holdout": "held out"}
 MOST_ROWS, MOST_MODES = 20, 6
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
+NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
 
 
 SEEDS = "that between two seeds of the completed model"
@@ -29,7 +31,7 @@ NOISE = "what the measurement itself scatters by, from period to period or from 
 def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
     """Return the HTML page.
 
-    name: of the campaign; verdict: content of verdict.json; figures: PNG files in their order, each
+    name: of the campaign; verdict: its Verdict; figures: PNG files in their order, each
     with its caption beside it as .txt; floor: what the floor of the misfit is, SEEDS or NOISE;
     quick_s: what a quick look kept of every record, None for a whole run.
     """
@@ -37,7 +39,7 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     tests = [
         f"{test}, {TESTS[test]}" if test in TESTS else str(test)
-        for test in verdict["broken_invariances"]
+        for test in verdict.broken_invariances
     ]
     return template.render(
         style=STYLE,
@@ -48,9 +50,9 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
         sentence=verdict_sentence(verdict),
         effects=[*_effect_rows(verdict)],
         misfit=[*_misfit_rows(verdict)],
-        p_before=_probability(verdict["p_global_before"]),
-        p_after=_probability(verdict["p_global_after"]),
-        regions=[_region_row(region) for region in verdict["regions"][:MOST_ROWS]],
+        p_before=_probability(verdict.p_global_before),
+        p_after=_probability(verdict.p_global_after),
+        regions=[_region_row(region) for region in verdict.regions[:MOST_ROWS]],
         broken="; ".join(tests),
         figures=embedded(figures),
         ranking=[
@@ -60,11 +62,11 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
                 "score": digits(row["heldout_score"]),
                 "closed": percent(row["closed_fraction"]),
             }
-            for row in best_places(verdict["ranking"])[:MOST_ROWS]
+            for row in best_places([row.to_values() for row in verdict.ranking])[:MOST_ROWS]
         ],
-        checks=sorted(verdict["checks"], key=lambda row: LEVEL_ORDER.get(row["level"], 3)),
-        seconds=digits(verdict["seconds"]),
-        provenance=[*_flat(verdict["provenance"])],
+        checks=sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level]),
+        seconds=digits(verdict.seconds),
+        provenance=[*_flat(verdict.provenance)],
     )
 
 
@@ -84,32 +86,32 @@ def embedded(figures):
 
 def verdict_sentence(verdict):
     """Return what the verdict says, in one or two sentences."""
-    kind = verdict["verdict"]
-    closed = (verdict["misfit"].get("holdout") or {}).get("closed_fraction")
+    held_out = verdict.misfit.holdout
+    closed = None if held_out is None else held_out.closed_fraction
     shrinks = (
         f" Adding it closes {percent(closed)} of the excess misfit on records that were not fitted."
         if closed is not None
         else ""
     )
-    named = "; and ".join(_with_parameters(effect) for effect in verdict["effects"])
+    named = "; and ".join(map(_with_parameters, verdict.effects))
     alternatives = [
         ids
-        for ids in verdict["ambiguity_set"]
-        if sorted(ids) != sorted(effect["id"] for effect in verdict["effects"])
+        for ids in verdict.ambiguity_set
+        if sorted(ids) != sorted(effect.id for effect in verdict.effects)
     ]
     others = (
         f" This campaign can not tell it from {sets_in_words(alternatives)}."
         if named and alternatives
         else ""
     )
-    near = [effect["id"] for effect in verdict.get("most_probable", ())]
+    near = [effect.id for effect in verdict.most_probable]
     nearest = f" What came nearest, {in_words(near)}, is not it." if near else ""
-    refusals = " ".join(row["message"] for row in verdict["checks"] if row["level"] == "refuse")
+    refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
         "none": (
             "No effect is missing: the model explains the campaign within the scatter of its seeds"
             " (chance makes such a map with probability"
-            f" {_probability(verdict['p_global_before'])})."
+            f" {_probability(verdict.p_global_before)})."
         ),
         "named": f"The model lacks {named}.{shrinks}{others}",
         "partly_explained": (
@@ -118,7 +120,7 @@ def verdict_sentence(verdict):
         ),
         "ambiguous": (
             "One of these is missing, and this campaign can not tell which:"
-            f" {sets_in_words(verdict['ambiguity_set'])}."
+            f" {sets_in_words(verdict.ambiguity_set)}."
             + shrinks.replace("Adding it", "Adding the most probable of them")
         ),
         "unknown": (
@@ -127,7 +129,7 @@ def verdict_sentence(verdict):
         ),
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
-    return sentences.get(kind, f"Verdict: {kind}.")
+    return sentences[verdict.verdict]
 
 
 def in_words(ids):
@@ -147,22 +149,22 @@ def _with_parameters(effect):
     values = ", ".join(
         f"{name.replace('_', ' ')} {digits(value['value'])}{_unit(value['unit'])}, between"
         f" {digits(value['low'])} and {digits(value['high'])}"
-        for name, value in ((name, _for_reading(row)) for name, row in effect["parameters"].items())
+        for name, value in ((name, _for_reading(row)) for name, row in effect.parameters.items())
     )
-    place = f" at {effect['location']}" if effect.get("location") not in (None, "", "all") else ""
-    return f"{in_words([effect['id']])}{place}" + (f" ({values})" if values else "")
+    place = f" at {effect.location}" if effect.location not in ("", "all") else ""
+    return f"{in_words([effect.id])}{place}" + (f" ({values})" if values else "")
 
 
 def _effect_rows(verdict):
-    for effect in shown_effects(verdict):
-        known = EFFECTS.get(effect["id"])
+    for effect in verdict.shown_effects():
+        known = EFFECTS.get(effect.id)
         head = {
-            "effect": in_words([effect["id"]]),
+            "effect": in_words([effect.id]),
             "explanation": known.explanation if known else "",
-            "location": effect.get("location") or "all",
+            "location": effect.location or "all",
         }
         for name, value in [
-            (name, _for_reading(row)) for name, row in effect["parameters"].items()
+            (name, _for_reading(row)) for name, row in effect.parameters.items()
         ] or [("", None)]:
             cells = {key: digits(value[key]) if value else "" for key in ("value", "low", "high")}
             yield {
@@ -176,24 +178,25 @@ def _effect_rows(verdict):
 
 def _misfit_rows(verdict):
     for split, words in SPLITS.items():
-        values = verdict["misfit"].get(split) or {}
+        misfit = getattr(verdict.misfit, split) or NOTHING_COMPARED
         yield {
             "records": words,
-            **{key: digits(values.get(f"{key}_dB")) for key in ("before", "after", "floor")},
-            "closed": percent(values.get("closed_fraction")),
+            "before": digits(misfit.before_dB),
+            "after": digits(misfit.after_dB),
+            "floor": digits(misfit.floor_dB),
+            "closed": percent(misfit.closed_fraction),
         }
 
 
 def _region_row(region):
-    gap = region.get("gap_m")
     return {
-        "band": " to ".join(digits(edge) for edge in region["band_Hz"]),
-        "channel": region["channel"],
-        "load": digits(region["load_rms_N"]),
-        "gap": digits(gap * 1e3) if gap is not None else "-",
-        "discrepancy": f"{region['discrepancy_dB']:+.1f}",
-        "z": f"{region['z']:+.1f}",
-        "modes": _modes(region.get("nearest_modes_Hz", ())),
+        "band": " to ".join(digits(edge) for edge in region.band_Hz),
+        "channel": region.channel,
+        "load": digits(region.load_rms_N),
+        "gap": digits(region.gap_m * 1e3) if region.gap_m is not None else "-",
+        "discrepancy": f"{region.discrepancy_dB:+.1f}",
+        "z": f"{region.z:+.1f}",
+        "modes": _modes(region.nearest_modes_Hz or ()),
     }
 
 
@@ -229,9 +232,9 @@ def digits(value):
 
 
 def _for_reading(row):
-    """Return {value, low, high, unit} of a parameter in the unit that it is shown in."""
-    values = {key: row[key] for key in ("value", "low", "high")}
-    unit, factor = shown_unit(row["unit"], values.values())
+    """Return {value, low, high, unit} of an Estimate in the unit that it is shown in."""
+    values = {"value": row.value, "low": row.low, "high": row.high}
+    unit, factor = shown_unit(row.unit, values.values())
     return {
         "unit": unit,
         **{key: None if value is None else factor * value for key, value in values.items()},

@@ -1,13 +1,11 @@
-"""The cases of a study: grid <-> case id, and the random streams of a seed.
+"""The cases of a study: grid <-> case id.
 
 An id is made of values, not of places in a list, so that an added load, gap or seed changes no
-other id. A random stream depends on (seed of the study, seed index, name of the stream) only: all
-loads and gaps of a seed see the same force, scaled.
+other id. All loads and gaps of a seed have the same force, scaled.
 """
 
 from __future__ import annotations
 
-import hashlib
 import math
 import re
 from dataclasses import dataclass
@@ -124,16 +122,3 @@ def ids_of_load(grid, load_text: str) -> list[str]:
     return [
         case_id(load_text, float(gap), seed) for gap, seed in product(grid.gap_m, range(grid.seeds))
     ]
-
-
-def random_stream(study_seed: int, seed_index: int, stream: str) -> np.random.Generator:
-    """Return the generator of the stream named `stream` (e.g. 'force') of seed `seed_index` of a
-    study.
-
-    Streams of different names or indices are independent (numpy SeedSequence with a spawn key).
-    """
-    words = np.frombuffer(hashlib.sha256(stream.encode()).digest()[:16], dtype="<u4")
-    sequence = np.random.SeedSequence(
-        study_seed, spawn_key=(seed_index, *(int(word) for word in words))
-    )
-    return np.random.Generator(np.random.PCG64(sequence))

@@ -8,10 +8,11 @@ import xarray as xr
 from vibroimpact.excitation.force_stream import ForceStream
 from vibroimpact.integration.batch import ENERGY_TERMS, Lanes, Schedule, march_lanes
 from vibroimpact.integration.kernels import LANES, RATIO
+from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
 
-from .cases import Case, random_stream
+from .cases import Case
 from .record_variables import describe
 from .step_records import trace_cases
 
@@ -75,7 +76,7 @@ def seed_force(config, schedule: Schedule, seed: int) -> ForceStream:
     rate = schedule.steps_per_second
     first = round(schedule.start_up * rate) + 1
     recorded = slice(first, first + round(schedule.duration * rate))
-    generator = random_stream(config.seed, seed, "force")
+    generator = random_generator(config.seed, seed, "force")
     first_time = -schedule.start_up - 1.0 / rate
     return ForceStream(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
 
@@ -86,7 +87,7 @@ def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
 
     Without them a perfectly out-of-plane force leaves the in-plane motion to round-off.
     """
-    draw = random_stream(config.seed, case.seed, "imperfection").uniform(
+    draw = random_generator(config.seed, case.seed, "imperfection").uniform(
         -1.0, 1.0, (model.support_of_point.size, 2)
     )
     return draw * (config.integration.imperfection * case.gap_m)

@@ -7,9 +7,10 @@ import numpy as np
 from vibroimpact.excitation.force_stream import unit_force
 from vibroimpact.integration.every_step import Traces, trace_lanes
 from vibroimpact.integration.kernels import LANES
+from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .cases import Case, random_stream
+from .cases import Case
 from .record_variables import describe
 
 
@@ -42,7 +43,7 @@ def trace_cases(config, model: ModalModel, cases: list[Case]):
 
 
 def _unit_force(config, seed, steps, rate):
-    generator = random_stream(config.seed, seed, "force")
+    generator = random_generator(config.seed, seed, "force")
     return unit_force(
         config.excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0
     )

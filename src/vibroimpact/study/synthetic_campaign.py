@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
+from vibroimpact.random_streams import random_generator
 
-from .cases import Case, random_stream
+from .cases import Case
 from .simulation import simulate_cases
 
 
@@ -25,7 +26,7 @@ def synthetic_campaign(config, model, loads, stopwatch=None):
     records = [record for _, record in simulate_cases(config, model, cases, stopwatch=stopwatch)]
     response = np.array([record["acceleration"].values for record in records], dtype=float)
     level = config.overlay.noise * np.sqrt(np.mean(np.square(response[0]), axis=-1)).max()
-    response += level * random_stream(
+    response += level * random_generator(
         config.seed, config.overlay.seed, "measuring noise"
     ).standard_normal(response.shape)
     sensors = zip(model.sensor_names, model.sensor_positions, model.sensor_directions, strict=True)

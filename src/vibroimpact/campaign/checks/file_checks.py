@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.campaign.file import CampaignError, contract_problems, decoded, filled
-from vibroimpact.campaign.signals import excited_band, measured_signals, transfer
+from vibroimpact.campaign.signals import campaign_signals, transfer, transfer_band
 from vibroimpact.records import RecordError, read_dataset
 
 from .linear_record import NO_CAUSE, alignment, delays, mean_coherence, reversed_hint, swap_hints
@@ -71,7 +71,7 @@ def check_campaign(campaign):
         campaign = filled(campaign)
     except CampaignError as error:  # the load can not be computed from a force of unknown unit
         return [_row("units", "refuse", f"The {error}.")]
-    measured = measured_signals(campaign)
+    measured = campaign_signals(campaign)
     rows = [
         *_assumed(campaign),
         *_units(measured),
@@ -395,7 +395,7 @@ def _directions(measured):
 
 
 def _stationarity(measured, usable):
-    band = excited_band(measured)
+    band = transfer_band(measured)
     if band is None:
         return
     for record, name in enumerate(measured.records):
@@ -422,7 +422,7 @@ def _stationarity(measured, usable):
 
 
 def _length(measured):
-    band, too_short = excited_band(measured), 0
+    band, too_short = transfer_band(measured), 0
     if band is None:
         return
     width = band[0] * (10.0 ** (1.0 / BANDS_PER_DECADE) - 1.0)

@@ -270,13 +270,13 @@ def where(study, levels, names, linear, verdict):
                 label=f"{level.name}",
                 linewidth=1.1,
             )
-            for region in verdict["regions"]:
+            for region in verdict.regions:
                 if (
-                    region["channel"] == name
-                    and abs(region["load_rms_N"] - level.load_rms) < 1e-6 * level.load_rms
+                    region.channel == name
+                    and abs(region.load_rms_N - level.load_rms) < 1e-6 * level.load_rms
                 ):
                     axes.plot(
-                        region["band_Hz"],
+                        region.band_Hz,
                         [-0.06 - 0.05 * place] * 2,
                         color=colour,
                         linewidth=3,

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.campaign.file import force_units
-from vibroimpact.campaign.signals import Averaging, excited_band, measured_signals
+from vibroimpact.campaign.signals import Averaging, campaign_signals, transfer_band
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -44,7 +44,7 @@ def quicklook(campaign):
     """Return [Sheet] of a campaign Dataset: panels in SI units, one per force and response, 12 at
     most, and the levels.
     """
-    measured = measured_signals(campaign)
+    measured = campaign_signals(campaign)
     panels = [
         ("force", index, name, _shown_unit(force_units(campaign, index), "excitation"))
         for index, name in enumerate(measured.forces)
@@ -72,7 +72,7 @@ def quicklook(campaign):
     colours = ordered_colours(
         [load if np.isfinite(load) and load > 0.0 else 1.0 for load in measured.load_rms]
     )
-    band = excited_band(measured)
+    band = transfer_band(measured)
     for role, index, name, unit in panels:
         axes = sheet.axes[f"{role} {name}"]
         _spectra(sheet, axes, measured, (role, index), unit, colours, band)

@@ -228,26 +228,24 @@ def named_of(candidates, effects):
             _same(effects, name, row["value"])
             for name, row in candidate.get("parameters", {}).items()
         )
-        and set(candidate["ids"]) <= {effect["id"] for effect in effects}
+        and set(candidate["ids"]) <= {effect.id for effect in effects}
     ]
     most = max((len(candidate["ids"]) for candidate in named), default=0)
     return [candidate for candidate in named if len(candidate["ids"]) == most]
 
 
 def found_of(effects, name):
-    """Return {value, low, high} of a parameter, by its name alone or, of one effect of several, as
+    """Return the Estimate of a parameter, by its name alone or, of one effect of several, as
     effect.parameter; None where the effects have none.
     """
     effect_id, _, parameter = name.rpartition(".")
-    rows = [
-        effect["parameters"] for effect in effects if not effect_id or effect["id"] == effect_id
-    ]
+    rows = [effect.parameters for effect in effects if not effect_id or effect.id == effect_id]
     return next((row[parameter] for row in rows if parameter in row), None)
 
 
 def _same(effects, name, value):
     found = found_of(effects, name)
-    return found is not None and bool(np.isclose(found["value"], value, rtol=1e-6, atol=0.0))
+    return found is not None and bool(np.isclose(found.value, value, rtol=1e-6, atol=0.0))
 
 
 def _profile(sheet, axes, curve, effects):
@@ -275,17 +273,17 @@ def _profile(sheet, axes, curve, effects):
     found = found_of(effects, curve["parameter"])
     if found is not None:
         axes.axvspan(
-            factor * found["low"],
-            factor * found["high"],
+            factor * found.low,
+            factor * found.high,
             color=ORANGE,
             alpha=0.2,
             linewidth=0,
             zorder=0,
         )
-        axes.axvline(factor * found["value"], color=ORANGE, linewidth=1.6)
+        axes.axvline(factor * found.value, color=ORANGE, linewidth=1.6)
         axes.set_title(
-            f"{number(factor * found['value'])} ({number(factor * found['low'])} to"
-            f" {number(factor * found['high'])}) {'' if unit in NO_UNIT else unit}"
+            f"{number(factor * found.value)} ({number(factor * found.low)} to"
+            f" {number(factor * found.high)}) {'' if unit in NO_UNIT else unit}"
         )
     if values.min() > 0.0 and values.max() > 30.0 * values.min():
         axes.set_xscale("log")
@@ -365,7 +363,7 @@ def levels_figure(candidates, effects):
         found = found_of(effects, curve["parameter"])
         if found is not None:
             axes.axhspan(
-                factor * found["low"], factor * found["high"], color=BLACK, alpha=0.1, linewidth=0
+                factor * found.low, factor * found.high, color=BLACK, alpha=0.1, linewidth=0
             )
         axes.set_xscale("log")
         axes.margins(x=0.15, y=0.12)

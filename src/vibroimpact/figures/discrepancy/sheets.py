@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from vibroimpact.discrepancy.results_folder import shown_effects
-
 from .map import map_figure
 from .ranking import levels_figure, profiles_figure, ranking_figure
 from .spectra import spectra_figure
@@ -13,11 +11,11 @@ def discrepancy_figures(results):
     """Return the Sheets of Results, in the order of the page; those that have nothing to show say
     so and hold no table.
     """
-    effects = shown_effects(results.verdict)
-    named = [effect["id"] for effect in effects]
+    effects = results.verdict.shown_effects()
+    named = [effect.id for effect in effects]
     return [
         *map_figure(results.before, results.after),
-        *spectra_figure(results.before, results.after, results.verdict["regions"]),
+        *spectra_figure(results.before, results.after, results.verdict.regions),
         *ranking_figure(results.ranking, named),
         *profiles_figure(results.candidates, effects),
         *levels_figure(results.candidates, effects),

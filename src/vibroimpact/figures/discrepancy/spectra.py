@@ -160,7 +160,7 @@ def _panel(sheet, axes, maps, record, channel, regions):
         label="measured",
         zorder=2,
     )
-    for low, high in [region["band_Hz"] for region in regions if _here(region, sensor, load, gap)]:
+    for low, high in [region.band_Hz for region in regions if _here(region, sensor, load, gap)]:
         axes.axvspan(low, high, color=BLACK, alpha=0.07, linewidth=0)
     for edge in (band[0, 0], band[-1, 1]):
         axes.axvline(edge, color=BLACK, linewidth=0.7, linestyle=":")
@@ -172,10 +172,7 @@ def _panel(sheet, axes, maps, record, channel, regions):
 
 def _here(region, channel, load, gap):
     """Whether a region of verdict.json lies in the panel of a channel, load (N) and gap (m)."""
-    gap_of = region.get("gap_m")
-    same_gap = gap_of is None or not np.isfinite(gap) or np.isclose(gap_of, gap, rtol=1e-3)
-    return (
-        region.get("channel") in (None, channel)
-        and np.isclose(region.get("load_rms_N", load), load, rtol=0.02)
-        and same_gap
+    same_gap = (
+        region.gap_m is None or not np.isfinite(gap) or np.isclose(region.gap_m, gap, rtol=1e-3)
     )
+    return region.channel == channel and np.isclose(region.load_rms_N, load, rtol=0.02) and same_gap

@@ -7,13 +7,14 @@ from matplotlib.patches import Rectangle
 
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, GREY
+from vibroimpact.verdict.content import CONCLUSIONS
 
 GROUPS = ("nothing", "in the catalogue", "fault", "stranger", "left out")
 RIGHT_PAIR = "the right pair"
 OTHER_PAIR = "another pair"
 PAIR = "two effects"
 LEFT_OUT = "an effect taken out"
-VERDICTS = ("none", "ambiguous", "partly_explained", "unknown", "not_testable")
+VERDICTS = tuple(conclusion for conclusion in CONCLUSIONS if conclusion != "named")
 CELL_IN = 0.27
 SHADES = "Blues"
 

@@ -19,6 +19,7 @@ import numpy as np
 from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear.equivalent_linear import frf, synthesise_records
+from vibroimpact.random_streams import random_generator
 from vibroimpact.spectra.welch import (
     effective_averages,
     psd_statistics,
@@ -26,7 +27,6 @@ from vibroimpact.spectra.welch import (
     segment_spectra,
     window_values,
 )
-from vibroimpact.study.cases import random_stream
 from vibroimpact.validation.check import Check
 
 CASE = "convergence: spectra"
@@ -106,7 +106,7 @@ def noise_rows(study_seed, settings=SETTINGS, records=NOISE_RECORDS):
     bins), nu_flat, nu_resonance (the same here), nu_measured, standard_error, scatter_dB
     (measured), scatter_flat_dB.
     """
-    generator = random_stream(study_seed, 0, "convergence noise")
+    generator = random_generator(study_seed, 0, "convergence noise")
     rows = []
     for segment, overlap, duration, window in settings:
         spectra = averaging(segment, overlap, window)
@@ -136,7 +136,7 @@ def linear_records(model, study_seed, duration_s=49.0, count=LINEAR_RECORDS):
     """
     samples = round(duration_s * LINEAR_RATE_HZ)
     force = band_limited_noise(
-        random_stream(study_seed, 0, "convergence linear"),
+        random_generator(study_seed, 0, "convergence linear"),
         samples * count,
         LINEAR_RATE_HZ,
         LINEAR_BAND_HZ,

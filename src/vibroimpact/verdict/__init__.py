@@ -1,0 +1,1 @@
+"""The verdict on a campaign: its content, its schema and its file."""

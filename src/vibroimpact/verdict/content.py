@@ -1,0 +1,253 @@
+"""The content of verdict.json: which effects a model lacks, and the evidence for it.
+
+Both engines build a `Verdict` and every reader is given one. The JSON schema is generated from
+the classes below; `verdict.schema.json` beside this file is a copy for readers in other languages.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self, get_args
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    WithJsonSchema,
+    model_serializer,
+    model_validator,
+)
+
+from vibroimpact.records import plain
+
+Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown", "not_testable"]
+CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
+WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
+WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
+OPEN: tuple[Conclusion, ...] = ("partly_explained", "unknown", "not_testable")
+
+SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
+
+# An integer stays one, so that a file that is read and written again keeps its bytes.
+Number = Annotated[int | float, WithJsonSchema({"type": "number"})]
+
+
+class _Content(BaseModel):
+    """A part of the file. It is written with the keys it was made with, in the same order."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    _keys: tuple[str, ...] = PrivateAttr(())
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_keys(cls, values: Any, validate: ModelWrapValidatorHandler[Self]) -> Self:
+        content = validate(values)
+        if isinstance(values, dict):
+            content._keys = tuple(values)
+        return content
+
+    @model_serializer(mode="plain")
+    def _values(self) -> dict[str, Any]:
+        return {key: getattr(self, key) for key in self._keys}
+
+    @classmethod
+    def from_values(cls, values: dict[str, Any]) -> Self:
+        """Return the content of nested dicts and lists; numpy values become plain ones.
+
+        Numbers that are not finite become None. Raises pydantic.ValidationError, a ValueError,
+        that names every key that does not fit.
+        """
+        return cls.model_validate(plain(values))
+
+    def to_values(self) -> dict[str, Any]:
+        """Return nested dicts and lists, as the file holds them."""
+        return self.model_dump(mode="json")
+
+
+class Estimate(_Content):
+    """A parameter of an effect, with its 90 % interval."""
+
+    value: Number | None = Field(description="Best estimate.")
+    unit: str = Field(description="Unit of the three numbers; 1 where there is none.")
+    low: Number | None = Field(description="Lower end of the 90 % interval.")
+    high: Number | None = Field(description="Upper end of the 90 % interval.")
+
+
+class FoundEffect(_Content):
+    """An effect that the model lacks."""
+
+    id: str = Field(description="Id of the effect in the catalogue.")
+    location: str = Field(description="Where it acts: a named place, or all supports.")
+    parameters: dict[str, Estimate] = Field(description="Estimates by parameter name.")
+
+
+class RankedCandidate(_Content):
+    """A set of effects that was tried, and how well it explains the records."""
+
+    ids: list[str] = Field(description="Ids of the effects that were tried together.")
+    heldout_score: Number | None = Field(
+        description="Gain on held-out records; null where the candidate was screened only."
+    )
+    closed_fraction: Number | None = Field(description="Share of the excess misfit it closes.")
+    location: str | None = Field(default=None, description="Where the effects act.")
+    candidate: str | None = Field(default=None, description="Name of the candidate.")
+
+
+class Region(_Content):
+    """A frequency band of one channel and record in which model and measurement differ."""
+
+    band_Hz: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(
+        description="Lower and upper end of the band, Hz."
+    )
+    load_rms_N: Number | None = Field(description="RMS of the first force channel, N.")
+    gap_m: Number | None = Field(description="Radial clearance, m; null where there is none.")
+    channel: str = Field(description="Name of the response channel.")
+    discrepancy_dB: Number | None = Field(
+        description="10 log10 of measured over simulated power in the band."
+    )
+    z: Number | None = Field(description="The discrepancy over its standard deviation.")
+    record: str | None = Field(default=None, description="Name of the record.")
+    nearest_modes_Hz: list[Number] | None = Field(
+        default=None, description="Frequencies of the model's modes in or next to the band, Hz."
+    )
+    relative_error: Number | None = Field(
+        default=None, description="RMS error over RMS response, of the record's excited lines."
+    )
+
+
+class Misfit(_Content):
+    """Log-spectral distance of model and measurement, over the records of one split."""
+
+    before_dB: Number | None = Field(description="Distance with the model as given, dB.")
+    after_dB: Number | None = Field(description="Distance with the completed model, dB.")
+    floor_dB: Number | None = Field(description="Distance that chance alone makes, dB.")
+    closed_fraction: Number | None = Field(
+        description="Share of the excess over the floor that the completed model closes."
+    )
+
+
+class MisfitBySplit(_Content):
+    """Misfit of the fitted and of the held-out records; null where a split has none."""
+
+    fit: Misfit | None
+    holdout: Misfit | None
+
+
+class CheckResult(_Content):
+    """The result of one check of the campaign."""
+
+    check: str = Field(description="Name of the check.")
+    level: Literal["pass", "warn", "refuse"]
+    record: str | None = Field(description="Name of the record it concerns.")
+    channel: str | None = Field(description="Name of the channel it concerns.")
+    message: str = Field(description="The result, and the remedy where there is one.")
+
+
+class Verdict(_Content):
+    """What a campaign says about a model."""
+
+    verdict: Conclusion = Field(description="The conclusion.")
+    effects: list[FoundEffect] = Field(
+        description="What the model lacks; empty unless named or partly_explained."
+    )
+    ambiguity_set: list[list[str]] = Field(
+        description="Sets of effect ids that explain the campaign equally well; filled where"
+        " the verdict is named, ambiguous or partly_explained."
+    )
+    ranking: list[RankedCandidate] = Field(description="Candidates, best first.")
+    next_measurement: str | None = Field(
+        description="The measurement that would decide between the sets of the ambiguity set."
+    )
+    broken_invariances: list[str] = Field(
+        description="Symmetries of the bare model that the measurement breaks."
+    )
+    regions: list[Region] = Field(description="Where model and measurement differ most.")
+    misfit: MisfitBySplit
+    p_global_before: Number | None = Field(
+        description="Probability of the observed differences by chance, with the model as given."
+    )
+    p_global_after: Number | None = Field(description="The same with the completed model.")
+    checks: list[CheckResult] = Field(description="Checks of the campaign.")
+    seconds: Number = Field(description="Computing time, s.")
+    simulations: int = Field(description="Number of simulated records.")
+    not_testable: list[str] = Field(
+        default=[], description="Ids of effects that this campaign can not show."
+    )
+    linear: list[dict[str, Any]] = Field(
+        default=[], description="Linear effects fitted to the record of lowest load."
+    )
+    explained_z: list[Number | None] = Field(
+        default=[], description="What remains unexplained, per record, in standard deviations."
+    )
+    most_probable: list[FoundEffect] = Field(
+        default=[], description="The effects of the best candidate, whatever the verdict."
+    )
+    provenance: dict[str, Any] = Field(
+        default={}, description="Digests of configuration and source, versions of libraries."
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.effects and self.verdict not in WITH_EFFECTS:
+            raise ValueError(f"effects must be empty where the verdict is {self.verdict}")
+        if bool(self.ambiguity_set) != (self.verdict in WITH_AMBIGUITY_SET):
+            wanted = "filled" if self.verdict in WITH_AMBIGUITY_SET else "empty"
+            raise ValueError(f"ambiguity_set must be {wanted} where the verdict is {self.verdict}")
+        return self
+
+    def shown_effects(self) -> list[FoundEffect]:
+        """Return the effects of the completed model.
+
+        These are the named effects, or the most probable ones where the verdict is ambiguous.
+        """
+        return self.effects or (self.most_probable if self.verdict == "ambiguous" else [])
+
+
+NO_MISFIT = MisfitBySplit(fit=None, holdout=None)
+
+
+def not_testable(
+    checks: list[dict[str, Any]],
+    provenance: dict[str, Any],
+    next_measurement: str | None = None,
+    misfit: MisfitBySplit = NO_MISFIT,
+    regions: Sequence[dict[str, Any]] = (),
+) -> Verdict:
+    """Return the verdict on a campaign that can not be judged.
+
+    checks: rows as in CheckResult, at least one with level refuse; next_measurement: a sentence;
+    regions: rows as in Region, where a linear model could be compared with the records.
+    """
+    return Verdict.from_values(
+        {
+            "verdict": "not_testable",
+            "effects": [],
+            "ambiguity_set": [],
+            "ranking": [],
+            "next_measurement": next_measurement,
+            "broken_invariances": [],
+            "regions": list(regions),
+            "misfit": misfit.to_values(),
+            "p_global_before": None,
+            "p_global_after": None,
+            "checks": checks,
+            "seconds": 0.0,
+            "simulations": 0,
+            "provenance": provenance,
+        }
+    )
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of verdict.json."""
+    schema = Verdict.model_json_schema(mode="validation")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def schema_text() -> str:
+    """Return the text of verdict.schema.json; tests compare it with the committed file."""
+    return json.dumps(json_schema(), indent=2) + "\n"
