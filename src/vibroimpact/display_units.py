@@ -1,8 +1,10 @@
-"""The units that values in SI are shown in: those read in a workshop."""
+"""The units in which SI values are shown to a reader."""
+
+from collections.abc import Iterable
 
 import numpy as np
 
-# unit -> (shown unit, shown per SI unit, largest SI value that is shown so)
+# SI unit -> (shown unit, shown units per SI unit, largest SI value that is shown in it)
 SHOWN = {
     "m": (("mm", 1e3, 0.5),),
     "s": (("ms", 1e3, 0.5),),
@@ -17,9 +19,11 @@ SHOWN = {
 }
 
 
-def shown_unit(unit, values):
-    """Return (unit, display units per SI unit) for values in SI of a parameter, NaN or None where
-    there are none.
+def display_unit(unit: str, values: Iterable[float | None]) -> tuple[str, float]:
+    """Return (shown unit, shown units per SI unit) for values of a parameter.
+
+    unit: the SI unit of the values.
+    values: SI values; NaN or None where there is none.
     """
     largest = np.nanmax(np.abs(np.array([*values, 0.0], float)))
     return next(

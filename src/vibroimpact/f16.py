@@ -19,7 +19,7 @@ from .identify.lscf import NormalEquations
 from .identify.ods import deflection_shape
 from .identify.peak import LEVELS, find_peak, fit_peak
 from .identify.stabilisation import stabilisation_chart, stable_column
-from .identify.update import frequency_of
+from .linear.poles import frequency_of
 from .spectra.window_leakage import spectral_kernel
 
 PERIOD_SAMPLES = 8192

@@ -1,9 +1,9 @@
-"""The log of a job: all that its process prints, errors among it, in one file."""
+"""The log file of a job."""
 
 import sys
 from pathlib import Path
 
 
-def redirect_output(path):
-    """Send what this process prints from here on to a new file, line by line."""
+def redirect_output(path: str | Path) -> None:
+    """Send all that this process prints, errors included, to a new file, line by line."""
     sys.stderr = sys.stdout = Path(path).open("w", buffering=1, encoding="utf-8")

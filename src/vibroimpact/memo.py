@@ -1,29 +1,34 @@
-"""Results of costly functions kept by the content of what they were made from: variants of a model
-differ in little of it.
+"""A small memo of costly results, by the content of what they were computed from.
+
+Variants of a model differ in little: most share the finite-element matrices and the Ritz basis.
 """
 
 import hashlib
+from collections.abc import Callable, Hashable
+from typing import Any
 
-MOST = 8  # results of each function: a variant or two beside the bare model
+import numpy as np
+
+MAX_ENTRIES = 8  # a few variants beside the unchanged model
 
 
-class Kept:
-    """The last MOST results, by key."""
+class Memo:
+    """The last MAX_ENTRIES results by key; the oldest is dropped first."""
 
-    def __init__(self):
-        self.results = {}
+    def __init__(self) -> None:
+        self.results: dict[Hashable, Any] = {}
 
-    def get(self, key, make):
-        """Return the result of make(), or the one kept under the key."""
+    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """Return the result stored under a key, or that of make(), which is then stored."""
         if key not in self.results:
-            while len(self.results) >= MOST:
+            while len(self.results) >= MAX_ENTRIES:
                 self.results.pop(next(iter(self.results)))
             self.results[key] = make()
         return self.results[key]
 
 
-def content_key(*parts):
-    """Return a digest of strings and arrays."""
+def content_key(*parts: str | np.ndarray) -> bytes:
+    """Return a digest of strings and arrays: of their values, shapes and order."""
     digest = hashlib.sha256()
     for part in parts:
         digest.update(

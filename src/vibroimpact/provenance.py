@@ -1,6 +1,4 @@
-"""Where a result comes from: digests of the configuration and of the source, versions, and the
-library files that a script imports.
-"""
+"""Where a result comes from: digests of configuration and source, versions, imported files."""
 
 from __future__ import annotations
 
@@ -20,9 +18,7 @@ DIGEST_LENGTH = 16
 
 
 def config_digest(params: Mapping[str, Any]) -> str:
-    """Return 16 hexadecimal digits that stand for the keys and values of one stage
-    (stages.stage_params), in any order.
-    """
+    """Return 16 hexadecimal digits that stand for the keys and values of one stage."""
     text = json.dumps(params, sort_keys=True, default=dict)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
 
@@ -36,7 +32,7 @@ def source_digest(files: Iterable[Path | str]) -> str:
 
 
 def _name_in_package(file: Path) -> str:
-    """Return the path of a file from its package's folder on, wherever the checkout lies."""
+    """Return the path of a file below its package's folder, wherever the checkout lies."""
     parts = file.parts
     last = max((at for at, part in enumerate(parts) if part == PACKAGE), default=len(parts) - 2)
     return "/".join(parts[last + 1 :])
@@ -55,8 +51,9 @@ def versions() -> dict[str, str]:
 
 
 def origin(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
-    """Return the attributes that every written file carries: digests of a stage's keys and sources,
-    and versions.
+    """Return the attributes that every written file carries.
+
+    They are the digests of a stage's keys and of its source files, and the versions.
     """
     library = [file for file in files if Path(file).suffix == ".py"]
     return {
@@ -69,10 +66,13 @@ def origin(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, 
 def imported_files(script: Path | str, source: Path | str) -> list[Path]:
     """Return the library files that a script imports, directly or through others, sorted.
 
-    script: a Python file. source: the folder that holds the package (src). Imports inside functions
-    count; so does the __init__.py of every package on the way. Nothing is executed: imports made
-    from computed names are not seen. Raises SyntaxError when a file is not Python,
-    FileNotFoundError when the script does not exist.
+    script: a Python file.
+    source: the folder that holds the package (src).
+
+    Imports inside functions count, and so does the __init__.py of every package on the way. Nothing
+    is executed: imports of names computed at run time are not seen.
+
+    Raises SyntaxError when a file is not Python, FileNotFoundError when the script does not exist.
     """
     source = Path(source)
     found: set[Path] = set()
@@ -88,8 +88,9 @@ def imported_files(script: Path | str, source: Path | str) -> list[Path]:
 
 @cache
 def _imports(file: Path, source: Path, _changed_at: int) -> frozenset[Path]:
-    """Return the library files that a file imports itself. Remembered: the scripts share most of
-    what they import.
+    """Return the library files that a file imports itself.
+
+    Cached by the time of the last change: the scripts share most of what they import.
     """
     return frozenset(
         module for name in _imported_names(file, source) for module in _files_of(name, source)
@@ -97,9 +98,7 @@ def _imports(file: Path, source: Path, _changed_at: int) -> frozenset[Path]:
 
 
 def _imported_names(file: Path, source: Path) -> set[str]:
-    """Return the dotted names that a file imports and that may be modules of the package, e.g.
-    vibroimpact.cases.
-    """
+    """Return the dotted names inside the package that a file imports, e.g. vibroimpact.units."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), filename=str(file))):
         if isinstance(node, ast.Import):
@@ -112,9 +111,7 @@ def _imported_names(file: Path, source: Path) -> set[str]:
 
 
 def _package_above(file: Path, source: Path, level: int) -> str:
-    """Return the dotted package that `level` leading dots mean in a file; '' for an absolute
-    import.
-    """
+    """Return the dotted package that `level` leading dots mean in a file; '' for none."""
     if level == 0:
         return ""
     parts = file.resolve().relative_to(source.resolve()).parts[:-1]
@@ -122,10 +119,9 @@ def _package_above(file: Path, source: Path, level: int) -> str:
 
 
 def _files_of(name: str, source: Path) -> list[Path]:
-    """Return the files that importing a dotted name executes: each package's __init__.py and the
-    module itself.
-    """
-    files, folder = [], source
+    """Return the files that importing a dotted name executes: every __init__.py and the module."""
+    files: list[Path] = []
+    folder = source
     for part in name.split("."):
         if (folder / f"{part}.py").is_file():
             return [*files, folder / f"{part}.py"]

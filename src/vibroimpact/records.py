@@ -1,11 +1,11 @@
-"""All netCDF and table reading and writing: one place, one declaration of every variable of a
-record.
-"""
+"""Reading and writing of netCDF files and tables. No other module opens them."""
 
 import csv
 import os
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -13,36 +13,50 @@ import xarray as xr
 
 
 class RecordError(Exception):
-    """A file that can not be read or written; the message names it."""
+    """A file that cannot be read or written; the message names it."""
 
 
-def write_record(dataset: xr.Dataset, path) -> None:
-    """Write a dataset of numbers and texts as netCDF-4, whole or not at all. Raises TypeError for
-    other contents.
+def write_record(dataset: xr.Dataset, path: str | Path) -> None:
+    """Write a dataset of numbers and texts as netCDF-4.
+
+    The file appears complete or not at all. Raises TypeError for other contents.
     """
     with RecordFile(path, dataset):
         pass
 
 
 class RecordFile:
-    """A netCDF-4 file, filled piece by piece: under a temporary name in the same folder until the
-    end of `with`, then renamed.
+    """A netCDF-4 file that is written piece by piece inside a `with` block.
 
-    dataset: what is known from the start (numbers and texts, else TypeError); parts {name:
-    (dimensions, type, attributes)}: what comes later through `put`, of dimensions with sizes
-    {dimension: length}. Left with an error no file remains. float32 time series are stored as they
-    are: their noise does not compress, and deflating it costs more than the simulation. Written
-    without Dataset.to_netcdf, which takes twice as long for files of many small variables.
+    It has a temporary name in the same folder until the end of the block, and is then renamed. If
+    the block raises, no file remains. Time series of float32 are not compressed: their noise does
+    not shrink, and compression takes longer than the simulation. `Dataset.to_netcdf` is not used
+    because it takes twice as long for files of many small variables.
     """
 
-    def __init__(self, path, dataset: xr.Dataset, parts=None, sizes=None):
+    def __init__(
+        self,
+        path: str | Path,
+        dataset: xr.Dataset,
+        parts: dict[str, tuple] | None = None,
+        sizes: dict[str, int] | None = None,
+    ) -> None:
+        """Create the file and write what is known from the start.
+
+        dataset: variables of numbers and texts, written at once.
+        parts: {name: (dimensions, type, attributes)} of the variables that `put` fills later.
+        sizes: {dimension: length} of dimensions that only the parts have.
+
+        Raises TypeError for a variable that holds neither numbers nor texts.
+        """
         self._path = Path(path)
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._temporary = self._path.with_name(f".{self._path.name}.{os.getpid()}")
         self._file = netCDF4.Dataset(self._temporary, "w", format="NETCDF4")
         try:
             self._file.set_fill_off()
-            for name, size in (dict(dataset.sizes) | (sizes or {})).items():
+            lengths: dict = {**dataset.sizes, **(sizes or {})}
+            for name, size in lengths.items():
                 self._file.createDimension(name, size)
             unnamed = _put_variables(self._file, dataset, parts or {})
             self._file.setncatts(
@@ -58,17 +72,17 @@ class RecordFile:
             self._close(keep=False)
             raise
 
-    def put(self, name, place, values) -> None:
-        """Write values of a part at a place (index or slices)."""
+    def put(self, name: str, place: Any, values: np.ndarray) -> None:
+        """Write values into a part, at an index or slices."""
         self._file[name][place] = values
 
-    def __enter__(self):
+    def __enter__(self) -> "RecordFile":
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
         self._close(keep=kind is None)
 
-    def _close(self, keep):
+    def _close(self, keep: bool) -> None:
         try:
             self._file.close()
             if keep:
@@ -77,28 +91,31 @@ class RecordFile:
             self._temporary.unlink(missing_ok=True)
 
 
-def _put_variables(file, dataset, parts) -> list[str]:
-    """Create all variables and write those of the dataset; return the coordinates off the
-    dimensions that no variable names.
+def _put_variables(file: netCDF4.Dataset, dataset: xr.Dataset, parts: dict) -> list:
+    """Create all variables and write those of the dataset.
+
+    Returns the auxiliary coordinates that no variable refers to. An auxiliary coordinate is one
+    whose name is not that of a dimension.
     """
-    beside = {name: set(dataset[name].dims) for name in dataset.coords if name not in dataset.sizes}
-    named = set()
+    auxiliary = {
+        name: set(dataset[name].dims) for name in dataset.coords if name not in dataset.sizes
+    }
+    named: set[str] = set()
     for name, variable in dataset.variables.items():
         values = variable.values
         text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
         if not text and values.dtype.kind not in "fiu":
             raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
-        mine = (
-            {} if name in dataset.coords else _coordinates_attribute(variable.dims, beside, named)
-        )
-        stored = _create(
-            file, name, str if text else values.dtype, variable.dims, variable.attrs | mine
-        )
+        attributes = dict(variable.attrs)
+        if name not in dataset.coords:
+            attributes |= _coordinates_attribute(variable.dims, auxiliary, named)
+        stored = _create(file, name, str if text else values.dtype, variable.dims, attributes)
         if values.size:
             stored[...] = values.astype(object) if text else values
     for name, (dims, dtype, attributes) in parts.items():
-        _create(file, name, dtype, dims, attributes | _coordinates_attribute(dims, beside, named))
-    return [name for name in beside if name not in named]
+        coordinates = _coordinates_attribute(dims, auxiliary, named)
+        _create(file, name, dtype, dims, attributes | coordinates)
+    return [name for name in auxiliary if name not in named]
 
 
 def _create(file, name, dtype, dims, attributes):
@@ -108,18 +125,17 @@ def _create(file, name, dtype, dims, attributes):
     return stored
 
 
-def _coordinates_attribute(dims, beside, named):
-    """The attribute that names a variable's coordinates off its dimensions, by the CF conventions;
-    they are added to the set `named`.
-    """
-    mine = [name for name, needed in beside.items() if needed <= set(dims)]
+def _coordinates_attribute(dims: Iterable, auxiliary: dict, named: set) -> dict[str, str]:
+    """Return the CF attribute `coordinates` of a variable, and add its entries to `named`."""
+    mine = [name for name, needed in auxiliary.items() if needed <= set(dims)]
     named.update(mine)
     return {"coordinates": " ".join(mine)} if mine else {}
 
 
-def read_record(path, names=None) -> xr.Dataset:
-    """The dataset of a file of write_record, loaded, file closed; names: the variables wanted, all
-    where left out.
+def read_record(path: str | Path, names: Iterable[str] | None = None) -> xr.Dataset:
+    """Return the dataset of a file of write_record, loaded into memory.
+
+    names: the variables wanted; all of them by default.
 
     Raises RecordError when there is no such file or it is not netCDF, KeyError when a variable is
     missing.
@@ -127,14 +143,14 @@ def read_record(path, names=None) -> xr.Dataset:
     try:
         with netCDF4.Dataset(path) as file:
             file.set_auto_maskandscale(False)
-            beside = set(getattr(file, "coordinates", "").split())
+            auxiliary = set(getattr(file, "coordinates", "").split())
             data = {}
             for name in file.variables if names is None else names:
                 data[name], others = _variable(file.variables[name])
-                beside.update(others)
+                auxiliary.update(others)
             if names is not None:
                 coordinates = {
-                    *beside,
+                    *auxiliary,
                     *(dim for variable in data.values() for dim in variable.dims),
                 } & set(file.variables)
                 data.update(
@@ -145,54 +161,54 @@ def read_record(path, names=None) -> xr.Dataset:
             }
     except OSError as error:
         raise RecordError(
-            f"{path}: can not be read as netCDF ({error}): delete it and run again"
+            f"{path}: cannot be read as netCDF ({error}): delete it and run again"
         ) from error
     sizes = {dim for variable in data.values() for dim in variable.dims}
-    coords = {name: data.pop(name) for name in list(data) if name in beside | sizes}
+    coords = {name: data.pop(name) for name in list(data) if name in auxiliary | sizes}
     return xr.Dataset(data, coords, attributes)
 
 
-def _variable(stored):
-    """(variable, names of its coordinates off the dimensions) of a netCDF variable."""
+def _variable(stored: netCDF4.Variable) -> tuple[xr.Variable, list[str]]:
+    """Return a netCDF variable and the names of its auxiliary coordinates."""
     attributes = {name: stored.getncattr(name) for name in stored.ncattrs()}
-    beside = attributes.pop("coordinates", "").split()
-    return xr.Variable(stored.dimensions, stored[...], attributes, fastpath=True), beside
+    auxiliary = attributes.pop("coordinates", "").split()
+    return xr.Variable(stored.dimensions, stored[...], attributes, fastpath=True), auxiliary
 
 
-def read_dataset(path) -> xr.Dataset:
-    """The dataset of a netCDF file of any origin, decoded by the CF conventions, loaded, file
-    closed. Raises RecordError.
-    """
+def read_dataset(path: str | Path) -> xr.Dataset:
+    """Return the dataset of any netCDF file, decoded by the CF conventions. Raises RecordError."""
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
     except OSError as error:
         raise RecordError(
-            f"{path}: can not be read as netCDF ({error}): delete it and run again"
+            f"{path}: cannot be read as netCDF ({error}): delete it and run again"
         ) from error
 
 
-def read_variable(path) -> tuple[dict[str, np.ndarray], dict]:
-    """Every numeric variable of a netCDF file by name, and its global attributes (for files of any
-    origin).
+def read_numeric_variables(path: str | Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Return (numeric variables by name, global attributes) of any netCDF file.
+
+    Masked values become NaN. Raises RecordError.
     """
     try:
         with netCDF4.Dataset(path) as file:
-            known = {
+            values = {
                 name: np.ma.filled(variable[:], np.nan)
                 for name, variable in file.variables.items()
                 if variable.dtype != str and variable.dtype.kind in "fiu"
             }
-            return known, {name: file.getncattr(name) for name in file.ncattrs()}
+            return values, {name: file.getncattr(name) for name in file.ncattrs()}
     except OSError as error:
-        raise RecordError(f"{path}: can not be read as netCDF ({error})") from error
+        raise RecordError(f"{path}: cannot be read as netCDF ({error})") from error
 
 
-def read_hdf5_arrays(path) -> dict[str, np.ndarray]:
-    """Every array of numbers of an HDF5 file as MATLAB v7.3 writes them: group.name, axes in
-    MATLAB's order. Raises RecordError.
+def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
+    """Return the numeric arrays of an HDF5 file as MATLAB v7.3 writes it.
+
+    Keys are group.name; axes are in MATLAB's order. Raises RecordError.
     """
-    # imported here: its HDF5 library is another than netCDF4's, and other stages need only that one
+    # Imported here: it brings an HDF5 library of its own, which other stages do not need.
     import h5py
 
     found = {}
@@ -210,13 +226,14 @@ def read_hdf5_arrays(path) -> dict[str, np.ndarray]:
         with h5py.File(path, "r") as file:
             file.visititems(collect)
     except OSError as error:
-        raise RecordError(f"{path}: can not be read as HDF5 ({error})") from error
+        raise RecordError(f"{path}: cannot be read as HDF5 ({error})") from error
     return found
 
 
-def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
-    """Write rows (all with the same keys) as CSV: floats in full precision, NaN as 'nan'. Atomic
-    like write_record.
+def write_table(rows: list[dict], path: str | Path, columns: tuple[str, ...] = ()) -> None:
+    """Write rows with the same keys as CSV, whole or not at all.
+
+    Floats are written in full precision, NaN as 'nan'.
 
     columns: the header of a table that may have no rows.
     """
@@ -224,10 +241,8 @@ def write_table(rows: list[dict], path, columns: tuple[str, ...] = ()) -> None:
     write_cells(columns, ([_plain(row[column]) for column in columns] for row in rows), path)
 
 
-def write_cells(columns, rows, path) -> None:
-    """Write rows of plain Python values (columns,) under a header as CSV. Atomic like
-    write_record.
-    """
+def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> None:
+    """Write rows of plain Python values under a header as CSV, whole or not at all."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
@@ -241,8 +256,8 @@ def write_cells(columns, rows, path) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def write_text(text: str, path) -> None:
-    """Write a text file, atomic like write_record."""
+def write_text(text: str, path: str | Path) -> None:
+    """Write a text file, whole or not at all."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
@@ -250,17 +265,18 @@ def write_text(text: str, path) -> None:
     os.replace(temporary, path)
 
 
-def read_text(path) -> str:
-    """The text of a file. Raises RecordError when there is no such file."""
+def read_text(path: str | Path) -> str:
+    """Return the text of a file. Raises RecordError when there is no such file."""
     try:
         return Path(path).read_text(encoding="utf-8")
     except OSError as error:
-        raise RecordError(f"{path}: can not be read ({error.strerror})") from error
+        raise RecordError(f"{path}: cannot be read ({error.strerror})") from error
 
 
-def read_table(path) -> list[dict]:
-    """Rows of a CSV table; what reads as a number is one. Raises RecordError when there is no such
-    file.
+def read_table(path: str | Path) -> list[dict[str, Any]]:
+    """Return the rows of a CSV table; what reads as a number becomes one.
+
+    Raises RecordError when there is no such file.
     """
     try:
         with open(path, newline="", encoding="utf-8") as file:
@@ -268,13 +284,12 @@ def read_table(path) -> list[dict]:
                 {key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)
             ]
     except OSError as error:
-        raise RecordError(f"{path}: can not be read ({error.strerror})") from error
+        raise RecordError(f"{path}: cannot be read ({error.strerror})") from error
 
 
 def _plain(value):
-    return (
-        float(value) if isinstance(value, np.floating) else value
-    )  # csv writes a float in full, a float32 in its own few digits
+    # csv writes a float in full, but a float32 in its own few digits.
+    return float(value) if isinstance(value, np.floating) else value
 
 
 def _number(text):
@@ -286,16 +301,17 @@ def _number(text):
     return text
 
 
-def plain(value):
-    """Return nested values as JSON and YAML know them: without numpy types, None for what is not
-    finite.
+def plain_values(value: Any) -> Any:
+    """Return nested values as JSON and YAML know them.
+
+    numpy types become Python's; a float that is not finite becomes None.
     """
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): plain_values(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return plain(value.tolist())
+        return plain_values(value.tolist())
     if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
+        return [plain_values(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,13 +1,15 @@
-"""Units of measured channels: a UDUNITS text in, the factor to SI out; what can not be told is an
-error with its remedy, never a guess.
+"""Units of measured channels: the factor from a UDUNITS text to SI.
+
+A unit that is not certain raises an error that says what to write; nothing is guessed.
 """
 
 from __future__ import annotations
 
 import re
 from functools import cache
+from typing import Any
 
-# Time derivatives of the displacement in what each kind of sensor measures.
+# Order of the time derivative of displacement that each kind of sensor measures.
 TIME_DERIVATIVES = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
 SI_OF_KIND = {
@@ -26,8 +28,7 @@ EXAMPLES = {
     "force": "N, kN or lbf",
     "voltage": "V or mV",
 }
-# The texts that nearly every file holds: pint takes half a second to import, in each of hundreds of
-# jobs.
+# Texts that nearly every file holds. They save the import of pint, half a second per job.
 COMMON = {
     "m s-2": ("acceleration", 1.0),
     "m/s2": ("acceleration", 1.0),
@@ -40,7 +41,8 @@ COMMON = {
     "N": ("force", 1.0),
     "V": ("voltage", 1.0),
 }
-SAME = {"contact_force": "force"}  # kinds that share a dimension
+SAME_DIMENSION = {"contact_force": "force"}
+# Names of UDUNITS that pint lacks; its mil is an angle.
 ALIASES = {
     "gn": "standard_gravity",
     "g0": "standard_gravity",
@@ -48,30 +50,29 @@ ALIASES = {
     "standard_free_fall": "standard_gravity",
     "mil": "thou",
     "mils": "thou",
-}  # pint's mil is an angle
+}
 SHARE_OF_G = re.compile(r"(milli|m|µ|u)?[gG](?:'?s)?")
-SCALED = re.compile(
-    r"(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+(\D.*)"
-)  # a number before the unit, as in 0.001 m
+# A number before the unit, as in 0.001 m.
+SCALED = re.compile(r"(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+(\D.*)")
 PREFIX = {None: 1.0, "milli": 1e-3, "m": 1e-3, "µ": 1e-6, "u": 1e-6}
 STANDARD_GRAVITY = 9.80665
-WANTED_EXCITATION = (
-    "force",
-    "voltage",
-)  # an input in volts is an excitation too, where no force was measured
+# Where no force was measured, an input in volts serves as the excitation.
+EXCITATION_KINDS = ("force", "voltage")
 
 
 class UnitError(Exception):
-    """A unit that can not be used; the message is a sentence with its remedy."""
+    """A unit that cannot be used; the message is a sentence with its remedy."""
 
 
 def si_factor(units: str, kind: str) -> float:
-    """Return SI units per unit of a channel of some kind: multiply the values by it.
+    """Return SI units per unit of a channel: multiply its values by it.
 
-    units: UDUNITS text such as m s-2, mm/s², ft/s^2, g, lbf. kind: acceleration, velocity,
-    displacement, contact_force, force, voltage; "generic" takes any unit; "excitation" takes forces
-    and volts. For an acceleration "g" is standard gravity, not the gram. Raises UnitError for an
-    empty or unknown unit, and for one of another dimension.
+    units: UDUNITS text such as m s-2, mm/s², ft/s^2, g, lbf.
+    kind: acceleration, velocity, displacement, contact_force, force or voltage; "generic" takes any
+        unit, "excitation" takes forces and volts.
+
+    For an acceleration "g" is standard gravity, not the gram. Raises UnitError for an empty or
+    unknown unit, and for one of another dimension.
     """
     text = units.strip()
     if not text:
@@ -99,57 +100,52 @@ def si_factor(units: str, kind: str) -> float:
 
 
 def si_unit(units: str, kind: str) -> str:
-    """Return the SI unit that si_factor leads to, as UDUNITS text. Raises UnitError as si_factor
-    does.
-    """
+    """Return the SI unit that si_factor leads to, as UDUNITS text. Raises UnitError."""
     si_factor(units, kind)
     if kind in SI_OF_KIND:
         return SI_OF_KIND[kind]
     for known in ("force", "voltage", "acceleration", "velocity", "displacement"):
-        if (
-            _fits(COMMON[units.strip()][0], known)
-            if units.strip() in COMMON
-            else _parsed(units.strip())[0] == _dimension_of(known)
-        ):
+        if units.strip() in COMMON:
+            same = _fits(COMMON[units.strip()][0], known)
+        else:
+            same = _parsed(units.strip())[0] == _dimension_of(known)
+        if same:
             return SI_OF_KIND[known]
-    base = (
-        _registry()
-        .Quantity(1.0, _translated(SCALED.sub(r"\2", units.strip())))
-        .to_base_units()
-        .units
-    )
+    text = _translated(SCALED.sub(r"\2", units.strip()))
+    base = _registry().Quantity(1.0, text).to_base_units().units
     return f"{base:~}".replace("**", "^") or "1"
 
 
-def _kinds(kind):
-    return WANTED_EXCITATION if kind == "excitation" else (SAME.get(kind, kind),)
+def _kinds(kind: str) -> tuple[str, ...]:
+    if kind == "excitation":
+        return EXCITATION_KINDS
+    return (SAME_DIMENSION.get(kind, kind),)
 
 
-def _fits(known, kind):
+def _fits(known: str, kind: str) -> bool:
     return kind == "generic" or known in _kinds(kind)
 
 
 @cache
-def _registry():
+def _registry() -> Any:
     import pint
 
     return pint.UnitRegistry()
 
 
 @cache
-def _dimension_of(kind):
+def _dimension_of(kind: str) -> Any:
     return _parsed(SI_OF_KIND[kind])[0]
 
 
 @cache
-def _parsed(text):
+def _parsed(text: str) -> tuple[Any, float]:
     """Return (dimensionality, factor to SI base units) of a unit text. Raises UnitError."""
     import pint
 
     try:
-        scale, unit_text = (
-            (float(scaled[1]), scaled[2]) if (scaled := SCALED.fullmatch(text)) else (1.0, text)
-        )
+        scaled = SCALED.fullmatch(text)
+        scale, unit_text = (float(scaled[1]), scaled[2]) if scaled else (1.0, text)
         unit = _registry().parse_units(_translated(unit_text))
         quantity = _registry().Quantity(1.0, unit).to_base_units()
     except (
@@ -168,13 +164,9 @@ def _parsed(text):
     return unit.dimensionality, scale * float(quantity.magnitude)
 
 
-def _translated(text):
-    """Return a UDUNITS text in pint's way of writing: products as *, powers as **."""
-    text = (
-        ALIASES.get(text.strip(), text.strip())
-        .replace("·", "*")
-        .replace("⋅", "*")
-        .replace("μ", "µ")
-    )
+def _translated(text: str) -> str:
+    """Return a UDUNITS text in pint's notation: products as *, powers as **."""
+    text = ALIASES.get(text.strip(), text.strip())
+    text = text.replace("·", "*").replace("⋅", "*").replace("μ", "µ")
     text = re.sub(r"(?<=[A-Za-zµ])\.(?=[A-Za-zµ])", "*", text)
     return re.sub(r"(?<=[A-Za-zµ])\s*(?:\^|\*\*)?\s*(-?\d+)", r"**\1", text)

@@ -10,8 +10,9 @@ import pytest
 import xarray as xr
 
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.identify.case import identify_case
-from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.linear.poles import first_pole
+from vibroimpact.linear.responses import frf
 from vibroimpact.random_streams import random_generator
 from vibroimpact.spectra.window_leakage import spectral_kernel
 from vibroimpact.study.case_spectra import case_spectra
@@ -61,9 +62,9 @@ def exact_spectra(config, model, k, c, window):
     """
     kernel = spectral_kernel(window, SEGMENT_S)
     fine, bins = kernel.oversampling, round(HIGHEST_HZ * SEGMENT_S)
-    index = np.arange(-kernel.reach, bins * fine + kernel.reach + 1)
+    index = np.arange(-kernel.half_width, bins * fine + kernel.half_width + 1)
     frequency = np.abs(index) / (SEGMENT_S * fine)
-    response = linear.frf(model, k, c, frequency, output_shapes(model))
+    response = frf(model, k, c, frequency, output_shapes(model))
     response = np.where(index < 0, response.conj(), response) * (
         frequency >= config.excitation.band_Hz[0] - 1.0e-9
     )
@@ -101,7 +102,7 @@ class LinearTube:
         frequency = np.fft.rfftfreq(self.period, 1.0 / self.rate)
         low, high = config.excitation.band_Hz
         self.lines = np.flatnonzero((frequency >= low) & (frequency <= high))
-        self.response = linear.frf(model, k, c, frequency[self.lines], output_shapes(model)).astype(
+        self.response = frf(model, k, c, frequency[self.lines], output_shapes(model)).astype(
             np.complex64
         )
 
@@ -149,7 +150,7 @@ def chain(study_config, study_model):
 
 @pytest.mark.parametrize("k", DOUBLING)
 def test_c_doubles_the_first_damping_ratio(study_model, k):
-    with_c, without = (linear.first_pole(study_model, k, c) for c in (DOUBLING[k], 0.0))
+    with_c, without = (first_pole(study_model, k, c) for c in (DOUBLING[k], 0.0))
     assert (with_c.real / abs(with_c)) / (without.real / abs(without)) == pytest.approx(
         2.0, rel=1.0e-4
     )

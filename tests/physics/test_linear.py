@@ -10,7 +10,10 @@ import pytest
 from scipy import optimize
 
 from vibroimpact.config.reading import load_config
-from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.linear import responses
+from vibroimpact.linear.modes import first_mode_shape, natural_frequencies
+from vibroimpact.linear.poles import first_pole, pole_sensitivity, support_from_pole
+from vibroimpact.linear.responses import frf, psd_family, synthesise_records
 from vibroimpact.reduction.reduced_model import build_model
 
 STUDY = load_config(Path(__file__).resolve().parents[2] / "config" / "study.yaml")
@@ -80,7 +83,7 @@ def dense_poles(model, k, c):
 
 @pytest.mark.parametrize("k", FIRST_BY_STIFFNESS)
 def test_first_damping_ratio_falls_with_the_support_stiffness(model, k):
-    pole = linear.first_pole(model, k, 0.0)
+    pole = first_pole(model, k, 0.0)
     frequency, ratio = FIRST_BY_STIFFNESS[k]
     assert abs(pole) / (2.0 * np.pi) == pytest.approx(frequency, rel=1e-3)
     assert -pole.real / abs(pole) == pytest.approx(ratio, rel=4e-3)  # the table has three digits
@@ -97,9 +100,9 @@ def test_support_damping_that_doubles_the_damping_ratio(model, k, about, c):
     def ratio(pole):
         return -pole.real / abs(pole)
 
-    alone = ratio(linear.first_pole(model, k, 0.0))
+    alone = ratio(first_pole(model, k, 0.0))
     doubling = optimize.brentq(
-        lambda damping: ratio(linear.first_pole(model, k, damping)) - 2.0 * alone, 0.5 * c, 2.0 * c
+        lambda damping: ratio(first_pole(model, k, damping)) - 2.0 * alone, 0.5 * c, 2.0 * c
     )
     assert doubling == pytest.approx(c, rel=2e-3)
     assert ratio(dense_poles(model, k, c)[0]) == pytest.approx(2.0 * alone, rel=2e-3)
@@ -110,23 +113,23 @@ def test_natural_frequencies_are_the_dense_ones(model):
     for k in (0.0, 1.0e5, 1.0e9):
         _, stiffness = dense_matrices(model, k, 0.0)
         dense = np.sqrt(np.linalg.eigvalsh(stiffness)) / (2.0 * np.pi)
-        assert linear.natural_frequencies(model, k, 8) == pytest.approx(dense[:8], rel=1e-7)
-        assert len(linear.natural_frequencies(model, k, 1000)) == model.modes
+        assert natural_frequencies(model, k, 8) == pytest.approx(dense[:8], rel=1e-7)
+        assert len(natural_frequencies(model, k, 1000)) == model.modes
 
 
 @pytest.mark.parametrize("k, c", SUPPORTS)
 def test_first_pole_is_the_lowest_pole_of_the_dense_problem(model, k, c):
-    pole, sensitivity = linear.first_pole(model, k, c), linear.pole_sensitivity(model, k, c)
+    pole, sensitivity = first_pole(model, k, c), pole_sensitivity(model, k, c)
     assert abs(dense_poles(model, k, c)[0] - pole) < 1e-8 * abs(pole)
     for number, (dk, dc) in enumerate(((1.0, 0.0), (0.0, 1e-3))):
-        change = linear.first_pole(model, k + dk, c + dc) - linear.first_pole(model, k - dk, c - dc)
+        change = first_pole(model, k + dk, c + dc) - first_pole(model, k - dk, c - dc)
         assert change / (2.0 * (dk + dc)) == pytest.approx(sensitivity[number], rel=1e-4)
 
 
 def test_a_very_strong_damper_clamps_the_tube_as_a_stiffness_does(model):
-    strong = linear.first_pole(model, 0.0, 1.0e9)
-    assert abs(strong) == pytest.approx(abs(linear.first_pole(model, 1.0e12, 0.0)), rel=1e-3)
-    weak = [-linear.first_pole(model, 1.0e4, c).real for c in (0.0, 10.0, 100.0)]
+    strong = first_pole(model, 0.0, 1.0e9)
+    assert abs(strong) == pytest.approx(abs(first_pole(model, 1.0e12, 0.0)), rel=1e-3)
+    weak = [-first_pole(model, 1.0e4, c).real for c in (0.0, 10.0, 100.0)]
     assert weak == sorted(weak)
 
 
@@ -143,21 +146,21 @@ def test_a_very_strong_damper_clamps_the_tube_as_a_stiffness_does(model):
     ],
 )
 def test_support_comes_back_from_its_pole(model, k, c):
-    back = linear.support_from_pole(model, linear.first_pole(model, k, c))
+    back = support_from_pole(model, first_pole(model, k, c))
     assert back == pytest.approx((k, c), rel=1e-6, abs=1e-6 * k)
 
 
 def test_no_support_gives_a_pole_above_the_clamped_one(model):
-    clamped = abs(linear.first_pole(model, 1.0e12, 0.0))
+    clamped = abs(first_pole(model, 1.0e12, 0.0))
     with pytest.raises(ValueError, match="no support gives the first mode the pole"):
-        linear.support_from_pole(model, clamped * complex(-0.005, 1.05))
+        support_from_pole(model, clamped * complex(-0.005, 1.05))
     with pytest.raises(ValueError, match="positive imaginary part"):
-        linear.support_from_pole(model, complex(-1.0, -100.0))
+        support_from_pole(model, complex(-1.0, -100.0))
 
 
 def test_a_support_the_tube_buckles_under_is_refused(model):
     with pytest.raises(ValueError, match="-1e\\+06 N/m the tube has no lowest frequency above 0"):
-        linear.first_pole(model, -1.0e6, 0.0)
+        first_pole(model, -1.0e6, 0.0)
 
 
 def test_first_mode_shape_is_the_lowest_driven_eigenvector(model):
@@ -165,15 +168,13 @@ def test_first_mode_shape_is_the_lowest_driven_eigenvector(model):
         _, stiffness = dense_matrices(model, k, 0.0)
         moved = np.flatnonzero(model.drive_shapes[:, 0])
         vector = np.linalg.eigh(stiffness[np.ix_(moved, moved)])[1][:, 0]
-        expected, shape = model.line_shapes[moved].T @ vector, linear.first_mode_shape(model, k)
+        expected, shape = model.line_shapes[moved].T @ vector, first_mode_shape(model, k)
         assert shape.max() == np.abs(shape).max()
         assert shape == pytest.approx(
             expected * np.sign(expected @ shape), rel=1e-6, abs=1e-8 * shape.max()
         )
-    apex = linear.first_mode_shape(model, 1.0e4, model.sensor_shapes)[
-        model.sensor_names.index("apex.y")
-    ]
-    assert apex == pytest.approx(linear.first_mode_shape(model, 1.0e4)[13], rel=1e-6)
+    apex = first_mode_shape(model, 1.0e4, model.sensor_shapes)[model.sensor_names.index("apex.y")]
+    assert apex == pytest.approx(first_mode_shape(model, 1.0e4)[13], rel=1e-6)
 
 
 @pytest.mark.parametrize("k, c", SUPPORTS)
@@ -182,24 +183,24 @@ def test_frf_is_the_dense_one(request, name, k, c):
     model = request.getfixturevalue(name)
     frequency = np.array([0.0, 5.0, 15.97, 21.0, 45.0, 90.3, 170.0, 400.0])
     expected = model.sensor_shapes.T @ dense_response(model, k, c, frequency)
-    response = linear.frf(model, k, c, frequency, model.sensor_shapes)
+    response = frf(model, k, c, frequency, model.sensor_shapes)
     assert np.abs(response - expected).max() < 1e-10 * np.abs(expected).max()
     laplace = 2j * np.pi * frequency
-    assert linear.frf(model, k, c, frequency, model.sensor_shapes, "velocity") == pytest.approx(
+    assert frf(model, k, c, frequency, model.sensor_shapes, "velocity") == pytest.approx(
         response * laplace
     )
-    assert linear.frf(model, k, c, frequency, model.sensor_shapes, "acceleration") == pytest.approx(
+    assert frf(model, k, c, frequency, model.sensor_shapes, "acceleration") == pytest.approx(
         response * laplace**2
     )
 
 
 def test_frf_in_several_chunks_is_the_same(model, monkeypatch):
     frequency = np.linspace(1.0, 60.0, 50)
-    whole = linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes)
-    monkeypatch.setattr(linear, "FREQUENCY_CHUNK", 7)
+    whole = frf(model, 1e5, 62.0, frequency, model.sensor_shapes)
+    monkeypatch.setattr(responses, "FREQUENCY_CHUNK", 7)
     # A matrix product over another number of rows may round otherwise.
     assert (
-        np.abs(linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes) - whole).max()
+        np.abs(frf(model, 1e5, 62.0, frequency, model.sensor_shapes) - whole).max()
         < 1e-12 * np.abs(whole).max()
     )
 
@@ -211,14 +212,14 @@ def test_psd_family_is_the_dense_response_for_every_support(request, name):
     c_grid = np.array([0.0, 60.0, 9000.0, -5.0])
     frequency = np.arange(6.0, 99.0, 7.3)
     sensor = model.sensor_names.index("bend_45.y")
-    family = linear.psd_family(model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor])
+    family = psd_family(model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor])
     for row, k in enumerate(k_grid):
         for column, c in enumerate(c_grid):
             expected = (
                 np.abs(model.sensor_shapes[:, sensor] @ dense_response(model, k, c, frequency)) ** 2
             )
             assert family[row, column] == pytest.approx(expected, rel=1e-7)
-    acceleration = linear.psd_family(
+    acceleration = psd_family(
         model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor], "acceleration"
     )
     assert acceleration == pytest.approx(family * (2.0 * np.pi * frequency) ** 4)
@@ -229,20 +230,16 @@ def test_reciprocity_and_limits(model):
     the tube held at its supports.
     """
     frequency, apex = np.linspace(5.0, 200.0, 40), model.sensor_names.index("apex.y")
-    there = linear.frf(model, 1e5, 62.0, frequency, model.sensor_shapes[:, [apex]])
+    there = frf(model, 1e5, 62.0, frequency, model.sensor_shapes[:, [apex]])
     swapped = replace(model, drive_shapes=model.sensor_shapes[:, [apex]])
-    assert linear.frf(swapped, 1e5, 62.0, frequency, model.drive_shapes) == pytest.approx(
-        there, rel=1e-10
-    )
-    free = linear.frf(model, 0.0, 0.0, frequency, model.sensor_shapes)
-    assert linear.frf(model, 1e-6, 0.0, frequency, model.sensor_shapes) == pytest.approx(
+    assert frf(swapped, 1e5, 62.0, frequency, model.drive_shapes) == pytest.approx(there, rel=1e-10)
+    free = frf(model, 0.0, 0.0, frequency, model.sensor_shapes)
+    assert frf(model, 1e-6, 0.0, frequency, model.sensor_shapes) == pytest.approx(
         free, rel=1e-6, abs=1e-14
     )
     contacts = model.contact_shapes[:, :, 1]
-    held = linear.frf(model, 1e13, 0.0, frequency, contacts)
-    assert (
-        np.abs(held).max() < 1e-5 * np.abs(linear.frf(model, 0.0, 0.0, frequency, contacts)).max()
-    )
+    held = frf(model, 1e13, 0.0, frequency, contacts)
+    assert np.abs(held).max() < 1e-5 * np.abs(frf(model, 0.0, 0.0, frequency, contacts)).max()
 
 
 def test_synthesised_sine_is_the_dense_steady_state(model):
@@ -253,7 +250,7 @@ def test_synthesised_sine_is_the_dense_steady_state(model):
     force = 2.5 * np.cos(2.0 * np.pi * frequency * time + 0.3)
     expected = model.sensor_shapes.T @ dense_response(model, 1e5, 62.0, [frequency])
     steady = np.real(expected * 2.5 * np.exp(1j * (2.0 * np.pi * frequency * time + 0.3)))
-    assert linear.synthesise_records(model, 1e5, 62.0, force) == pytest.approx(
+    assert synthesise_records(model, 1e5, 62.0, force) == pytest.approx(
         steady, rel=1e-9, abs=1e-9 * np.abs(steady).max()
     )
 
@@ -270,7 +267,7 @@ def test_synthesised_record_obeys_the_equation_of_motion(model):
     moved = np.flatnonzero(model.drive_shapes[:, 0])
     unit = np.eye(model.modes)[:, moved]
     motion = [
-        linear.synthesise_records(model, 1e5, 62.0, force, rate, unit, kind)
+        synthesise_records(model, 1e5, 62.0, force, rate, unit, kind)
         for kind in ("displacement", "velocity", "acceleration")
     ]
     damping, stiffness = (
@@ -287,5 +284,5 @@ def test_synthesised_record_obeys_the_equation_of_motion(model):
 def test_a_drive_that_moves_no_contact_is_refused(model):
     still = replace(model, drive_shapes=np.zeros((model.modes, 1)))
     with pytest.raises(ValueError, match="force channel 0 moves no contact point"):
-        linear.first_pole(still, 1e5, 0.0)
-    assert np.all(linear.frf(still, 1e5, 0.0, [10.0], model.sensor_shapes) == 0.0)
+        first_pole(still, 1e5, 0.0)
+    assert np.all(frf(still, 1e5, 0.0, [10.0], model.sensor_shapes) == 0.0)

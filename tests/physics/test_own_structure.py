@@ -15,11 +15,12 @@ from vibroimpact.completion.long_records import long_record_lines
 from vibroimpact.completion.outcome import outcome
 from vibroimpact.completion.own_records import unsettled_periods
 from vibroimpact.completion.prepare import prepared
-from vibroimpact.completion.store import modes_of, plain
+from vibroimpact.completion.store import modes_of
 from vibroimpact.completion.structure_file import StructureFile
 from vibroimpact.completion.study import study_of
 from vibroimpact.completion.updated_model import configuration
 from vibroimpact.config.reading import check_config
+from vibroimpact.records import plain_values
 from vibroimpact.reduction.reduced_model import build_model
 
 KEYS = {
@@ -61,9 +62,11 @@ def judged(law, folder, periodic=True):
     changes.
     """
     values, campaign, linear, _ = prepared_of(_campaign(law, periodic), folder)
-    linear, study = plain(linear), study_of("", values)
+    linear, study = plain_values(linear), study_of("", values)
     singles = [
-        plain(run_candidate(campaign, study, linear, f"{name}.{study.mounting}", told=silent))
+        plain_values(
+            run_candidate(campaign, study, linear, f"{name}.{study.mounting}", told=silent)
+        )
         for name in FEW
     ]
     return (
@@ -158,7 +161,7 @@ def test_a_sensor_against_the_force_is_turned(tmp_path):
 def test_two_levels_are_not_testable_and_say_what_to_measure(tmp_path):
     campaign = two_masses.campaign("nothing", periods=3, levels=(1.0, 4.0), splits=("fit", "fit"))
     values, kept, linear, _ = prepared_of(campaign, tmp_path)
-    verdict, rows, completed = outcome(kept, None, values, plain(linear), [], [], {}, silent)
+    verdict, rows, completed = outcome(kept, None, values, plain_values(linear), [], [], {}, silent)
     assert (
         set(verdict.to_values()) == KEYS and verdict.verdict == "not_testable" and completed is None
     )

@@ -10,7 +10,8 @@ import pytest
 from scipy import linalg
 
 from vibroimpact.config.reading import load_config
-from vibroimpact.reduction.reduced_model import build_model, modal_damping, quality_report
+from vibroimpact.reduction.basis_accuracy import basis_frequency_errors
+from vibroimpact.reduction.reduced_model import build_model, modal_damping
 from vibroimpact.structure.tube import build_structure
 
 STUDY = load_config(Path(__file__).resolve().parents[2] / "config" / "study.yaml")
@@ -25,7 +26,7 @@ def model():
 @pytest.fixture(scope="module")
 def rows():
     """Return the rows of the study's quality report."""
-    return quality_report(STUDY)
+    return basis_frequency_errors(STUDY)
 
 
 @pytest.fixture(scope="module")

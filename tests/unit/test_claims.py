@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vibroimpact.linear.equivalent_linear import first_pole, frf, psd_family
+from vibroimpact.linear.poles import first_pole
+from vibroimpact.linear.responses import frf, psd_family
 from vibroimpact.validation.claims import equivalence, poles, response, shapes
 from vibroimpact.validation.claims.claim import CONDITIONS, FAILS, HOLDS
 from vibroimpact.validation.study_curves import POLES, STIFFNESS, StudyCurves

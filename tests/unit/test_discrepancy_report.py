@@ -20,7 +20,7 @@ from tests.discrepancy_results import (
     made_up_verdict,
 )
 from vibroimpact.discrepancy.results_folder import best_places, read_results
-from vibroimpact.display_units import shown_unit
+from vibroimpact.display_units import display_unit
 from vibroimpact.figures.discrepancy.ranking import axis_label, found_of, named_of
 from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
 from vibroimpact.figures.discrepancy.spectra import chosen_channels, chosen_records
@@ -182,13 +182,16 @@ def test_profiles_show_what_was_simulated(folder, figures):
 
 
 def test_parameters_are_shown_in_units_of_the_field():
-    assert shown_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and shown_unit("m", [1.2]) == ("m", 1.0)
-    assert (
-        shown_unit("N/m", [4e6]) == ("MN/m", 1e-6)
-        and shown_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3)
-        and shown_unit("1", [0.15]) == ("1", 1.0)
+    assert display_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and display_unit("m", [1.2]) == (
+        "m",
+        1.0,
     )
-    assert shown_unit("N/m^3", [7e11, None]) == ("GN/m³", 1e-9) and shown_unit(
+    assert (
+        display_unit("N/m", [4e6]) == ("MN/m", 1e-6)
+        and display_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3)
+        and display_unit("1", [0.15]) == ("1", 1.0)
+    )
+    assert display_unit("N/m^3", [7e11, None]) == ("GN/m³", 1e-9) and display_unit(
         "N/m^2", [np.nan, 1.03e6]
     ) == ("kN/m²", 1e-3)
     assert axis_label("offset_x", "mm") == "offset x (mm)" and axis_label("mu", "1") == "mu (-)"

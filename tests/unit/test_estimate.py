@@ -6,14 +6,14 @@ import pytest
 from vibroimpact.identify.estimate import (
     METHODS,
     Estimate,
-    graded,
+    grade,
+    mark_weak,
     table_rows,
     unresolved,
-    weakened,
 )
-from vibroimpact.identify.segments import (
+from vibroimpact.identify.segment_scatter import (
     effective_duration,
-    left_out_changes,
+    jackknife_influences,
     segment_covariance,
     widened,
 )
@@ -38,7 +38,7 @@ RANGE = (1.0e3, 1.0e8)
     ],
 )
 def test_quality_weighs_chance_and_the_model_s_error(k, error, model_error, free, quality):
-    found = graded(Estimate("lscf", k, error, 60.0, 5.0, 20.0, 0.02), model_error, free, RANGE)
+    found = grade(Estimate("lscf", k, error, 60.0, 5.0, 20.0, 0.02), model_error, free, RANGE)
     assert found.quality == quality and bool(found.note) == (quality != "ok")
     assert np.isnan(found.k) == (quality == "unresolved") and np.isnan(found.c) == (
         quality == "unresolved"
@@ -47,7 +47,7 @@ def test_quality_weighs_chance_and_the_model_s_error(k, error, model_error, free
 
 
 def test_a_damping_with_too_large_an_error_is_left_out_alone():
-    found = graded(
+    found = grade(
         Estimate("lscf", 1.0e5, 2.0e3, 60.0, 45.0), 2.0e3, 570.0, RANGE, c_error_limit=40.0
     )
     assert (
@@ -60,9 +60,9 @@ def test_a_damping_with_too_large_an_error_is_left_out_alone():
 
 
 def test_weakened_never_makes_better():
-    assert weakened(Estimate("ods", 1.0, 0.1), "why").quality == "weak"
-    assert weakened(unresolved("ods", "no peak"), "why").quality == "unresolved"
-    assert weakened(unresolved("ods", "no peak"), "why").note == "no peak; why"
+    assert mark_weak(Estimate("ods", 1.0, 0.1), "why").quality == "weak"
+    assert mark_weak(unresolved("ods", "no peak"), "why").quality == "unresolved"
+    assert mark_weak(unresolved("ods", "no peak"), "why").note == "no peak; why"
 
 
 def test_rows_have_the_columns_of_the_consistency_table():
@@ -120,7 +120,7 @@ def test_scatter_of_overlapping_segments_gives_the_error_of_their_mean():
 def test_leaving_segments_out_tells_the_pull_of_each():
     values = np.array([1.0, 2.0, 6.0, -1.0])
     without = np.array([np.delete(values, index).mean() for index in range(4)])
-    np.testing.assert_allclose(left_out_changes(without[:, None])[:, 0], values - values.mean())
+    np.testing.assert_allclose(jackknife_influences(without[:, None])[:, 0], values - values.mean())
 
 
 def test_a_covariance_is_widened_and_never_narrowed():

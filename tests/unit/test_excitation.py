@@ -11,11 +11,11 @@ import xarray as xr
 from scipy.io import savemat
 
 from vibroimpact.excitation.force_files import ForceFileError, read_force
-from vibroimpact.excitation.force_stream import ForceStream, unit_force
+from vibroimpact.excitation.force_stream import ForceStream, normalised_force
 from vibroimpact.excitation.random_force import (
     ForceError,
     band_limited_noise,
-    fast_length,
+    fft_length,
     resample_measured,
 )
 from vibroimpact.random_streams import random_generator
@@ -51,7 +51,9 @@ def test_seeds_are_independent_and_reproducible():
 
 def test_rms_over_the_record_is_exact():
     section = SimpleNamespace(kind="band_limited", band_Hz=BAND)
-    values = unit_force(section, np.random.default_rng(3), 60000, 51200.0, slice(10000, 50000))
+    values = normalised_force(
+        section, np.random.default_rng(3), 60000, 51200.0, slice(10000, 50000)
+    )
     assert np.sqrt(np.mean(values[10000:50000] ** 2)) == pytest.approx(1.0, rel=1e-14)
 
 
@@ -66,7 +68,8 @@ def test_a_streamed_force_is_the_inverse_transform_of_its_lines(samples, rate, b
     assert (
         np.max(
             np.abs(
-                unit_force(section, np.random.default_rng(8), samples, rate, recorded) - expected
+                normalised_force(section, np.random.default_rng(8), samples, rate, recorded)
+                - expected
             )
         )
         < 1e-12
@@ -185,11 +188,11 @@ def test_a_measured_force_drives_a_case(tmp_path):
     section = SimpleNamespace(
         kind="measured", file=str(path), variable="force", sampling_frequency_Hz=None
     )
-    force = unit_force(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
+    force = normalised_force(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
     assert np.sqrt(np.mean(force[51200 : 4 * 51200] ** 2)) == pytest.approx(1.0, rel=1e-14)
     assert np.corrcoef(force[::128], values[:2000])[0, 1] > 0.999
     with pytest.raises(ForceError, match="lasts 10.000 s, but start-up and record need 12.000 s"):
-        unit_force(section, None, 12 * 51200, 51200.0, slice(0, 51200))
+        normalised_force(section, None, 12 * 51200, 51200.0, slice(0, 51200))
 
 
 def test_what_is_wrong_with_a_file_is_said(tmp_path):
@@ -216,7 +219,7 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path):
 
 def test_fast_length_has_small_factors_only():
     for samples in (1, 7, 1000, 12345, 2825000):
-        length = fast_length(samples)
+        length = fft_length(samples)
         assert samples <= length <= 1.1 * samples + 1
         for prime in (2, 3, 5):
             while length % prime == 0:

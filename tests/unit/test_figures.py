@@ -40,9 +40,10 @@ from vibroimpact.figures.study.cases_of_gap import (
 )
 from vibroimpact.figures.study.linear_limits import HELD, driven_frequencies
 from vibroimpact.figures.style import COLUMNS, label_of, ordered_colours, shown
-from vibroimpact.identify.case import identify_case
 from vibroimpact.identify.estimate import table_rows
-from vibroimpact.reduction.reduced_model import build_model, quality_report
+from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.reduction.basis_accuracy import basis_frequency_errors
+from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import all_cases, nearest_loads
@@ -118,7 +119,7 @@ def sheets(config, study, tmp_path_factory):
     drawn += (
         contact.figure_03_contact_law(part, structure)
         + contact.figure_04_first_frequency(part)
-        + basis.basis_quality(part, quality_report(config))
+        + basis.basis_quality(part, basis_frequency_errors(config))
     )
     part = parts["figures_response"]
     responses = psd_table.gather(part, model, found["spectra"].values())

@@ -8,7 +8,7 @@ from scipy import linalg, sparse
 
 from tests import joint
 from vibroimpact.config.reading import ConfigError, check_config
-from vibroimpact.linear.equivalent_linear import frf
+from vibroimpact.linear.responses import frf
 from vibroimpact.reduction.modal_structure import IdentifiedModes, modal_model
 from vibroimpact.reduction.reduced_model import build_model
 
@@ -133,7 +133,7 @@ def test_what_measured_modes_can_not_do_is_told():
         "obstacles": "fixed",
         "signal": {"kind": "harmonic", "frequency_Hz": 10.0},
     }
-    with pytest.raises(ValueError, match="can not be driven by its base"):
+    with pytest.raises(ValueError, match="cannot be driven by its base"):
         build_model(check_config({**REST, "structure": identified(), "excitation": base}, "modes"))
 
 

@@ -5,16 +5,16 @@ than a few.
 import numpy as np
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.memo import MOST, Kept, content_key
+from vibroimpact.memo import MAX_ENTRIES, Memo, content_key
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.tube import build_structure
 
 
 def test_a_result_is_made_once_and_the_oldest_forgotten():
-    kept, made = Kept(), []
-    for key in (0, 0, *range(MOST + 1), 0):
+    kept, made = Memo(), []
+    for key in (0, 0, *range(MAX_ENTRIES + 1), 0):
         kept.get(key, lambda key=key: made.append(key))
-    assert made == [0, *range(1, MOST + 1), 0]
+    assert made == [0, *range(1, MAX_ENTRIES + 1), 0]
 
 
 def test_keys_tell_contents_and_shapes_apart():

@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from vibroimpact.identify.linearisation import (
-    band_power,
-    secant_stiffness,
-    statistical_linearisation,
-)
+from vibroimpact.identify.secant import secant_stiffness
+from vibroimpact.identify.statistical_linearisation import band_power, statistical_linearisation
 from vibroimpact.reduction.modal_model import ModalModel
 
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.excitation.force_vectors import force_row, line_load
+from vibroimpact.excitation.force_vectors import force_vector, line_load
 from vibroimpact.structure.beam_elements import tube_beam
 from vibroimpact.validation.reference.frequencies import MATERIAL, SECTION, straight_tube
 
@@ -66,8 +66,8 @@ def test_points_with_signs_add_up():
         **{**vars(one), "also": (SimpleNamespace(point="1.3", direction=X, factor=-0.6),)}
     )
     expected = 2.0 * tube.displacement_rows(0.5)[0] - 0.6 * tube.displacement_rows(1.3)[0]
-    assert force_row(tube, place_on(tube), both) == pytest.approx(expected, abs=1e-14)
-    assert not np.array_equal(force_row(tube, place_on(tube), one), expected)
+    assert force_vector(tube, place_on(tube), both) == pytest.approx(expected, abs=1e-14)
+    assert not np.array_equal(force_vector(tube, place_on(tube), one), expected)
 
 
 def test_a_turned_force_is_shared_by_the_axes():
@@ -82,13 +82,13 @@ def test_a_turned_force_is_shared_by_the_axes():
         distributed=(),
     )
     rows = tube.displacement_rows(0.5)
-    assert force_row(tube, place_on(tube), turned) == pytest.approx(
+    assert force_vector(tube, place_on(tube), turned) == pytest.approx(
         np.sqrt(0.75) * rows[0] + 0.5 * rows[1], abs=1e-14
     )
 
 
 def test_a_moving_base_pulls_with_the_whole_mass_of_a_free_tube():
     tube = straight_tube("free-free", 9, 2.0)
-    row = force_row(tube, None, SimpleNamespace(kind="base_motion", direction=X))
+    row = force_vector(tube, None, SimpleNamespace(kind="base_motion", direction=X))
     area = np.pi * (0.02222 - 0.00127) * 0.00127
     assert row @ (np.arange(tube.dofs) % 6 == 0) == pytest.approx(-8330.0 * area * 2.0, rel=1e-9)

@@ -7,7 +7,11 @@ import pytest
 
 from vibroimpact.identify.half_spectra import half_spectra, lag_window
 from vibroimpact.identify.lscf import NormalEquations
-from vibroimpact.identify.operational_pole import PoleSearch, least_covariance, operational_pole
+from vibroimpact.identify.operational_pole import (
+    PoleSearch,
+    cramer_rao_covariance,
+    operational_pole,
+)
 from vibroimpact.identify.stabilisation import (
     StabilisationChart,
     first_stable_order,
@@ -15,7 +19,7 @@ from vibroimpact.identify.stabilisation import (
     stabilisation_chart,
     stable_column,
 )
-from vibroimpact.identify.update import frequency_of, pole_of
+from vibroimpact.linear.poles import frequency_of, pole_of
 from vibroimpact.spectra.window_leakage import window_autocorrelation
 
 FREQUENCIES = np.array([12.0, 21.0, 33.0])
@@ -125,7 +129,7 @@ def test_known_pole_comes_back_from_random_records_within_its_standard_error():
     assert np.all(np.sqrt(np.mean(scores**2, axis=0)) < 2.0) and np.all(
         np.sqrt(np.mean(scores**2, axis=0)) > 0.5
     )
-    bound = np.sqrt(np.diag(least_covariance(21.0, 0.025, 120.0)))
+    bound = np.sqrt(np.diag(cramer_rao_covariance(21.0, 0.025, 120.0)))
     assert np.all(errors.std(axis=0) > 0.7 * bound) and np.all(errors.std(axis=0) < 2.5 * bound)
 
 

@@ -96,5 +96,5 @@ def test_a_full_multisine_tells_that_it_can_not_tell():
         "every line of the band is excited"
         in distortion(
             level_lines("full", "fit", force, force[None], RATE, PERIOD, 0), (2.0, 14.75)
-        )["told"]
+        )["summary"]
     )

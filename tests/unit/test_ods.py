@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from vibroimpact.identify.broadband import family_map, identify_broadband
-from vibroimpact.identify.ods import deflection_shape, mac, match_shape, own_shape
+from vibroimpact.identify.ods import deflection_shape, linear_ods, mac, match_shape
 from vibroimpact.identify.peak import level_edges
 from vibroimpact.identify.reference_tube import Bins, ReferenceTube, Sensors
-from vibroimpact.identify.update import frequency_of
-from vibroimpact.linear import equivalent_linear as linear
 from vibroimpact.linear.family import LinearFamily, driven_modes
+from vibroimpact.linear.poles import first_pole, frequency_of
+from vibroimpact.linear.responses import frf
 from vibroimpact.spectra.window_leakage import spectral_kernel
 
 
@@ -60,8 +60,8 @@ def test_first_singular_vector_is_the_shape_that_carries_the_band():
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 31.0), (1.0e5, 62.0), (1.0e6, 1018.0), (4.0e6, 1.0e4)])
 def test_exact_shapes_give_k_where_the_mode_s_shape_alone_does_not(study_model, tube, k, c):
-    frequency, ratio = frequency_of(linear.first_pole(study_model, k, c))
-    line = linear.frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
+    frequency, ratio = frequency_of(first_pole(study_model, k, c))
+    line = frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
     measured = deflection_shape(
         line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
     )
@@ -80,8 +80,8 @@ def test_exact_shapes_give_k_where_the_mode_s_shape_alone_does_not(study_model, 
 
 def test_the_change_with_damping_is_that_of_a_new_match(study_model, tube):
     k, c = 4.0e6, 1.0e4
-    frequency, ratio = frequency_of(linear.first_pole(study_model, k, c))
-    line = linear.frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
+    frequency, ratio = frequency_of(first_pole(study_model, k, c))
+    line = frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
     measured = deflection_shape(
         line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
     )
@@ -99,7 +99,7 @@ def test_the_change_with_damping_is_that_of_a_new_match(study_model, tube):
 
 def test_own_shape_of_a_narrow_band_is_the_response_there(study_model, tube):
     motion = tube.at_line.frf(1.0e5, 62.0, slice(130, 131))[:, 0]
-    assert mac(own_shape(tube.at_line, slice(130, 131), 1.0e5, 62.0), motion) == pytest.approx(1.0)
+    assert mac(linear_ods(tube.at_line, slice(130, 131), 1.0e5, 62.0), motion) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 31.0), (4.0e6, 1.0e4)])

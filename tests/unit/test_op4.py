@@ -159,10 +159,10 @@ def test_op4_files_that_can_not_be_used_are_refused(tmp_path, op4):
         ("sets", "mgg, maa could each be the mass matrix"),
         ("twice", "mgg, mgg could each be"),
         ("others", "holds kgg, mhh: name the mass matrix M, or as Nastran does, MGG"),
-        ("cut", "can not be read as OP4"),
-        ("cut_binary", "can not be read as OP4"),
-        ("text", "can not be read as OP4"),
-        ("empty", "can not be read as OP4"),
+        ("cut", "cannot be read as OP4"),
+        ("cut_binary", "cannot be read as OP4"),
+        ("text", "cannot be read as OP4"),
+        ("empty", "cannot be read as OP4"),
     ):
         with pytest.raises(MatrixFileError, match=part):
             read_matrix(tmp_path / f"{name}.op4", "mass")

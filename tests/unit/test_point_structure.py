@@ -139,7 +139,7 @@ def test_a_damping_matrix_is_rebuilt_from_its_parts():
         assert np.diag(kept) + (shapes * coefficients) @ shapes.T == pytest.approx(
             matrix, abs=1e-12
         )
-    with pytest.raises(ValueError, match="at most 20 can be kept: give proportional damping"):
+    with pytest.raises(ValueError, match="at most 20 are possible: give proportional damping"):
         split_damping(np.eye(30) + 0.1 * np.cov(generator.standard_normal((30, 100))))
 
 

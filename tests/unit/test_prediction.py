@@ -5,7 +5,7 @@ make the table.
 import numpy as np
 import pytest
 
-from vibroimpact.linear.equivalent_linear import frf, synthesise_records
+from vibroimpact.linear.responses import frf, synthesise_records
 from vibroimpact.validation.prediction.equivalent_law import fit_law, free_level, plate_stiffness
 from vibroimpact.validation.prediction.table import (
     amplified,

@@ -96,7 +96,7 @@ def test_a_failed_write_leaves_no_file(tmp_path):
 
 def test_a_broken_file_is_named(tmp_path):
     (tmp_path / "broken.nc").write_bytes(b"not netCDF")
-    with pytest.raises(records.RecordError, match="broken.nc: can not be read as netCDF"):
+    with pytest.raises(records.RecordError, match="broken.nc: cannot be read as netCDF"):
         records.read_record(tmp_path / "broken.nc")
 
 

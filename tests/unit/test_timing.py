@@ -78,7 +78,7 @@ def test_jobs_are_summed_by_rule_and_part(paths):
 
 def test_a_missing_file_is_named(paths):
     paths[1][0].unlink()
-    with pytest.raises(RecordError, match="simulate_load_0.5.log: can not be read"):
+    with pytest.raises(RecordError, match="simulate_load_0.5.log: cannot be read"):
         study_timing(*paths)
 
 

@@ -4,8 +4,9 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import write_table
+from vibroimpact.reduction.basis_accuracy import basis_frequency_errors
 from vibroimpact.reduction.model_file import write_model
-from vibroimpact.reduction.reduced_model import build_model, quality_report
+from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
@@ -13,5 +14,5 @@ config = StageSettings(snakemake.params.config)
 model = build_model(config)
 print(f"{model.modes} modes")
 write_model(model, snakemake.output.model, origin(snakemake.params.config, snakemake.input.library))
-write_table(quality_report(config), snakemake.output.quality)
+write_table(basis_frequency_errors(config), snakemake.output.quality)
 print(Stopwatch().line())

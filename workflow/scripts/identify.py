@@ -1,8 +1,8 @@
 """Write the estimates of all cases of some loads, and the curves behind them."""
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.identify.case import RECORD_READ, SPECTRA_READ, identify_case
 from vibroimpact.identify.estimate import table_rows
+from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ, identify_case
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_record, write_record, write_table

@@ -73,7 +73,7 @@ def settled_response(force, response, sampling_frequency, modes, band_Hz):
     decay = np.concatenate(
         [receptance, laplace * receptance, [ends**power for power in range(END_TERMS)]]
     )
-    for channel, observed in enumerate(modes.observed(frequency[inside])):
+    for channel, observed in enumerate(modes.sensor_factors(frequency[inside])):
         columns = np.concatenate([receptance * observed * driven[inside], decay]).T
         scale = np.linalg.norm(columns, axis=0)
         parts, wanted = columns / scale, lines[channel, inside]

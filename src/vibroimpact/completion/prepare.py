@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.campaign.file import valid_count
 from vibroimpact.campaign.signals import transfer_band
 from vibroimpact.identify.modal_fit import identify_modes
-from vibroimpact.records import plain
+from vibroimpact.records import plain_values
 from vibroimpact.spectra.periodic_lines import line_power
 
 from .levels import SETTLED, levels_of, naming_split
@@ -124,7 +124,12 @@ def prepared(name, path, asked, told=print):
     except ValueError as error:
         told(f"no equivalent support by level: {error}")
         mounting = []
-    return plain({**values, "study": asdict(study), "places": ranking}), usable, linear, mounting
+    return (
+        plain_values({**values, "study": asdict(study), "places": ranking}),
+        usable,
+        linear,
+        mounting,
+    )
 
 
 def _repeating(campaign, study, rows):
@@ -174,7 +179,7 @@ def _settled(campaign, study, linear):
             force[0],
             response,
             campaign.attrs["sampling_frequency"],
-            modes_of(plain(linear["refitted"][str(name)])),
+            modes_of(plain_values(linear["refitted"][str(name)])),
             study.band_Hz,
         )
     return out

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.campaign.file import read_campaign, write_campaign
-from vibroimpact.records import plain
+from vibroimpact.records import plain_values
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
 from .trial import Term, Trial
@@ -15,7 +15,7 @@ from .trial import Term, Trial
 
 def modes_values(modes):
     """Return a dict of lists of IdentifiedModes."""
-    return plain(asdict(modes))
+    return plain_values(asdict(modes))
 
 
 def modes_of(values):
@@ -36,8 +36,8 @@ def trial_values(trial):
     """Return a dict of plain values of a Trial."""
     return {
         "modes": modes_values(trial.modes),
-        "terms": [plain(asdict(term)) for term in trial.terms],
-        "offsets": plain(trial.offsets),
+        "terms": [plain_values(asdict(term)) for term in trial.terms],
+        "offsets": plain_values(trial.offsets),
     }
 
 
@@ -60,7 +60,7 @@ def write_values(values, path):
     """Write plain values as JSON; numbers that are not finite become null."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     Path(path).write_text(
-        json.dumps(plain(values), indent=1, allow_nan=False) + "\n", encoding="utf-8"
+        json.dumps(plain_values(values), indent=1, allow_nan=False) + "\n", encoding="utf-8"
     )
 
 

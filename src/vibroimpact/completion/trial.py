@@ -157,7 +157,7 @@ class Records:
                 if pushed is not None:
                     modal = modal + along @ pushed[:, lane, lines]
                 frequency = level.frequency[lines]
-                out[index] = trial.modes.observed(frequency) * (
+                out[index] = trial.modes.sensor_factors(frequency) * (
                     trial.modes.shapes.T @ (trial.modes.receptance(frequency) * modal)
                 )
         return out

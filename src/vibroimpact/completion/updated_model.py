@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 
 from vibroimpact.contact.local_elements import COLUMNS
-from vibroimpact.records import plain
+from vibroimpact.records import plain_values
 
 from .local_laws import LAWS
 from .store import trial_of
@@ -61,7 +61,7 @@ def configuration(completed, campaign, study):
     rate = _rate(max(study.band_Hz[1], modes.frequency.max()))
     lowest = max(study.band_Hz[0], 0.1 * modes.frequency[~modes.residual].min())
     loads = sorted({float(f"{value:.6g}") for value in campaign["load_rms"].values})
-    return plain(
+    return plain_values(
         {
             "study": f"{study.name}_updated",
             "structure": {"kind": "identified", "modes": described},

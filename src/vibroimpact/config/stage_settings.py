@@ -5,7 +5,7 @@ Config.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 
 class StageSettings(Mapping[str, Any]):
@@ -65,3 +65,8 @@ def _frozen(value: Any, place: str) -> Any:
     if isinstance(value, (list, tuple)):
         return tuple(_frozen(item, place) for item in value)
     return value
+
+
+# What a function of the library takes from a configuration: the StageSettings of a stage, or
+# the same part of a whole Config. The schema checks the values, so the annotation is Any.
+ConfigPart: TypeAlias = Any

@@ -1,29 +1,32 @@
-"""The local force laws of a model: a column per parameter, a row per contact point or local
-element, neutral values where a term is off.
+"""The local force laws of a model: contacts at the supports, and local elements.
 
-Contact (radial, unilateral; p penetration in m, a point of the supports): see ContactLaws. Local
-element (bilateral, along one direction between a point and the ground or between two points): see
-LocalLaws. docs/method.md writes the laws out.
+Every law is a table with a column per parameter and a row per contact point or local element.
+Neutral values switch a term off. docs/method.md writes the laws out.
 """
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 
 @dataclass(frozen=True, eq=False)
 class ContactLaws:
-    """What a contact has beyond its elastic circular obstacle; every float array is
-    (contact_point,).
+    """The terms of the contacts beyond an elastic circular obstacle.
 
-    gap m, NaN: the case's gap times the point's gap_factor; damping N s/m, force max(0, k p +
-    damping dp/dt); hunt_crossley s/m, force k p max(0, 1 + hunt_crossley dp/dt); hertz N/m^1.5,
-    force hertz p^1.5 in place of k p where it is not 0; friction: Coulomb coefficient;
-    stick_stiffness N/m of the elastic stick spring of the friction; lobes, lobe_depth m, lobe_angle
-    rad: obstacle r(theta) = gap + lobe_depth (1 - cos(lobes (theta - lobe_angle))) / 2, a circle
-    where lobes is 0. land_point (land,) int and land_normal (land, 2): a point named in land_point
-    meets flat lands, normals pointing away from the centre at the distance of its gap, in place of
-    the circle.
+    All arrays but the last two are (contact_point,). With p the penetration in m:
+
+    gap: m; NaN for the case's gap times the point's gap_factor.
+    damping: N s/m; the force is max(0, k p + damping dp/dt).
+    hunt_crossley: s/m; the force is k p max(0, 1 + hunt_crossley dp/dt).
+    hertz: N/m^1.5; where it is not 0, the force is hertz p^1.5 instead of k p.
+    friction: Coulomb coefficient.
+    stick_stiffness: N/m, of the elastic stick spring of the friction.
+    lobes, lobe_depth (m), lobe_angle (rad): the obstacle is
+        r(theta) = gap + lobe_depth (1 - cos(lobes (theta - lobe_angle))) / 2; a circle for lobes 0.
+    land_point: (land,) int, the contact point of each flat land.
+    land_normal: (land, 2) unit vectors away from the centre. A point with lands meets planes at the
+        distance of its gap instead of the circle.
 
     Raises ValueError for columns of unequal length, values out of range or a land at a point that
     does not exist.
@@ -42,8 +45,8 @@ class ContactLaws:
     land_normal: np.ndarray
 
     @classmethod
-    def neutral(cls, points: int):
-        """Return the laws of `points` plain elastic circular contacts."""
+    def neutral(cls, points: int) -> "ContactLaws":
+        """Return the laws of `points` elastic circular contacts."""
         columns = {field.name: np.zeros(points) for field in fields(cls)}
         columns |= {
             "gap": np.full(points, np.nan),
@@ -52,8 +55,8 @@ class ContactLaws:
         }
         return cls(**columns)
 
-    def __post_init__(self):
-        """Refuse what no contact can be."""
+    def __post_init__(self) -> None:
+        """Check shapes and values."""
         points = len(self.gap)
         for name in POINT_COLUMNS:
             values = getattr(self, name)
@@ -86,13 +89,13 @@ class ContactLaws:
 
     @property
     def plain(self) -> np.ndarray:
-        """Return (contact_point,) True where a point has nothing but the elastic circle."""
+        """Return (contact_point,) bool: True where a point has only the elastic circle."""
         special = np.isin(np.arange(len(self.gap)), self.land_point)
         for name in ("damping", "hunt_crossley", "hertz", "friction", "lobes"):
             special |= getattr(self, name) != 0.0
         return ~special
 
-    def with_columns(self, **columns):
+    def with_columns(self, **columns: Any) -> "ContactLaws":
         """Return the laws with some columns replaced; a number fills a column."""
         return replace(
             self,
@@ -114,17 +117,24 @@ POINT_COLUMNS = tuple(
 
 @dataclass(frozen=True, eq=False)
 class LocalLaws:
-    """The terms of local elements; every array is (element,).
+    """The terms of the local elements; every array is (element,).
 
-    Force on the structure along the element's direction, u the displacement (or the relative one)
-    and v its rate:
-    -(stiffness u + quadratic u² + cubic u³ + damping v + drag |v| v + slider + saturation), with
-    slider an elastic stick spring of
-    stick_stiffness N/m that slips at slip_limit N, and saturation = clip(saturation_stiffness u,
-    +-saturation_limit) N.
-    drag_partner: number of the element whose rate w counts in the speed too, |v| = sqrt(v² + w²),
-    -1 for none: a fluid brakes a motion
-    in its plane, not along each axis by itself. Units: N/m, N/m², N/m³, N s/m, N s²/m².
+    With u the displacement along the element (relative where it has two ends) and v its rate, the
+    force on the structure is
+
+        -(stiffness u + quadratic u² + cubic u³ + damping v + drag |v| v + slider + saturation).
+
+    The slider is an elastic stick spring of stick_stiffness that slips at slip_limit. The
+    saturation is clip(saturation_stiffness u, ±saturation_limit).
+
+    stiffness, stick_stiffness, saturation_stiffness: N/m.
+    quadratic: N/m².
+    cubic: N/m³.
+    damping: N s/m.
+    drag: N s²/m².
+    slip_limit, saturation_limit: N.
+    drag_partner: int, number of the element whose rate w adds to the speed, |v| = sqrt(v² + w²); -1
+        for none. A fluid brakes a motion in its plane, not along each axis separately.
 
     Raises ValueError for columns of unequal length or values that are not finite.
     """
@@ -141,15 +151,15 @@ class LocalLaws:
     drag_partner: np.ndarray
 
     @classmethod
-    def neutral(cls, elements: int):
+    def neutral(cls, elements: int) -> "LocalLaws":
         """Return the laws of `elements` elements that exert no force."""
         return cls(
             **{field.name: np.zeros(elements) for field in fields(cls)}
             | {"drag_partner": np.full(elements, -1)}
         )
 
-    def __post_init__(self):
-        """Refuse columns that do not belong together."""
+    def __post_init__(self) -> None:
+        """Check shapes and values."""
         for field in fields(self):
             values = getattr(self, field.name)
             if np.shape(values) != np.shape(self.stiffness):

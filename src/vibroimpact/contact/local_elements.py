@@ -1,9 +1,13 @@
-"""The local elements of a configuration, and damping that the modes do not uncouple, as rows over
-the degrees of freedom and laws.
+"""Local elements of a configuration, and damping that couples the modes.
+
+Both become rows over the degrees of freedom, and laws.
 """
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.directions import unit_vector
 
 from .laws import LocalLaws
@@ -20,24 +24,39 @@ COLUMNS = {
     "saturation_limit": "saturation_limit_N",
 }
 MOST_DAMPERS = 20
-PROPORTIONAL = 1.0e-9  # of the largest modal damping: below it a damping matrix counts as diagonal
+# Of the largest modal damping: a damping matrix whose other terms are below this is diagonal.
+PROPORTIONAL = 1.0e-9
 
 
-def element_rows(elements, place, dofs):
-    """Return (element, dof): displacement of each element along its direction, relative where it
-    has two ends.
+def element_rows(
+    elements: Sequence[ConfigPart], point_rows: Callable[[str], np.ndarray], dofs: int
+) -> np.ndarray:
+    """Return (element, dof): the displacement of each element along its direction per unit dof.
+
+    The displacement is relative where an element has two ends.
+
+    elements: entries of the configuration.
+    point_rows: function of a point's name that returns its displacement rows (3, dof).
+    dofs: number of degrees of freedom.
     """
     rows = [
         unit_vector(element.direction)
-        @ (place(element.point) - (place(element.other_point) if element.other_point else 0.0))
+        @ (
+            point_rows(element.point)
+            - (point_rows(element.other_point) if element.other_point else 0.0)
+        )
         for element in elements
     ]
     return np.array(rows).reshape(-1, dofs)
 
 
-def element_laws(elements, dampers=()):
-    """Return (names, LocalLaws) of `elements` (config entries), then of linear dampers
-    (coefficient,) N s/m.
+def element_laws(
+    elements: Sequence[ConfigPart], dampers: Sequence[float] | np.ndarray = ()
+) -> tuple[tuple[str, ...], LocalLaws]:
+    """Return (names, LocalLaws) of local elements, followed by linear dampers.
+
+    elements: entries of the configuration.
+    dampers: (damper,) coefficients in N s/m.
     """
     names = tuple(element.name for element in elements) + tuple(
         f"damper_{number + 1}" for number in range(len(dampers))
@@ -47,34 +66,34 @@ def element_laws(elements, dampers=()):
         for column, key in COLUMNS.items()
     }
     columns["damping"][len(elements) :] = dampers
-    own = {element.name: number for number, element in enumerate(elements)}
+    index = {element.name: number for number, element in enumerate(elements)}
     columns["drag_partner"] = np.array(
-        [own[element.drag_partner] if element.drag_partner else -1 for element in elements]
+        [index[element.drag_partner] if element.drag_partner else -1 for element in elements]
         + [-1] * len(dampers),
         np.int64,
     )
     return names, LocalLaws(**columns)
 
 
-def split_damping(modal):
-    """Return (diagonal (mode,), shapes (mode, damper), coefficients (damper,)) with modal = diag +
-    sum of coefficient shape shape^T.
+def split_damping(modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (diagonal (mode,), shapes (mode, damper), coefficients (damper,)) of a damping matrix.
 
-    modal (mode, mode): a damping matrix in modal coordinates. What the modes do not uncouple
-    becomes dampers, one per eigenvector of the whole matrix where it has few, so that a local
-    damper stays one. Raises ValueError when it takes more than MOST_DAMPERS.
+    modal: (mode, mode), the damping matrix in modal coordinates. It equals diag(diagonal) plus the
+        sum of coefficient shape shape^T over the dampers.
+
+    A matrix that couples the modes becomes one damper per eigenvector, so that a local damper stays
+    a single one. Raises ValueError when this takes more than MOST_DAMPERS.
     """
     diagonal = np.diag(modal).copy()
-    if np.abs(modal - np.diag(diagonal)).max(initial=0.0) <= PROPORTIONAL * np.abs(diagonal).max(
-        initial=0.0
-    ):
+    coupling = np.abs(modal - np.diag(diagonal)).max(initial=0.0)
+    if coupling <= PROPORTIONAL * np.abs(diagonal).max(initial=0.0):
         return diagonal, np.zeros((len(modal), 0)), np.zeros(0)
     coefficients, shapes = np.linalg.eigh(modal)
-    kept = np.abs(coefficients) > PROPORTIONAL * np.abs(coefficients).max()
-    if kept.sum() > MOST_DAMPERS:
+    significant = np.abs(coefficients) > PROPORTIONAL * np.abs(coefficients).max()
+    if significant.sum() > MOST_DAMPERS:
         raise ValueError(
-            f"structure.damping couples the modes through {kept.sum()} independent dampers, at most"
-            f" {MOST_DAMPERS} can be kept: give proportional damping (damping: rayleigh or modal)"
-            " and the local dampers as elements"
+            f"structure.damping couples the modes through {significant.sum()} independent"
+            f" dampers, at most {MOST_DAMPERS} are possible: give proportional damping (damping:"
+            " rayleigh or modal) and the local dampers as elements"
         )
-    return np.zeros(len(modal)), shapes[:, kept], coefficients[kept]
+    return np.zeros(len(modal)), shapes[:, significant], coefficients[significant]

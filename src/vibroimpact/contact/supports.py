@@ -1,12 +1,12 @@
-"""The contact points of the supports: where they are, in which directions they act and what share
-of their support each carries.
-"""
+"""The contact points of the supports: places, directions and shares of the support's stiffness."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.geometry.centreline import SAME_PLACE_M
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline
 from vibroimpact.geometry.directions import transverse_directions
 
 from .laws import ContactLaws
@@ -14,12 +14,16 @@ from .laws import ContactLaws
 
 @dataclass(frozen=True, eq=False)
 class ContactPoints:
-    """All contact points of all supports, in the order of the supports and along the tube; see
-    `ModalModel` for the fields.
+    """All contact points of all supports, in the order of the supports and along the tube.
 
-    arc_length (contact_point,) m; position (contact_point, 3) m; directions (contact_point, 2, 3);
-    weight (contact_point,); support (contact_point,) int; stiffness (contact_point,) N/m;
-    gap_factor (contact_point,); centre_offset (contact_point, 2) m.
+    arc_length: (contact_point,) m.
+    position: (contact_point, 3) m.
+    directions: (contact_point, 2, 3), unit vectors of the two directions in which contact acts.
+    weight: (contact_point,), share of the support's stiffness; sums to 1 per support.
+    support: (contact_point,) int, number of the support.
+    stiffness: (contact_point,) N/m.
+    gap_factor: (contact_point,), times the case's gap.
+    centre_offset: (contact_point, 2) m along the two directions.
     """
 
     arc_length: np.ndarray
@@ -32,11 +36,11 @@ class ContactPoints:
     centre_offset: np.ndarray
 
 
-def contact_arc_lengths(centreline, support):
-    """Return (contact_point,) arc lengths in m: evenly spaced over the height, both edges included;
-    a single point at mid-height.
+def contact_arc_lengths(centreline: Centreline, support: ConfigPart) -> np.ndarray:
+    """Return (contact_point,) arc lengths in m of a support's contact points.
 
-    Raises ValueError when the support is off the tube or reaches past one of its ends.
+    They are evenly spaced over the height of the support, both edges included; a single point is at
+    mid-height. Raises ValueError when the support is off the tube or reaches past one of its ends.
     """
     middle = centreline.locate(support.at_m, f"support {support.name}")
     if support.points == 1:
@@ -51,44 +55,38 @@ def contact_arc_lengths(centreline, support):
     return np.linspace(middle - half, middle + half, support.points)
 
 
-def place_contact_points(centreline, supports):
-    """Return the ContactPoints of `supports` (config entries) on the centreline.
+def place_contact_points(centreline: Centreline, supports: Sequence[ConfigPart]) -> ContactPoints:
+    """Return the ContactPoints of supports on a tube.
 
-    Raises ValueError when a list has another length than `points`, or supports overlap; the message
-    names the support.
+    supports: entries of the configuration.
+
+    Raises ValueError when a list has another length than the support's number of points, or when
+    supports overlap; the message names the support.
     """
+    if not supports:
+        return contacts_at_points(supports)
     places = [contact_arc_lengths(centreline, support) for support in supports]
     _require_apart(supports, places)
     stiffness = [_per_point(support, "stiffness_N_per_m", share=True) for support in supports]
-    arc_length = np.concatenate(places) if places else np.zeros(0)
-    directions = [transverse_directions(centreline.direction(place)) for place in arc_length]
+    arc_length = np.concatenate(places)
     return ContactPoints(
         arc_length=arc_length,
-        position=np.array([centreline.position(place) for place in arc_length]).reshape(-1, 3),
-        directions=np.array(directions).reshape(-1, 2, 3),
-        weight=(
-            np.concatenate([values / values.sum() for values in stiffness])
-            if stiffness
-            else np.zeros(0)
+        position=np.array([centreline.position(place) for place in arc_length]),
+        directions=np.array(
+            [transverse_directions(centreline.direction(place)) for place in arc_length]
         ),
+        weight=np.concatenate([values / values.sum() for values in stiffness]),
         support=np.repeat(np.arange(len(supports)), [len(points) for points in places]),
-        stiffness=np.concatenate(stiffness) if stiffness else np.zeros(0),
-        gap_factor=(
-            np.concatenate([_per_point(support, "gap_factor") for support in supports])
-            if stiffness
-            else np.zeros(0)
-        ),
-        centre_offset=(
-            np.concatenate([_offsets(support) for support in supports])
-            if stiffness
-            else np.zeros((0, 2))
-        ),
+        stiffness=np.concatenate(stiffness),
+        gap_factor=np.concatenate([_per_point(support, "gap_factor") for support in supports]),
+        centre_offset=np.concatenate([_offsets(support) for support in supports]),
     )
 
 
-def place_at_points(supports):
-    """Return the ContactPoints of supports at named points, one contact point each; directions x
-    and y, no position.
+def contacts_at_points(supports: Sequence[ConfigPart]) -> ContactPoints:
+    """Return the ContactPoints of supports at named points of a structure that is no tube.
+
+    Each support is one contact point that acts along x and y. Positions are zero.
     """
     stiffness = np.array([np.ravel(support.stiffness_N_per_m)[0] for support in supports])
     return ContactPoints(
@@ -105,9 +103,11 @@ def place_at_points(supports):
     )
 
 
-def contact_laws(supports, contact):
-    """Return the ContactLaws of the `contact` points of `supports` (config entries): totals of a
-    support are shared by its points.
+def contact_laws(supports: Sequence[ConfigPart], contact: ContactPoints) -> ContactLaws:
+    """Return the ContactLaws of the contact points of supports.
+
+    supports: entries of the configuration; totals of a support are shared by its points.
+    contact: their contact points.
     """
     columns = {
         column: np.array(
@@ -132,8 +132,9 @@ def contact_laws(supports, contact):
     return ContactLaws(
         **{name: np.reshape(values, len(contact.support)) for name, values in columns.items()},
         land_point=np.array([point for point, _ in lands], dtype=int),
+        # Rounded to exact zeros across a plane, so that the planes of motion stay uncoupled.
         land_normal=np.round(np.column_stack([np.cos(angles), np.sin(angles)]), 15),
-    )  # exactly 0 across, so that planes stay uncoupled
+    )
 
 
 def _lobes(key, factor=1.0):
@@ -155,9 +156,10 @@ LAW_COLUMNS = {
 }
 
 
-def _per_point(support, key, share=False):
-    """Return (contact_point,) values of `key`: a list as it is, a number repeated (or divided by
-    the points where `share`).
+def _per_point(support: ConfigPart, key: str, share: bool = False) -> np.ndarray:
+    """Return (contact_point,) values of a key that is a list or a number.
+
+    share: divide a number by the number of points.
     """
     given = np.asarray(getattr(support, key), dtype=float)
     if given.ndim == 0:
@@ -166,7 +168,7 @@ def _per_point(support, key, share=False):
     return given
 
 
-def _offsets(support):
+def _offsets(support: ConfigPart) -> np.ndarray:
     """Return (contact_point, 2) centre offsets in m along the two transverse directions."""
     given = np.asarray(support.centre_offset_m, dtype=float)
     if given.ndim == 1:
@@ -175,8 +177,8 @@ def _offsets(support):
     return given
 
 
-def _require_length(support, key, given):
-    """Raise ValueError unless `given` has one entry per contact point of `support`."""
+def _require_length(support: ConfigPart, key: str, given: np.ndarray) -> None:
+    """Raise ValueError unless there is one entry per contact point of a support."""
     if len(given) != support.points:
         raise ValueError(
             f"support {support.name}: {key} has {len(given)} values for {support.points} points:"
@@ -184,7 +186,7 @@ def _require_length(support, key, given):
         )
 
 
-def _require_apart(supports, places):
+def _require_apart(supports: Sequence[ConfigPart], places: list[np.ndarray]) -> None:
     """Raise ValueError when two supports share a stretch of the tube."""
     order = sorted(range(len(places)), key=lambda number: places[number][0])
     for lower, upper in zip(order[:-1], order[1:], strict=True):

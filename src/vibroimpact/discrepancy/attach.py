@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.campaign.file import CampaignError, support_ratios
 from vibroimpact.config.schema import Sensors
-from vibroimpact.excitation.force_vectors import turn_axis, turned
+from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.reduced_model import build_model
 
 NEAR_M = 5.0e-3  # farther from the structure is no place on it
@@ -48,7 +48,7 @@ def attach(config, campaign):
     )  # a force may act beside its stated direction, a sensor's direction is what it is
     angle = getattr(config.excitation, "turn_deg", 0.0)
     for number in range(campaign.sizes["channel"], len(places)) if angle else ():
-        acting[number] = turned(along[number], angle, turn_axis(config, places[number]))
+        acting[number] = turned_direction(along[number], angle, turn_axis(config, places[number]))
     shapes = np.einsum(
         "mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), acting
     )

@@ -6,8 +6,8 @@ import numpy as np
 import yaml
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.records import plain
-from vibroimpact.reduction.structural_modifications import with_factors
+from vibroimpact.records import plain_values
+from vibroimpact.reduction.structural_modifications import with_frequency_factors
 
 from .attach import attach
 
@@ -39,7 +39,7 @@ def updated_model(bench, decision, prepared):
         )
         lines.append(f"# Gains of the channels, measured over true: {gains}")
     values = values | {"study": f"{values['study']}_updated"}
-    return "\n".join([*lines, yaml.safe_dump(plain(values), sort_keys=False, width=140)])
+    return "\n".join([*lines, yaml.safe_dump(plain_values(values), sort_keys=False, width=140)])
 
 
 def computed_modes(values, campaign):
@@ -47,7 +47,7 @@ def computed_modes(values, campaign):
     computed, before frequency factors let some pass others.
     """
     computed = attach(check_config(values | {"mode_frequency_factors": []}, "model"), campaign)
-    return with_factors(computed.omega, values["mode_frequency_factors"])[1]
+    return with_frequency_factors(computed.omega, values["mode_frequency_factors"])[1]
 
 
 def with_nuisance(values, nuisance, computed):

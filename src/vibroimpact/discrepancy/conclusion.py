@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.records import plain, read_text, write_record, write_table, write_text
+from vibroimpact.records import plain_values, read_text, write_record, write_table, write_text
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,
@@ -462,7 +462,7 @@ def write_candidates(found, prepared, totals, folder, levels):
             "by_level": levels.get(row.candidate.name, []),
         }
         write_text(
-            json.dumps(plain(content), indent=1),
+            json.dumps(plain_values(content), indent=1),
             folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json",
         )
 

@@ -4,26 +4,31 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.records import read_variable
+from vibroimpact.records import read_numeric_variables
 
 TIME_NAMES = ("time", "t", "time_s")
 RATE_NAMES = ("Fs", "fs", "sampling_frequency", "sampling_frequency_Hz")
 
 
 class ForceFileError(Exception):
-    """A force file that can not be read; the message names the file, what is wrong and the
-    remedy.
-    """
+    """A force file that cannot be read; the message names it, what is wrong and the remedy."""
 
 
-def read_force(path, variable: str, sampling_frequency: float | None) -> tuple[np.ndarray, float]:
-    """Values (sample,) in N of one variable of a file, and their sampling frequency in Hz.
+def read_force(
+    path: str | Path, variable: str, sampling_frequency: float | None
+) -> tuple[np.ndarray, float]:
+    """Return (values (sample,) in N, sampling frequency in Hz) of one variable of a file.
 
-    netCDF (.nc): a variable of one dimension, rate from an attribute ``sampling_frequency`` or a
-    time coordinate; CSV (.csv): a header line with column names, rate from a column "time"; MATLAB
-    v5 (.mat): rate from ``Fs``. A sampling_frequency given by the caller is used when the file has
-    none and must agree when it has one. Raises ForceFileError: no such file or variable, unknown
-    kind, no rate, values that are not finite.
+    The file brings its sampling frequency:
+
+    - netCDF (.nc): an attribute `sampling_frequency`, or a time coordinate;
+    - CSV (.csv) with a header line: a column "time";
+    - MATLAB v5 (.mat): a variable `Fs`.
+
+    sampling_frequency: Hz, for a file that has none; it must agree where the file has one.
+
+    Raises ForceFileError when the file or variable is missing, its kind is unknown, it has no
+    sampling frequency or holds values that are not finite.
     """
     path = Path(path)
     readers = {".nc": _from_netcdf, ".csv": _from_csv, ".mat": _from_matlab}
@@ -47,14 +52,16 @@ def read_force(path, variable: str, sampling_frequency: float | None) -> tuple[n
             f"{path}: sampled at {rate:g} Hz, but excitation.sampling_frequency_Hz ="
             f" {sampling_frequency:g}: remove the key"
         )
-    if not (rate or sampling_frequency):
+    found = rate or sampling_frequency
+    if not found:
         raise ForceFileError(
             f"{path}: says no sampling frequency: give excitation.sampling_frequency_Hz"
         )
-    return values, float(rate or sampling_frequency)
+    return values, float(found)
 
 
 def _pick(path, known, variable):
+    """Return a variable among those known by name. Raises ForceFileError."""
     if variable not in known:
         raise ForceFileError(
             f"{path}: no variable '{variable}': it has {', '.join(sorted(known)) or 'none'}"
@@ -63,6 +70,7 @@ def _pick(path, known, variable):
 
 
 def _rate_of(time, path):
+    """Return the sampling frequency in Hz of evenly spaced times in s. Raises ForceFileError."""
     steps = np.diff(np.asarray(time, float).squeeze())
     if not np.all(steps > 0.0) or np.ptp(steps) > 1e-3 * np.mean(steps):
         raise ForceFileError(
@@ -72,7 +80,7 @@ def _rate_of(time, path):
 
 
 def _from_netcdf(path, variable):
-    known, attributes = read_variable(path)
+    known, attributes = read_numeric_variables(path)
     values = _pick(path, known, variable)
     rate = next((float(attributes[name]) for name in RATE_NAMES if name in attributes), None)
     time = next((known[name] for name in TIME_NAMES if name in known), None)
@@ -92,7 +100,7 @@ def _from_csv(path, variable):
 
 
 def _from_matlab(path, variable):
-    from scipy.io import loadmat  # imported here: half a second that other files do not need
+    from scipy.io import loadmat  # imported here: half a second that other formats save
 
     content = {name: value for name, value in loadmat(path).items() if not name.startswith("__")}
     rate = next((float(np.squeeze(content[name])) for name in RATE_NAMES if name in content), None)

@@ -1,49 +1,58 @@
-"""The force of a seed, piece by piece: any stretch of it at the integration step, without the whole
-record ever being held.
+"""The force of a seed, in blocks: any stretch of it at the integration step.
 
-A band-limited record is drawn as Fourier lines. Its values at every n-th step are the inverse
-transform of the same lines over a length n times shorter; the steps between follow by
-interpolation, exact to round-off because the short record is sampled several times faster than its
-band asks for. A block of steps always comes from the same arithmetic, so a step has the same bits
-in whatever stretch it is asked for.
+The whole record is never in memory. A band-limited record is drawn as Fourier lines. Its values at
+every n-th step are the inverse transform of the same lines over a length n times shorter. The steps
+between follow by interpolation, exact to round-off, because the short record is sampled several
+times faster than its band requires. A block always comes from the same arithmetic, so that a step
+has the same bits in every stretch.
 """
 
 from functools import lru_cache
 from math import fsum, pi
+from typing import Any
 
 import numpy as np
+
+from vibroimpact.config.stage_settings import ConfigPart
 
 from .force_files import read_force
 from .random_force import ForceError, noise_lines, resample_measured
 
-OVERSAMPLING = 5  # least rate of the short record, in units of the band's upper edge
-# of the interpolation; with OVERSAMPLING 5 a Kaiser window of this length leaves 1e-14 of the
-# images
+OVERSAMPLING = 5  # lowest rate of the short record, in units of the band's upper edge
+# Taps of the interpolation. With OVERSAMPLING 5 a Kaiser window of this length leaves 1e-14 of the
+# images of the band.
 TAPS = 40
 KAISER_BETA = 32.5
-BLOCK_STEPS = 25600  # about as many steps come from one block
-KEPT_BLOCKS = 3
+BLOCK_STEPS = 25600  # steps of a block, approximately for an interpolated record
+MAX_STORED_BLOCKS = 3
 
 
 class ForceStream:
-    """Force at rate [Hz] of RMS exactly 1 over the recorded samples, but for a sine or white noise,
-    which are 1 by law.
+    """A force at the integration rate, normalised to an RMS of 1 over the recorded samples.
 
-    excitation: the section of the configuration; generator: the seed's random stream (unused by a
-    measured force or a sine); samples: length; recorded: slice of the samples that are recorded;
-    first_time_s: time of the first sample, which a sine needs. Raises ForceError: a measured record
-    is too short or has no force in it.
+    A sine and white noise are not rescaled: their RMS is 1 by definition.
     """
 
     def __init__(
         self,
-        excitation,
-        generator,
+        excitation: ConfigPart,
+        generator: np.random.Generator | None,
         samples: int,
         rate: float,
         recorded: slice,
         first_time_s: float = 0.0,
-    ):
+    ) -> None:
+        """Prepare the blocks.
+
+        excitation: section of the configuration.
+        generator: random stream of the seed; not used by a measured force or a sine.
+        samples: length of the force.
+        rate: Hz.
+        recorded: slice of the samples that are recorded.
+        first_time_s: time of the first sample in s, for a sine.
+
+        Raises ForceError when a measured record is too short or zero.
+        """
         self._source = _source(excitation, generator, samples, rate, first_time_s)
         self._blocks: dict[int, np.ndarray] = {}
         self._scale = 1.0
@@ -60,34 +69,43 @@ class ForceStream:
             self._scale = 1.0 / rms
 
     def values(self, first: int, count: int) -> np.ndarray:
-        """The samples (count,) from the first one on."""
+        """Return the samples (count,) from the first one on."""
         out, size = np.empty(count), self._source.block_steps
         for index in range(first // size, (first + count - 1) // size + 1):
-            low, high = max(first, index * size), min(first + count, (index + 1) * size)
-            out[low - first : high - first] = self._block(index)[
-                low - index * size : high - index * size
-            ]
+            begin = index * size
+            low, high = max(first, begin), min(first + count, begin + size)
+            out[low - first : high - first] = self._block(index)[low - begin : high - begin]
         return out
 
     def _block(self, index):
         if index not in self._blocks:
-            while len(self._blocks) >= KEPT_BLOCKS:
+            while len(self._blocks) >= MAX_STORED_BLOCKS:
                 del self._blocks[min(self._blocks)]
             self._blocks[index] = self._source.block(index) * self._scale
         return self._blocks[index]
 
 
-def unit_force(
-    excitation, generator, samples: int, rate: float, recorded: slice, first_time_s: float = 0.0
+def normalised_force(
+    excitation: ConfigPart,
+    generator: np.random.Generator | None,
+    samples: int,
+    rate: float,
+    recorded: slice,
+    first_time_s: float = 0.0,
 ) -> np.ndarray:
-    """All samples (sample,) of the ForceStream with these arguments."""
-    return ForceStream(excitation, generator, samples, rate, recorded, first_time_s).values(
-        0, samples
-    )
+    """Return all samples (sample,) of the ForceStream with these arguments."""
+    stream = ForceStream(excitation, generator, samples, rate, recorded, first_time_s)
+    return stream.values(0, samples)
 
 
-def _source(excitation, generator, samples, rate, first_time_s):
-    """What makes the blocks of a kind of excitation."""
+def _source(
+    excitation: ConfigPart,
+    generator: Any,
+    samples: int,
+    rate: float,
+    first_time_s: float,
+) -> Any:
+    """Return the source of blocks of a kind of excitation."""
     source = excitation.signal if excitation.kind == "base_motion" else excitation
     if source.kind == "none":
         return _Formula(np.zeros_like, rate, 0.0)
@@ -109,12 +127,14 @@ def _source(excitation, generator, samples, rate, first_time_s):
             f" record need {samples / rate:.3f} s: lower integration.start_up_s or"
             " record.duration_s"
         )
-    return _Whole(values)
+    return _Stored(values)
 
 
 @lru_cache(maxsize=1)
-def _measured(path, variable, sampling_frequency, rate):
-    """A measured record at rate [Hz], and its duration in s; one copy serves all seeds."""
+def _measured(
+    path: str, variable: str, sampling_frequency: float | None, rate: float
+) -> tuple[np.ndarray, float]:
+    """Return (a measured record at rate [Hz], its duration in s); one copy serves all seeds."""
     values, measured_rate = read_force(path, variable, sampling_frequency)
     return resample_measured(values, measured_rate, rate), values.size / measured_rate
 
@@ -134,7 +154,7 @@ class _Formula:
 
 
 class _WhiteNoise:
-    """Independent Gaussian values, those that one call of the generator for all of them gives."""
+    """Independent Gaussian values, equal to those of a single call of the generator."""
 
     exact_rms, block_steps = False, BLOCK_STEPS
 
@@ -142,16 +162,16 @@ class _WhiteNoise:
         self._generator, self._states = generator, [generator.bit_generator.state]
 
     def block(self, index):
-        for known in range(min(index, len(self._states) - 1), index + 1):
-            self._generator.bit_generator.state = self._states[known]
+        for number in range(min(index, len(self._states) - 1), index + 1):
+            self._generator.bit_generator.state = self._states[number]
             values = self._generator.standard_normal(BLOCK_STEPS)
-            if known + 1 == len(self._states):
+            if number + 1 == len(self._states):
                 self._states.append(self._generator.bit_generator.state)
         return values
 
 
-class _Whole:
-    """A record that is held as it is: a measured force."""
+class _Stored:
+    """A record that is in memory as a whole: a measured force."""
 
     exact_rms, block_steps = True, BLOCK_STEPS
 
@@ -163,8 +183,9 @@ class _Whole:
 
 
 class _Interpolated:
-    """The inverse transform of lines (line,), the first of them line `first` of a record of
-    `length` steps, by way of a short record.
+    """The inverse transform of Fourier lines, by way of a short record.
+
+    lines: (line,) complex; the first of them is line `first` of a record of `length` steps.
     """
 
     exact_rms = True
@@ -182,13 +203,11 @@ class _Interpolated:
         spectrum[first : highest + 1] = lines
         values = np.fft.irfft(spectrum, short) * short
         self._rows = max(1, BLOCK_STEPS // factor)
-        # in front what the first steps' taps reach, behind what fills the last block: the record is
-        # periodic
+        # The record is periodic. It is extended in front by what the taps of the first steps need,
+        # and behind up to the end of the last block.
         if factor > 1:
-            values = values[
-                np.arange(1 - TAPS // 2, -(-short // self._rows) * self._rows + TAPS // 2 + 1)
-                % short
-            ]
+            end = -(-short // self._rows) * self._rows
+            values = values[np.arange(1 - TAPS // 2, end + TAPS // 2 + 1) % short]
         self._short = values
         self._weights = interpolation_weights(factor)
         self.block_steps = self._rows * factor
@@ -204,11 +223,11 @@ class _Interpolated:
 
 
 def interpolation_weights(factor: int) -> np.ndarray:
-    """Weights (TAPS, factor) of the short record's values -(TAPS / 2 - 1) .. TAPS / 2 in the factor
-    steps from value 0 on.
+    """Return (TAPS, factor): weights of the short record's values in the steps between two of them.
 
-    A sinc under a Kaiser window: passes up to 1/OVERSAMPLING of the short record's rate, stops from
-    1 - 1/OVERSAMPLING of it on, where the first image of the band begins.
+    Rows belong to the values -(TAPS / 2 - 1) .. TAPS / 2, columns to the `factor` steps from value
+    0 on. The weights are a sinc under a Kaiser window. It passes up to 1/OVERSAMPLING of the short
+    record's rate and stops from 1 - 1/OVERSAMPLING of it on, where the band's first image begins.
     """
     distance = np.arange(TAPS)[:, None] - (TAPS // 2 - 1) - np.arange(factor) / factor
     window = np.i0(

@@ -1,50 +1,65 @@
-"""Where the forces of a configuration act: rows over the degrees of freedom, and the mode that
-carries a moving base.
+"""Where the forces of a configuration act: force vectors over the degrees of freedom.
+
+A base that moves while the obstacles stay in space becomes one more mode.
 """
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from vibroimpact.config.name_checks import TUBES
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.geometry.directions import unit_vector
+from vibroimpact.structure.point_structure import PointStructure
+from vibroimpact.structure.tube import TubeStructure
 
+# Points and weights of Gauss quadrature on -1 to 1.
 GAUSS = (
     (-0.8611363115940526, 0.3478548451374538),
     (-0.3399810435848563, 0.6521451548625461),
     (0.3399810435848563, 0.6521451548625461),
     (0.8611363115940526, 0.3478548451374538),
 )
-# Amplitude of the base mode per metre of base: contact forces move the base by this squared times
-# what they move a kilogram.
+# Amplitude of the base mode per metre of base motion. A contact force moves the base by the square
+# of this times what it moves a mass of 1 kg.
 BASE_SCALE = 1.0e-7
 
 
-def force_row(structure, place, excitation, axis=(0.0, 0.0, 1.0)):
-    """Return (dof,) the force on each degree of freedom per newton of the case's force (per m/s²
-    for base motion; zeros for none).
+def force_vector(
+    structure: TubeStructure | PointStructure,
+    point_rows: Callable[[str], np.ndarray],
+    excitation: ConfigPart,
+    axis: Sequence[float] | np.ndarray = (0.0, 0.0, 1.0),
+) -> np.ndarray:
+    """Return (dof,) the force on each degree of freedom per newton of the case's force.
 
-    place: function name -> (3, dof) displacement rows of a named point; axis: see turn_axis.
+    For base motion it is per m/s²; for no excitation it is zero.
+
+    point_rows: function of a point's name that returns its displacement rows (3, dof).
+    excitation: section of the configuration.
+    axis: (3,), see turn_axis.
     """
     if excitation.kind == "none":
         return np.zeros(structure.dofs)
     if excitation.kind == "base_motion":
         return -unit_vector(excitation.direction) @ structure.inertia
-    row = excitation.factor * (
-        turned(excitation.direction, excitation.turn_deg, axis) @ place(excitation.point)
-    )
+    direction = turned_direction(excitation.direction, excitation.turn_deg, axis)
+    row = excitation.factor * (direction @ point_rows(excitation.point))
     for force in excitation.also:
-        row = row + force.factor * (unit_vector(force.direction) @ place(force.point))
+        row = row + force.factor * (unit_vector(force.direction) @ point_rows(force.point))
     for load in excitation.distributed:
         row = row + load.factor_per_m * line_load(structure, load)
     return row
 
 
-def turn_axis(config, position):
-    """Return the unit vector (3,) about which the force of a configuration at a position (3,) in m
-    is turned: z, or the tube's tangent there.
+def turn_axis(config: ConfigPart, position: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Return the unit vector (3,) about which the force at a position (3,) in m is turned.
 
-    Raises ValueError for the tangent of a structure that is no tube, or off it.
+    It is z, or the tangent of the tube there. Raises ValueError for the tangent of a structure that
+    is no tube, or off it.
     """
     if getattr(config.excitation, "turn_about", "z") == "z" or config.excitation.turn_deg == 0.0:
         return np.array([0.0, 0.0, 1.0])
@@ -56,9 +71,17 @@ def turn_axis(config, position):
     return centreline.direction(centreline.locate(position, "the force"))
 
 
-def turned(direction, angle_deg, axis=(0.0, 0.0, 1.0)):
-    """Return the unit vector (3,) along a direction turned about an axis (unit vector) by an angle
-    in degrees, right-handed; the same bits where the angle is 0.
+def turned_direction(
+    direction: Sequence[float] | np.ndarray,
+    angle_deg: float,
+    axis: Sequence[float] | np.ndarray = (0.0, 0.0, 1.0),
+) -> np.ndarray:
+    """Return the unit vector (3,) along a direction turned about an axis, right-handed.
+
+    An angle of 0 leaves the bits of the direction unchanged.
+
+    angle_deg: degrees.
+    axis: (3,) unit vector.
     """
     vector = unit_vector(direction)
     if angle_deg == 0.0:
@@ -66,14 +89,13 @@ def turned(direction, angle_deg, axis=(0.0, 0.0, 1.0)):
     return Rotation.from_rotvec(np.deg2rad(angle_deg) * np.asarray(axis, float)).apply(vector)
 
 
-def line_load(structure, load):
-    """Return (dof,) the force of 1 N/m along load.direction between two places of the tube,
-    consistent with its elements.
+def line_load(structure: TubeStructure | PointStructure, load: ConfigPart) -> np.ndarray:
+    """Return (dof,) the consistent nodal force of 1 N/m between two places of the tube.
 
-    Four Gauss points on each stretch between nodes. Raises ValueError when a place is off the tube
-    or the structure is no tube.
+    It acts along load.direction, from load.from_m to load.to_m. Each stretch between nodes has four
+    Gauss points. Raises ValueError when a place is off the tube or the structure is no tube.
     """
-    if not hasattr(structure, "centreline"):
+    if not isinstance(structure, TubeStructure):
         raise ValueError(
             "excitation.distributed needs a tube (structure.kind u_tube or path): use"
             " excitation.also"
@@ -90,33 +112,35 @@ def line_load(structure, load):
     for begin, end in zip(stretches[:-1], stretches[1:], strict=True):
         half = 0.5 * (end - begin)
         for at, weight in GAUSS:
-            row += (
-                weight
-                * half
-                * (
-                    unit_vector(load.direction)
-                    @ structure.displacement_rows(begin + half * (1.0 + at))
-                )
-            )
+            rows = structure.displacement_rows(begin + half * (1.0 + at))
+            row += weight * half * (unit_vector(load.direction) @ rows)
     return row
 
 
-def dead_load(structure, place, excitation):
+def constant_force_vector(
+    structure: TubeStructure | PointStructure,
+    point_rows: Callable[[str], np.ndarray],
+    excitation: ConfigPart,
+) -> np.ndarray:
     """Return (dof,) the constant force in N on each degree of freedom."""
     rows = [
-        load.force_N * (unit_vector(load.direction) @ place(load.point))
+        load.force_N * (unit_vector(load.direction) @ point_rows(load.point))
         for load in excitation.constant
     ]
     return np.sum(rows, axis=0) if rows else np.zeros(structure.dofs)
 
 
-def with_base_mode(fields, excitation, initial):
-    """Return the fields of a ModalModel with one mode more in front: the motion of the base, seen
-    by obstacles that stay in space.
+def with_base_mode(
+    fields: dict[str, Any], excitation: ConfigPart, initial: ConfigPart | None
+) -> dict[str, Any]:
+    """Return the fields of a ModalModel with one more mode in front: the motion of the base.
 
-    The mode has no stiffness; the case's acceleration drives it alone, and its share BASE_SCALE in
-    the contact shapes turns relative displacements into absolute ones (the large mass method).
-    fields: {name: array} with the mode axis first.
+    The obstacles stay in space. The mode has no stiffness, and only the case's acceleration drives
+    it. Its share BASE_SCALE in the contact shapes turns relative displacements into absolute ones
+    (the large mass method).
+
+    fields: {name: array} of a ModalModel, with the mode axis first.
+    excitation, initial: sections of the configuration.
     """
     direction = unit_vector(excitation.direction)
     moved = fields["contact_directions"] @ direction  # (contact_point, 2)

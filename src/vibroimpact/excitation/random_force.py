@@ -1,21 +1,23 @@
-"""Forces: band-limited Gaussian records of exact RMS, and measured records resampled to the
-integration step.
-"""
+"""Band-limited Gaussian forces, and measured records resampled to the integration step."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
-EDGE_S = 0.25  # odd reflection added at both ends of a measured record before resampling
+EDGE_S = 0.25  # length of the odd reflection at each end of a measured record
 
 
 class ForceError(Exception):
-    """A force that can not be used; the message names the file, the value and the remedy."""
+    """A force that cannot be used; the message names the file, the value and the remedy."""
 
 
 def band_limited_noise(
-    generator: np.random.Generator, samples: int, rate: float, band
+    generator: np.random.Generator, samples: int, rate: float, band: Sequence[float]
 ) -> np.ndarray:
-    """Gaussian noise (sample,) with a flat PSD inside band (low, high) [Hz] and nothing outside, at
-    rate [Hz]; RMS near 1.
+    """Return Gaussian noise (sample,) with a flat PSD inside a band and RMS near 1.
+
+    rate: Hz.
+    band: (low, high) in Hz; the PSD is zero outside.
 
     Raises ForceError when the band holds no line.
     """
@@ -26,17 +28,16 @@ def band_limited_noise(
 
 
 def noise_lines(
-    generator: np.random.Generator, samples: int, rate: float, band
+    generator: np.random.Generator, samples: int, rate: float, band: Sequence[float]
 ) -> tuple[np.ndarray, int, int]:
-    """(lines (line,), number of the first one, length of the period in samples): Fourier lines of
-    noise as in band_limited_noise.
+    """Return (lines (line,), number of the first one, period in samples) of band-limited noise.
 
-    The noise is the real part of the sum of 2 lines exp(2 pi i number n / length) over n.
-    Independent complex Gaussian lines (Shinozuka & Deodatis 1991, random amplitudes). Raises
-    ForceError when the band holds no line.
+    The noise is the real part of the sum over n of 2 lines_n exp(2 pi i n t / period), t the sample
+    number. The lines are independent complex Gaussian numbers (Shinozuka and Deodatis 1991, random
+    amplitudes). Arguments and ForceError as for band_limited_noise.
     """
-    length = fast_length(samples)
-    low, high = (int(np.ceil(band[0] * length / rate)), int(np.floor(band[1] * length / rate)))
+    length = fft_length(samples)
+    low, high = int(np.ceil(band[0] * length / rate)), int(np.floor(band[1] * length / rate))
     if high < low or low < 1 or high >= length // 2:
         raise ForceError(
             f"band {band[0]:g}-{band[1]:g} Hz holds no line between 0 and {rate / 2:g} Hz: give"
@@ -47,8 +48,8 @@ def noise_lines(
     return lines * (0.5 / np.sqrt(count)), low, length
 
 
-def fast_length(samples: int) -> int:
-    """The smallest 2^a 3^b 5^c that is at least ``samples``, a length that an FFT likes."""
+def fft_length(samples: int) -> int:
+    """Return the smallest 2^a 3^b 5^c that is at least `samples`: a fast length of an FFT."""
     best = 2 ** (samples - 1).bit_length()
     for threes in range(11):
         for fives in range(8):
@@ -58,10 +59,11 @@ def fast_length(samples: int) -> int:
 
 
 def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> np.ndarray:
-    """A measured record (sample,) taken as band-limited, at another rate [Hz].
+    """Return a measured record (sample,), taken as band-limited, at another rate in Hz.
 
-    By FFT between odd, tapered reflections of the ends, so that the ends do not ring into each
-    other; a few last samples are dropped when the ratio of the rates asks for it.
+    The FFT runs over the record between odd, tapered reflections of its ends, so that the ends do
+    not ring into each other. A few last samples are dropped where the ratio of the rates requires
+    it.
     """
     edge = int(np.ceil(EDGE_S * from_rate))
     padded = np.pad(values.astype(float), edge, mode="reflect", reflect_type="odd")
@@ -77,8 +79,8 @@ def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> n
     new_length = round(length * to_rate / from_rate)
     spectrum = np.fft.rfft(padded[:length])
     resized = np.zeros(new_length // 2 + 1, complex)
-    kept = min(spectrum.size, resized.size)
-    resized[:kept] = spectrum[:kept]
+    count = min(spectrum.size, resized.size)
+    resized[:count] = spectrum[:count]
     first = round(edge * to_rate / from_rate)
     last = first + round(values.size * to_rate / from_rate)
     return np.fft.irfft(resized, new_length)[first:last] * (new_length / length)

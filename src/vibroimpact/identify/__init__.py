@@ -1,3 +1,1 @@
-"""Identification of an equivalent linear support: features of a response -> stiffness k and damping
-c of a bilateral support.
-"""
+"""The equivalent linear support of a response: stiffness k and damping c of a bilateral support."""

@@ -1,6 +1,8 @@
-"""One estimate of the equivalent support by one method, and when it may be believed."""
+"""The estimate of an equivalent support by one method, and its quality."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -8,26 +10,24 @@ PEAK_METHODS = ("peak_half", "peak_quarter", "peak_25th")
 METHODS = (*PEAK_METHODS, "lscf", "ods", "broadband", "statistical_linearisation", "secant")
 QUALITIES = ("ok", "weak", "unresolved")
 
-FREQUENCY_ERROR = (
-    0.003  # one-sigma relative error of a model's modal frequency, nothing else being wrong with it
-)
-# A stiffness is told from none at all when it exceeds what the model's error gives at two sigma and
-# chance at four: a study reads hundreds of cases, and at k = 0 none of them may claim a support.
+# Relative standard error of the modal frequencies of a model that is otherwise right.
+FREQUENCY_ERROR = 0.003
+# A stiffness differs from zero when it exceeds two standard errors of the model plus four of
+# chance. Four, because a study has hundreds of cases and at k = 0 none of them may claim a support.
 MODEL_SIGMAS, CHANCE_SIGMAS = 2.0, 4.0
-WEAK_ABOVE, UNRESOLVED_ABOVE = (
-    0.25,
-    0.5,
-)  # relative standard error, model's and statistical together
+# Relative standard error of k, of the model and of chance together.
+WEAK_ABOVE, UNRESOLVED_ABOVE = 0.25, 0.5
 
 
 @dataclass(frozen=True)
 class Estimate:
     """Equivalent support of one case by one method.
 
-    k (N/m) and c (N s/m) per support, NaN where unresolved, with their statistical standard errors;
-    c comes on top of the modal damping and may be negative. frequency (Hz, undamped) and
-    damping_ratio of the pole behind it, NaN where there is none. quality: ok, weak or unresolved,
-    and note says why; it judges k with the model's error included.
+    k, k_standard_error: N/m per support; NaN where unresolved.
+    c, c_standard_error: N s/m, on top of the modal damping; may be negative.
+    frequency, damping_ratio: of the pole behind the estimate (Hz, undamped); NaN for none.
+    quality: ok, weak or unresolved. It judges k with the error of the model included.
+    note: the reason for the quality.
     """
 
     method: str
@@ -41,8 +41,10 @@ class Estimate:
     note: str = ""
 
 
-def unresolved(method, note, frequency=np.nan, damping_ratio=np.nan):
-    """Return an Estimate that claims nothing but the pole it may have."""
+def unresolved(
+    method: str, note: str, frequency: float = np.nan, damping_ratio: float = np.nan
+) -> Estimate:
+    """Return an unresolved Estimate, with the pole it may have."""
     return Estimate(
         method,
         np.nan,
@@ -54,59 +56,57 @@ def unresolved(method, note, frequency=np.nan, damping_ratio=np.nan):
     )
 
 
-def graded(estimate, model_error, model_error_free, stiffness_range, c_error_limit=np.inf):
-    """Return the estimate with its quality: k and c become NaN where they are not resolved.
+def grade(
+    estimate: Estimate,
+    model_error: float,
+    model_error_at_zero: float,
+    stiffness_range: Sequence[float],
+    c_error_limit: float = np.inf,
+) -> Estimate:
+    """Return the estimate with its quality; k and c become NaN where they are not resolved.
 
-    model_error: standard error of k (N/m) that an imperfect model causes at the estimate;
-    model_error_free: the same near k = 0. stiffness_range (N/m): where the method looked.
-    c_error_limit: standard error of c (N s/m) above which c is not resolved.
+    model_error: standard error of k in N/m that an imperfect model causes.
+    model_error_at_zero: the same near k = 0.
+    stiffness_range: N/m, where the method searched.
+    c_error_limit: standard error of c in N s/m above which c is not resolved.
     """
     k, error = estimate.k, np.hypot(estimate.k_standard_error, model_error)
+    pole = (estimate.frequency, estimate.damping_ratio)
     if not np.isfinite(k) or not np.isfinite(error):
-        return unresolved(
-            estimate.method,
-            _joined("no finite support has this feature", estimate.note),
-            estimate.frequency,
-            estimate.damping_ratio,
-        )
-    # Both errors come from the same sensitivity: what chance would have done near k = 0 scales as
-    # the model's error does.
-    chance = estimate.k_standard_error * min(1.0, model_error_free / model_error)
-    floor = MODEL_SIGMAS * model_error_free + CHANCE_SIGMAS * chance
+        note = _joined("no finite support has this feature", estimate.note)
+        return unresolved(estimate.method, note, *pole)
+    # Both errors have the same sensitivity, so the statistical error near k = 0 scales as the
+    # model's error does.
+    chance = estimate.k_standard_error * min(1.0, model_error_at_zero / model_error)
+    floor = MODEL_SIGMAS * model_error_at_zero + CHANCE_SIGMAS * chance
     reason = ""
     if k < floor:
-        reason = f"k = {k:.3g} N/m can not be told from 0 (least {floor:.3g})"
+        reason = f"k = {k:.3g} N/m cannot be told from 0 (least {floor:.3g})"
     elif not stiffness_range[0] <= k <= stiffness_range[1]:
         reason = f"k = {k:.3g} N/m is outside the range"
     elif error > UNRESOLVED_ABOVE * k:
         reason = f"standard error {error / k:.0%} of k"
     if reason:
-        return unresolved(
-            estimate.method,
-            _joined(reason, estimate.note),
-            estimate.frequency,
-            estimate.damping_ratio,
-        )
+        return unresolved(estimate.method, _joined(reason, estimate.note), *pole)
     if error > WEAK_ABOVE * k:
-        estimate = weakened(estimate, f"standard error {error / k:.0%} of k")
+        estimate = mark_weak(estimate, f"standard error {error / k:.0%} of k")
     if estimate.c_standard_error > c_error_limit:
-        note = _joined(
-            f"c = {estimate.c:.3g} +- {estimate.c_standard_error:.2g} N s/m not resolved",
-            estimate.note,
-        )
+        reason = f"c = {estimate.c:.3g} +- {estimate.c_standard_error:.2g} N s/m not resolved"
+        note = _joined(reason, estimate.note)
         estimate = replace(estimate, c=np.nan, c_standard_error=np.nan, note=note)
     return estimate
 
 
-def weakened(estimate, note):
-    """Return the estimate with quality weak and a note why; an unresolved one stays unresolved."""
+def mark_weak(estimate: Estimate, note: str) -> Estimate:
+    """Return the estimate with quality weak and a note; an unresolved one stays unresolved."""
     quality = "weak" if estimate.quality == "ok" else estimate.quality
     return replace(estimate, quality=quality, note=_joined(estimate.note, note))
 
 
-def table_rows(estimates, attributes):
-    """Return one dict per Estimate with the columns of consistency.csv. attributes: gap_m (m),
-    load_rms_N (N), seed of the case.
+def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> list[dict]:
+    """Return one dict per Estimate with the columns of consistency.csv.
+
+    attributes: gap_m (m), load_rms_N (N) and seed of the case.
     """
     rows = []
     for estimate in estimates:

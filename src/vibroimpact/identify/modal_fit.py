@@ -1,49 +1,56 @@
-"""Real modes, scaled by the drive point, fitted to measured responses at the lines of a spectrum:
-start by LSCF, then least squares.
+"""Real modes, scaled by the drive point, fitted to frequency responses at spectral lines.
 
-The error that is minimised is that of the response, relative to the RMS of each channel and record
-over the band: what a prediction is judged by. Noise is far below the distortion of the structures
-at hand, so that a line counts by its size.
+The start comes from LSCF, the result from least squares. The residual is the error of the response
+relative to its RMS over the band, per channel and record, because a prediction is judged by it.
+Noise is far below the distortion of the structures at hand, so a line counts by its size.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from vibroimpact.least_squares import minimise
 from vibroimpact.reduction.modal_structure import IdentifiedModes
+from vibroimpact.spectra.periodic_lines import LevelLines
 
-from .stable_modes import stable_poles
+from .stabilisation import StabilisationChart
+from .stable_poles import stable_poles
 
 BELOW, ABOVE = 0.4, 1.35  # residual modes, times the ends of the band
 RESIDUAL_RATIOS = (0.2, 0.01)
-NEGLIGIBLE = (
-    0.005  # of the response of a channel: a mode with less of it in every channel is left out
-)
-SMALL_SHAPE = (
-    1.0e-3  # of the largest drive shape: a mode that the drive hardly moves still has some
-)
-# Of the relative error, so that what the record does not show stays near the start: per shape as
-# large as all modes together, per relative change of a frequency (a residual mode's counts for a
-# tenth), and per change of a damping ratio by a factor of e.
+# A mode with less than this fraction of the response in every channel is left out.
+NEGLIGIBLE = 0.005
+# Least drive shape of a mode that the drive hardly moves, as a fraction of the largest.
+SMALL_SHAPE = 1.0e-3
+# Penalties in units of the relative error: per shape as large as all modes together, per relative
+# change of a frequency (a tenth of it for residual modes), and per change of a damping ratio by a
+# factor of e. They keep what the record does not show near the start.
 RIDGE, FREQUENCY_RIDGE, RATIO_RIDGE = 3.0e-3, 0.4, 0.01
 
 
-def identify_modes(level, band_Hz, kinds, names, drive, residuals=(True, True)):
-    """Return (IdentifiedModes, chart) of one LevelLines over a band: poles by LSCF, residues by
-    least squares, then all refined together.
+def identify_modes(
+    level: LevelLines,
+    band_Hz: Sequence[float],
+    kinds: Sequence[str],
+    names: Sequence[str],
+    drive: int,
+    residuals: tuple[bool, bool] = (True, True),
+) -> tuple[IdentifiedModes, StabilisationChart]:
+    """Return (IdentifiedModes, chart) of one record over a band.
 
-    residuals: whether modes stand in for what is (below, above) the band. Raises ValueError when no
-    pole is stable.
+    Poles come from LSCF, residues from linear least squares; then all are refined together.
+
+    kinds, names, drive: of the channels, see IdentifiedModes.
+    residuals: whether residual modes stand for what is (below, above) the band.
+
+    Raises ValueError when no pole is stable.
     """
     excited = level.excited(band_Hz)
     frequency = level.frequency[excited]
     response = level.response[:, excited] / level.force[excited]
-    weighted = (
-        response
-        * np.abs(level.force[excited])
-        / np.sqrt(np.mean(np.abs(level.force[excited]) ** 2))
-    )
+    size = np.abs(level.force[excited])
+    weighted = response * size / np.sqrt(np.mean(size**2))
     scale = np.sqrt(np.mean(np.abs(weighted) ** 2, axis=1, keepdims=True))
     places, ratios, chart = stable_poles(frequency, response / scale)
     if places.size == 0:
@@ -52,67 +59,66 @@ def identify_modes(level, band_Hz, kinds, names, drive, residuals=(True, True)):
             " force measured, and the band excited?"
         )
     residual = np.zeros(places.size, bool)
-    for wanted, place, ratio in zip(
-        residuals,
-        (BELOW * max(band_Hz[0], 0.2 * places[0]), ABOVE * band_Hz[1]),
-        RESIDUAL_RATIOS,
-        strict=True,
-    ):
+    outside = (BELOW * max(band_Hz[0], 0.2 * places[0]), ABOVE * band_Hz[1])
+    for wanted, place, ratio in zip(residuals, outside, RESIDUAL_RATIOS, strict=True):
         if wanted:
-            places, ratios, residual = (
-                np.append(places, place),
-                np.append(ratios, ratio),
-                np.append(residual, True),
-            )
+            places = np.append(places, place)
+            ratios = np.append(ratios, ratio)
+            residual = np.append(residual, True)
     start = IdentifiedModes(
-        places,
-        ratios,
-        np.ones((places.size, len(response))),
-        drive,
-        tuple(kinds),
-        tuple(names),
-        residual,
+        frequency=places,
+        damping_ratio=ratios,
+        shapes=np.ones((places.size, len(response))),
+        drive=drive,
+        kinds=tuple(kinds),
+        names=tuple(names),
+        residual=residual,
     )
     weight = np.abs(level.force[excited])
     start = with_residues(start, frequency, response, weight)
-    start = with_residues(
-        _without_small(start, frequency, response, weight), frequency, response, weight
-    )
+    start = _without_small(start, frequency, response, weight)
+    start = with_residues(start, frequency, response, weight)
     return refine_modes(start, [level], band_Hz).sorted(), chart
 
 
-def _without_small(modes, frequency, response, weight):
-    """The modes without those whose part of the response is negligible in every channel: poles that
-    the estimator spent on noise.
+def _without_small(
+    modes: IdentifiedModes, frequency: np.ndarray, response: np.ndarray, weight: np.ndarray
+) -> IdentifiedModes:
+    """Return the modes whose part of the response is not negligible in every channel.
+
+    The others are poles that the estimator fitted to noise.
     """
-    parts = (
-        modes.observed(frequency)[:, None]
-        * (modes.shapes * modes.shapes[:, [modes.drive]]).T[:, :, None]
-        * modes.receptance(frequency)
-        * weight
-    )
-    share = np.sqrt(
-        np.sum(np.abs(parts) ** 2, axis=2)
-        / np.sum(np.abs(response * weight) ** 2, axis=1, keepdims=True)
-    ).max(axis=0)
-    kept = (share > NEGLIGIBLE) | modes.residual
+    residues = (modes.shapes * modes.shapes[:, [modes.drive]]).T[:, :, None]
+    factors = modes.sensor_factors(frequency)[:, None]
+    parts = factors * residues * modes.receptance(frequency) * weight
+    power = np.sum(np.abs(parts) ** 2, axis=2)
+    total = np.sum(np.abs(response * weight) ** 2, axis=1, keepdims=True)
+    large = (np.sqrt(power / total).max(axis=0) > NEGLIGIBLE) | modes.residual
     return replace(
         modes,
-        **{
-            name: getattr(modes, name)[kept]
-            for name in ("frequency", "damping_ratio", "shapes", "residual")
-        },
+        frequency=modes.frequency[large],
+        damping_ratio=modes.damping_ratio[large],
+        shapes=modes.shapes[large],
+        residual=modes.residual[large],
     )
 
 
-def with_residues(modes, frequency, response, weight):
-    """Return the modes with shapes from a linear least-squares fit of their residues to response
-    (channel, line), weighted by line.
+def with_residues(
+    modes: IdentifiedModes, frequency: np.ndarray, response: np.ndarray, weight: np.ndarray
+) -> IdentifiedModes:
+    """Return the modes with shapes from a linear least-squares fit of their residues.
+
+    frequency: (line,) Hz.
+    response: (channel, line) per unit force.
+    weight: (line,).
     """
-    columns, observed = modes.receptance(frequency).T * weight[:, None], modes.observed(frequency)
+    columns, factors = (
+        modes.receptance(frequency).T * weight[:, None],
+        modes.sensor_factors(frequency),
+    )
     products = np.empty((modes.modes, len(response)))
     for channel, values in enumerate(response):
-        matrix, wanted = columns * observed[channel][:, None], values * weight
+        matrix, wanted = columns * factors[channel][:, None], values * weight
         products[:, channel] = np.linalg.lstsq(
             np.vstack([matrix.real, matrix.imag]),
             np.concatenate([wanted.real, wanted.imag]),
@@ -125,10 +131,13 @@ def with_residues(modes, frequency, response, weight):
     return replace(modes, shapes=shapes)
 
 
-def refine_modes(modes, levels, band_Hz, passes=60):
-    """Return the modes that make the relative error over all LevelLines least, from a start, by
-    Levenberg-Marquardt.
-    """
+def refine_modes(
+    modes: IdentifiedModes,
+    levels: Sequence[LevelLines],
+    band_Hz: Sequence[float],
+    passes: int = 60,
+) -> IdentifiedModes:
+    """Return the modes of least relative error over all records, by Levenberg-Marquardt."""
     weights, wanted = zip(*(_weighted(level, band_Hz) for level in levels), strict=True)
     grids = [level.frequency[level.excited(band_Hz)] for level in levels]
     ridge = Ridge(modes)
@@ -152,13 +161,15 @@ def refine_modes(modes, levels, band_Hz, passes=60):
 
 
 class Ridge:
-    """What holds values to their start where the records do not: weight (value,) and error(values)
-    (value,), in relative error.
+    """A penalty that holds values near their start where the records do not determine them.
 
-    Shapes are held to nothing instead, so that they do not grow without being seen.
+    Shapes are held near zero instead, so that they do not grow unobserved.
+
+    weight: (value,).
+    start: (value,).
     """
 
-    def __init__(self, modes):
+    def __init__(self, modes: IdentifiedModes) -> None:
         count, size = modes.modes, np.sqrt(np.sum(modes.shapes[~modes.residual] ** 2))
         frequency = np.where(modes.residual, 0.1, 1.0) * FREQUENCY_RIDGE
         self.weight = np.concatenate(
@@ -166,12 +177,12 @@ class Ridge:
         )
         self.start = np.concatenate([pack(modes)[: 2 * count], np.zeros(modes.shapes.size)])
 
-    def error(self, values):
-        """Return (value,) of values as `pack` orders them, those behind left out."""
+    def error(self, values: np.ndarray) -> np.ndarray:
+        """Return the residuals (value,) of values in the order of `pack`; ignore further ones."""
         return self.weight * (values[: self.start.size] - self.start)
 
 
-def pack(modes):
+def pack(modes: IdentifiedModes) -> np.ndarray:
     """Return (value,): logarithms of frequencies and damping ratios, then the shapes."""
     return np.concatenate(
         [
@@ -182,8 +193,8 @@ def pack(modes):
     )
 
 
-def unpack(values, modes):
-    """Return the IdentifiedModes of values as `pack` orders them."""
+def unpack(values: np.ndarray, modes: IdentifiedModes) -> IdentifiedModes:
+    """Return the IdentifiedModes of values in the order of `pack`."""
     count = modes.modes
     shapes = values[2 * count : 2 * count + modes.shapes.size].reshape(modes.shapes.shape)
     return replace(
@@ -194,9 +205,12 @@ def unpack(values, modes):
     )
 
 
-def relative_errors(predicted, level, band_Hz):
-    """Return (channel,) RMS of measured minus predicted response over the RMS measured; predicted
-    (channel, excited line).
+def relative_errors(
+    predicted: np.ndarray, level: LevelLines, band_Hz: Sequence[float]
+) -> np.ndarray:
+    """Return (channel,) RMS of measured minus predicted response over the measured RMS.
+
+    predicted: (channel, excited line).
     """
     inside = level.excited(band_Hz)
     weight = np.where(level.frequency[inside] == 0.0, 1.0, 2.0)
@@ -204,39 +218,32 @@ def relative_errors(predicted, level, band_Hz):
     return np.sqrt(missed / np.sum(weight * np.abs(level.response[:, inside]) ** 2, axis=1))
 
 
-def channel_scale(level, band_Hz):
-    """Return (channel, 1) RMS-like size of the response over the excited lines, in the unit of the
-    line amplitudes.
-    """
+def channel_scale(level: LevelLines, band_Hz: Sequence[float]) -> np.ndarray:
+    """Return (channel, 1) root of the summed squares of the response over the excited lines."""
     return np.sqrt(
         np.sum(np.abs(level.response[:, level.excited(band_Hz)]) ** 2, axis=1, keepdims=True)
     )
 
 
-def _weighted(level, band_Hz):
-    """Return (weight (channel, line), wanted (channel, line)): force and response over the
-    channel's size.
-    """
+def _weighted(level: LevelLines, band_Hz: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Return (force, response), each (channel, line), over the size of the channel."""
     inside, scale = level.excited(band_Hz), channel_scale(level, band_Hz)
     return level.force[inside] / scale, level.response[:, inside] / scale
 
 
-def _derivatives(modes, frequency, weight):
-    """Return (channel * line, value) derivatives of the weighted response with respect to
-    `pack`.
-    """
+def _derivatives(modes: IdentifiedModes, frequency: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Return (channel * line, value) derivatives of the weighted response by `pack`."""
     laplace = 2j * np.pi * frequency
     receptance = modes.receptance(frequency)
-    observed = modes.observed(frequency)
+    factors = modes.sensor_factors(frequency)
     count, channels = modes.shapes.shape
     drive = modes.shapes[:, modes.drive]
     omega, damping = modes.omega[:, None], modes.damping[:, None]
-    by_frequency = -(receptance**2) * (
-        laplace * damping + 2.0 * omega**2
-    )  # damping = 2 zeta omega rises with omega
+    # damping = 2 zeta omega rises with omega
+    by_frequency = -(receptance**2) * (laplace * damping + 2.0 * omega**2)
     by_damping = -(receptance**2) * laplace * damping
     out = np.zeros((channels, frequency.size, 2 * count + count * channels), complex)
-    seen = observed * weight
+    seen = factors * weight
     for channel in range(channels):
         product = (modes.shapes[:, channel] * drive)[:, None]
         out[channel, :, :count] = (product * by_frequency * seen[channel]).T

@@ -1,22 +1,26 @@
-"""Shape identification: the stiffness whose linear tube has the operational deflection shape (ODS)
-of the record.
+"""Shape identification: the stiffness whose linear tube has the measured deflection shape.
 
-The ODS is the first singular vector of the segment spectra over the band where the PSD is above
-1/25 of its main peak (Thénint et al. 2012, §4.2). Departure from the paper: it is compared not with
-the first mode's shape but with the linear tube's own ODS in the same band. In that band the other
-modes still take a part in the motion; taken for a part of the first mode's shape it moves k by 1 to
-16 % on exact spectra.
+The operational deflection shape (ODS) is the first singular vector of the segment spectra over the
+band where the PSD is above 1/25 of its main peak (Thénint et al. 2012, section 4.2).
 
-A shape carries no damping: c is not identified. The damping that the linear tube needs for its own
-ODS (it sets how much the flanks of the band weigh against its top) is that of the width of the peak
-that set the band.
+Departure from the paper: it is compared not with the shape of the first mode but with the linear
+tube's own ODS in the same band. Other modes take part in the motion of that band. Ascribed to the
+first mode they change k by 1 to 16 % on exact spectra.
+
+A shape carries no damping, so c is not identified. The linear tube's ODS needs a damping, which
+weighs the flanks of the band against its top. It is that of the width of the peak that set the
+band.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-# one-sigma error of a sensor's gain, from which the uncertainty of the model's shape follows
+from vibroimpact.linear.family import FamilyResponse
+
+# Relative standard error of a sensor's gain. The uncertainty of the model's shape follows from it.
 GAIN_ERROR = 0.02
 STEP = 0.02  # of ln k, for derivatives
 MATCH_STEPS = 12
@@ -26,9 +30,12 @@ SETTLED = 1.0e-4
 
 @dataclass(frozen=True)
 class DeflectionShape:
-    """shape (line_point,) complex, of unit length; singular_values (value,) relative to the first;
-    segment_shapes (segment, line_point) are the shapes of the record without one segment; band_Hz
-    the band.
+    """The operational deflection shape of a record.
+
+    shape: (line_point,) complex, of unit length.
+    singular_values: (value,) relative to the first.
+    segment_shapes: (segment, line_point), shapes of the record without one segment.
+    band_Hz: the band.
     """
 
     shape: np.ndarray
@@ -39,10 +46,14 @@ class DeflectionShape:
 
 @dataclass(frozen=True)
 class ShapeMatch:
-    """k (N/m) of the largest MAC, that MAC, model_error (relative, of 2 % sensor gains),
-    segment_changes (segment,) of ln k when a segment is left out, damping_change of ln k when the
-    peak's damping is one standard error higher; k_grid (k,) and mac_grid (k,): MAC with the first
-    mode's shapes, as the paper has it.
+    """The member of the family whose ODS agrees best.
+
+    k: N/m, of the largest MAC.
+    mac: that MAC.
+    model_error: relative standard error of k for sensor gains with an error of GAIN_ERROR.
+    segment_changes: (segment,) change of ln k when a segment is left out.
+    damping_change: change of ln k when the peak's damping is one standard error higher.
+    k_grid, mac_grid: (k,) MAC with the first mode's shapes, as in the paper.
     """
 
     k: float
@@ -54,9 +65,10 @@ class ShapeMatch:
     mac_grid: np.ndarray
 
 
-def mac(shape, other):
-    """Return the modal assurance criterion of two shapes (..., line_point): 1 when they differ by a
-    complex factor only.
+def mac(shape: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the modal assurance criterion of shapes (..., line_point).
+
+    It is 1 when they differ by a complex factor only.
     """
     lengths = np.sum(np.abs(shape) ** 2, axis=-1) * np.sum(np.abs(other) ** 2, axis=-1)
     return np.abs(np.sum(shape.conj() * other, axis=-1)) ** 2 / np.maximum(
@@ -64,9 +76,13 @@ def mac(shape, other):
     )
 
 
-def deflection_shape(line_spectra, frequency, band_Hz):
-    """Return the DeflectionShape of line_spectra (line_point, segment, frequency) over the bins of
-    frequency (frequency,) in band_Hz.
+def deflection_shape(
+    line_spectra: np.ndarray, frequency: np.ndarray, band_Hz: Sequence[float]
+) -> DeflectionShape:
+    """Return the DeflectionShape over the bins of a band.
+
+    line_spectra: (line_point, segment, frequency).
+    frequency: (frequency,) Hz.
 
     Raises ValueError when the band holds no bin.
     """
@@ -83,28 +99,38 @@ def deflection_shape(line_spectra, frequency, band_Hz):
     return DeflectionShape(vectors[:, -1], singular / singular[0], without, tuple(band_Hz))
 
 
-def own_shape(response, part, k, c):
-    """Return the linear tube's ODS (line_point,), of unit length, for support (k, c) over a part of
-    the grid of its FamilyResponse.
+def linear_ods(
+    response: FamilyResponse, part: slice | np.ndarray, k: float, c: float
+) -> np.ndarray:
+    """Return the ODS (line_point,) of the linear tube with support (k, c), of unit length.
+
+    response: FamilyResponse of the line's points.
+    part: selects the frequencies of the band.
     """
     motion = response.frf(k, c, part)
     return np.linalg.eigh(motion @ motion.conj().T)[1][:, -1]
 
 
-def match_shape(measured, response, mode_shapes, member):
+def match_shape(
+    measured: DeflectionShape,
+    response: FamilyResponse,
+    mode_shapes: tuple[np.ndarray, np.ndarray],
+    member: Callable[..., tuple[float, float]],
+) -> ShapeMatch:
     """Return the ShapeMatch of a DeflectionShape with the family.
 
-    response: FamilyResponse of the line's points on the spectra's bins; mode_shapes: (k (k,) N/m,
-    first mode's shapes (k, line_point)), among which the search starts; member(ln k, errors = 0) ->
-    (k in N/m, c in N s/m): the members compared, with about that k and the damping of the peak,
-    plus so many of its standard errors. The best MAC is where the measured shape's part along the
-    derivative of the member's shape vanishes: Gauss-Newton in ln k.
+    The MAC is largest where the part of the measured shape along the derivative of the member's
+    shape vanishes: Gauss-Newton in ln k.
+
+    response: FamilyResponse of the line's points on the bins of the spectra.
+    mode_shapes: (k (k,) N/m, the first mode's shapes (k, line_point)), where the search starts.
+    member: function (ln k, errors = 0) -> (k in N/m, c in N s/m) of the member with about that k
+        and the damping of the peak, plus so many of its standard errors.
     """
-    inside = (response.frequency >= measured.band_Hz[0]) & (
-        response.frequency <= measured.band_Hz[1]
-    )
+    low, high = measured.band_Hz
+    inside = (response.frequency >= low) & (response.frequency <= high)
     part = slice(int(np.argmax(inside)), int(inside.size - np.argmax(inside[::-1])))
-    family = _Members(response, part, member)
+    family = _FamilyShapes(response, part, member)
     k_grid, shapes = mode_shapes
     macs = mac(measured.shape, shapes)
     limits = np.log(k_grid[[0, -1]])
@@ -112,44 +138,52 @@ def match_shape(measured, response, mode_shapes, member):
     for _ in range(MATCH_STEPS):
         middle, slope = family.shape_and_slope(log_k)
         strength = np.vdot(slope, slope).real
-        change = np.vdot(slope, _aligned(measured.shape, middle)).real / strength
-        ahead = float(np.clip(log_k + np.clip(change, -LARGEST_CHANGE, LARGEST_CHANGE), *limits))
-        settled, log_k = abs(ahead - log_k) < SETTLED, ahead
-        if settled:
+        change = np.vdot(slope, _phase_aligned(measured.shape, middle)).real / strength
+        step = np.clip(change, -LARGEST_CHANGE, LARGEST_CHANGE)
+        before, log_k = log_k, float(np.clip(log_k + step, *limits))
+        if abs(log_k - before) < SETTLED:
             break
-    shape = _aligned(measured.shape, middle)
-    changes = (
-        np.array(
-            [
-                np.vdot(slope, _aligned(other, shape) - shape).real
-                for other in measured.segment_shapes
-            ]
-        )
-        / strength
-    )
+    shape = _phase_aligned(measured.shape, middle)
+    pulls = [
+        np.vdot(slope, _phase_aligned(other, shape) - shape).real
+        for other in measured.segment_shapes
+    ]
+    changes = np.array(pulls) / strength
     higher, lower = (
         _change_with_damping(family, member, log_k, errors, middle, slope, strength)
         for errors in (1.0, -1.0)
     )
     model_error = GAIN_ERROR * np.sqrt(np.sum(np.abs(slope * shape) ** 2)) / strength
-    # The damping is as likely too high as too low, but k does not fall with the one as it rises
-    # with the other: the mean is taken out.
+    # The damping is as likely too high as too low, but k does not respond to both alike: the mean
+    # of the two changes is removed.
     k = member(log_k)[0] * np.exp(-0.5 * (higher + lower))
     value = float(mac(measured.shape, middle))
     return ShapeMatch(
-        float(k), value, float(model_error), changes, float(0.5 * (higher - lower)), k_grid, macs
+        k=float(k),
+        mac=value,
+        model_error=float(model_error),
+        segment_changes=changes,
+        damping_change=float(0.5 * (higher - lower)),
+        k_grid=k_grid,
+        mac_grid=macs,
     )
 
 
-def _change_with_damping(family, member, log_k, errors, middle, slope, strength):
-    """Return the change of ln k for the same measured shape when the peak's damping is so many
-    standard errors higher.
-    """
-    moved = np.vdot(slope, _aligned(family.shape(log_k, errors), middle)).real / strength
+def _change_with_damping(
+    family: Any,
+    member: Callable[..., tuple[float, float]],
+    log_k: float,
+    errors: float,
+    middle: np.ndarray,
+    slope: np.ndarray,
+    strength: float,
+) -> float:
+    """Return the change of ln k when the peak's damping is so many standard errors higher."""
+    moved = np.vdot(slope, _phase_aligned(family.shape(log_k, errors), middle)).real / strength
     return np.log(abs(member(log_k, errors)[0] / member(log_k)[0])) - moved
 
 
-class _Members:
+class _FamilyShapes:
     """The shapes of the members of the family over one band, by ln k."""
 
     def __init__(self, response, part, member):
@@ -157,24 +191,22 @@ class _Members:
 
     def shape(self, log_k, errors=0.0):
         """Return the ODS (line_point,) of the member."""
-        return own_shape(self._response, self._part, *self._member(log_k, errors))
+        return linear_ods(self._response, self._part, *self._member(log_k, errors))
 
-    def shape_and_slope(self, log_k):
-        """Return (ODS (line_point,) of the member, its derivative to ln k (line_point,) without the
-        part along itself).
+    def shape_and_slope(self, log_k: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return (ODS (line_point,) of the member, its derivative by ln k (line_point,)).
+
+        The derivative has no part along the shape itself.
         """
         middle = self.shape(log_k)
-        ends = [_aligned(self.shape(log_k + step), middle) for step in (-STEP, STEP)]
+        ends = [_phase_aligned(self.shape(log_k + step), middle) for step in (-STEP, STEP)]
         low, high = (self._member(log_k + step)[0] for step in (-STEP, STEP))
-        slope = (
-            (ends[1] - ends[0]) / np.log(high / low)
-            if low > 0.0
-            else (ends[1] - ends[0]) / (2.0 * STEP)
-        )
+        width = np.log(high / low) if low > 0.0 else 2.0 * STEP
+        slope = (ends[1] - ends[0]) / width
         return middle, slope - middle * np.vdot(middle, slope)
 
 
-def _aligned(shape, other):
-    """Return shape turned to the phase of other."""
+def _phase_aligned(shape: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return a shape in the phase of another."""
     phase = np.vdot(shape, other)
     return shape * phase / np.abs(phase)

@@ -1,26 +1,33 @@
-"""The family of linear tubes with a bilateral support (k, c), prepared once so that any member's
-response costs almost nothing.
+"""The family of linear tubes on a bilateral support (k, c), prepared once for fast responses.
 
-With B (mode, contact) the contact shapes scaled by the square root of their weights, the bilateral
-support adds s B B^T to the dynamic stiffness, s = k + i omega c. Woodbury's formula leaves the
-small contact compliance G = B^T Z^-1 B; with its eigenvalues mu_j at each frequency every response
-is h0 - sum_j s r_j / (1 + s mu_j). The eigenvalues serve all outputs and all (k, c).
+With B (mode, contact) the contact shapes scaled by the square root of their weights, the support
+adds s B B^T to the dynamic stiffness, s = k + i omega c. Woodbury's formula leaves the small
+contact compliance G = B^T Z^-1 B. With its eigenvalues mu_j at each frequency every response is
+
+    h = h_free - sum_j s r_j / (1 + s mu_j).
+
+The eigenvalues serve all outputs and all (k, c).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from .equivalent_linear import contact_matrix, first_block
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .modes import contact_matrix, driven_block
 
 
 @dataclass(frozen=True)
 class DrivenModes:
     """The modes that the force excites, and the contacts that they move.
 
-    omega, damping (mode,) rad/s and 1/s; contact (mode, contact) kg^-1/2, scaled by the square root
-    of the contact's weight; drive (mode,) kg^-1/2; indices (mode,) in the ModalModel; block (mode,)
-    bool: the uncoupled block in which the drive does most, whose lowest mode is "the first mode".
+    omega, damping: (mode,) rad/s and 1/s.
+    contact: (mode, contact) kg^-1/2, scaled by the square root of the contact's weight.
+    drive: (mode,) kg^-1/2.
+    indices: (mode,) in the ModalModel.
+    block: (mode,) bool, the uncoupled block that the drive moves most; its lowest mode is "the
+        first mode".
     """
 
     omega: np.ndarray
@@ -31,27 +38,26 @@ class DrivenModes:
     block: np.ndarray
 
     @property
-    def first(self):
-        """Return the place of the first mode."""
+    def first(self) -> int:
+        """Return the index of the first mode."""
         return int(np.argmin(np.where(self.block, self.omega, np.inf)))
 
-    def receptance(self, laplace):
-        """Return the modal receptances (..., mode) in s² for laplace (...) in rad/s, complex."""
+    def receptance(self, laplace: np.ndarray | complex) -> np.ndarray:
+        """Return the modal receptances (..., mode) in s² at complex laplace (...) in rad/s."""
         laplace = np.asarray(laplace)[..., None]
         return 1.0 / (self.omega**2 + laplace * (self.damping + laplace))
 
-    def compliance(self, laplace):
-        """Return the contact compliance G (..., contact, contact) in m/N at laplace (...) in
-        rad/s.
-        """
+    def compliance(self, laplace: np.ndarray | complex) -> np.ndarray:
+        """Return the contact compliance G (..., contact, contact) in m/N at laplace (...)."""
         return (self.contact.T * self.receptance(laplace)[..., None, :]) @ self.contact
 
 
-def driven_modes(model, channel=0):
-    """Return the DrivenModes of a ModalModel for one force channel. Raises ValueError when the
-    force moves no contact.
+def driven_modes(model: ModalModel, channel: int = 0) -> DrivenModes:
+    """Return the DrivenModes of a model for one force channel.
+
+    Raises ValueError when the force moves no contact.
     """
-    first = first_block(model, channel)
+    first = driven_block(model, channel)
     drive = model.drive_shapes[:, channel]
     indices = np.sort(
         np.concatenate([modes for modes, _ in model.blocks if np.any(drive[modes] != 0.0)])
@@ -72,9 +78,12 @@ def driven_modes(model, channel=0):
 class FamilyResponse:
     """Displacement per unit force of every member of the family on one frequency grid.
 
-    frequency: (frequency,) Hz; free: (output, frequency) m/N, the tube without support; residue:
-    (output, frequency, contact) m²/N²; compliance: (frequency, contact) m/N, the eigenvalues mu.
-    `part` below selects frequencies (a slice or an array of indices), `outputs` a slice of the
+    frequency: (frequency,) Hz.
+    free: (output, frequency) m/N, the tube without support.
+    residue: (output, frequency, contact) m²/N².
+    compliance: (frequency, contact) m/N, the eigenvalues mu.
+
+    In the methods `part` selects frequencies (a slice or indices), and `outputs` is a slice of the
     outputs.
     """
 
@@ -83,16 +92,22 @@ class FamilyResponse:
     residue: np.ndarray
     compliance: np.ndarray
 
-    def frf(self, k, c, part=slice(None), outputs=slice(None)):
-        """Return the frequency responses (output, frequency) in m/N for k (N/m) and c (N s/m)."""
+    def frf(
+        self,
+        k: float,
+        c: float,
+        part: slice | np.ndarray = slice(None),
+        outputs: slice = slice(None),
+    ) -> np.ndarray:
+        """Return the responses (output, frequency) in m/N for k in N/m and c in N s/m."""
         support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
         gain = support / (1.0 + support * self.compliance[part])
         return self.free[outputs][:, part] - (self.residue[outputs][:, part] * gain).sum(axis=-1)
 
-    def frf_slope(self, k, c, part=slice(None)):
-        """Return (frequency responses (output, frequency), their derivative to the support's
-        dynamic stiffness s = k + i omega c).
-        """
+    def frf_slope(
+        self, k: float, c: float, part: slice | np.ndarray = slice(None)
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return (responses (output, frequency), their derivative by s = k + i omega c)."""
         support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
         share = 1.0 / (1.0 + support * self.compliance[part])
         residue = self.residue[:, part]
@@ -100,20 +115,26 @@ class FamilyResponse:
             residue * share**2
         ).sum(axis=-1)
 
-    def psd(self, k, c, part=slice(None), outputs=slice(None)):
-        """Return the displacement PSDs (output, frequency) in m²/N² under a unit force PSD."""
+    def psd(
+        self,
+        k: float,
+        c: float,
+        part: slice | np.ndarray = slice(None),
+        outputs: slice = slice(None),
+    ) -> np.ndarray:
+        """Return the displacement PSDs (output, frequency) in m²/N² per unit force PSD."""
         response = self.frf(k, c, part, outputs)
         return response.real**2 + response.imag**2
 
 
 class LinearFamily:
-    """The contact compliance's eigenvalues and vectors on one frequency grid, from which responses
-    at any outputs are made.
+    """The eigenvalues of the contact compliance on one frequency grid.
 
-    modes: DrivenModes; frequency: (frequency,) Hz.
+    Responses at any outputs follow from them.
     """
 
-    def __init__(self, modes, frequency):
+    def __init__(self, modes: DrivenModes, frequency: np.ndarray) -> None:
+        """Solve the eigenvalue problems; frequency (frequency,) in Hz."""
         self.modes = modes
         self.frequency = frequency
         self._receptance = modes.receptance(2j * np.pi * frequency)
@@ -121,9 +142,12 @@ class LinearFamily:
         reached = (self._receptance * modes.drive) @ modes.contact
         self._excited = np.linalg.solve(self._vectors, reached[..., None])[..., 0]
 
-    def response(self, shapes, part=slice(None)):
-        """Return the FamilyResponse of outputs with shapes (mode, output), modes as in the
-        ModalModel, on a part of the grid.
+    def response(
+        self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)
+    ) -> FamilyResponse:
+        """Return the FamilyResponse of outputs on a part of the grid.
+
+        shapes: (mode, output), modes as in the ModalModel.
         """
         shapes = shapes[self.modes.indices]
         receptance, vectors = self._receptance[part], self._vectors[part]

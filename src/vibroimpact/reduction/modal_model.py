@@ -1,7 +1,6 @@
-"""The reduced model that every later stage works on: uncoupled modes, and what contacts, forces and
-sensors see of them.
-"""
+"""The reduced model of a structure: uncoupled modes, and their shapes at contacts and sensors."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -9,8 +8,7 @@ import numpy as np
 
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
 
-# Fields whose axes are checked: name -> axis names. "mode", "contact_point", ... must agree between
-# fields.
+# Fields whose axes are checked: name -> axis names. An axis has the same length in all fields.
 AXES = {
     "omega": ("mode",),
     "damping": ("mode",),
@@ -46,27 +44,46 @@ NAMES = {
 
 @dataclass(frozen=True, eq=False)
 class ModalModel:
-    """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, and what acts on it
-    locally.
+    """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, with local forces.
 
-    omega (mode,) rad/s, ascending; damping (mode,) = 2 zeta omega in 1/s. Shapes: displacement in m
-    per unit modal amplitude (kg^1/2 m), that is kg^-1/2: contact_shapes (mode, contact_point, 2)
-    along the two contact_directions (contact_point, 2, 3); drive_shapes (mode, force_channel) along
-    the force; sensor_shapes (mode, sensor) at sensor_positions (sensor, 3) m along
-    sensor_directions (sensor, 3), named like "apex.y"; line_shapes (mode, line_point) at
-    line_positions (line_point, 3) m, line_arc_length (line_point,) m. stress_shapes (mode, section,
-    2): outer-fibre stress of the two bending moments, Pa per unit modal amplitude. Contact points:
-    contact_position (contact_point, 3) m; support_of_point (contact_point,) int, an index into
-    support_names; contact_weight (contact_point,) share of the support's stiffness, sums to 1 per
-    support; contact_stiffness (contact_point,) N/m; gap_factor (contact_point,) times the case's
-    gap; centre_offset (contact_point, 2) m along the contact directions. full_mode_frequencies
-    (full_mode,) Hz: the lowest frequencies of the full model without contact. contact_laws: what
-    the contacts have beyond the elastic circle (None: nothing). Local elements: element_shapes
-    (mode, element), their direction's displacement, relative for an element between two points;
-    element_names; local_laws. initial_displacement, initial_velocity (mode,): modal amplitudes at
-    the start, kg^1/2 m and kg^1/2 m/s; constant_force (mode,): dead load, N kg^-1/2.
+    Modal amplitudes are in kg^1/2 m. A shape is a displacement in m per unit amplitude, kg^-1/2.
 
-    Raises ValueError listing every field with a wrong shape or value.
+    Modes:
+
+    omega: (mode,) rad/s, ascending.
+    damping: (mode,) 2 zeta omega in 1/s.
+    full_mode_frequencies: (full_mode,) Hz, the lowest of the full model without contact.
+    initial_displacement, initial_velocity: (mode,) kg^1/2 m and kg^1/2 m/s, state at the start.
+    constant_force: (mode,) N kg^-1/2.
+
+    Contact points:
+
+    contact_shapes: (mode, contact_point, 2) along the two contact_directions.
+    contact_directions: (contact_point, 2, 3) unit vectors.
+    contact_weight: (contact_point,) share of the support's stiffness; sums to 1 per support.
+    support_of_point: (contact_point,) int, index into support_names.
+    contact_stiffness: (contact_point,) N/m.
+    gap_factor: (contact_point,), times the case's gap.
+    centre_offset: (contact_point, 2) m along the contact directions.
+    contact_position: (contact_point, 3) m.
+    contact_laws: what the contacts have beyond the elastic circle; None for nothing.
+
+    Local elements:
+
+    element_shapes: (mode, element) along the element, relative where it has two ends.
+    element_names, local_laws: their names and LocalLaws.
+
+    Force, sensors, shape line and stresses:
+
+    drive_shapes: (mode, force_channel) along the force.
+    sensor_shapes: (mode, sensor) along sensor_directions (sensor, 3) at sensor_positions
+        (sensor, 3) m; sensor_names like "apex.y".
+    line_shapes: (mode, line_point) at line_positions (line_point, 3) m and line_arc_length
+        (line_point,) m.
+    stress_shapes: (mode, section, 2), outer-fibre stress of the two bending moments in Pa per unit
+        modal amplitude, at section_names.
+
+    Raises ValueError that lists every field with a wrong shape or value.
     """
 
     omega: np.ndarray
@@ -91,16 +108,17 @@ class ModalModel:
     stress_shapes: np.ndarray
     section_names: tuple[str, ...]
     full_mode_frequencies: np.ndarray
-    contact_laws: ContactLaws = None
-    element_shapes: np.ndarray = None
+    # Filled in by __post_init__ where they are None.
+    contact_laws: ContactLaws = None  # type: ignore[assignment]
+    element_shapes: np.ndarray = None  # type: ignore[assignment]
     element_names: tuple[str, ...] = ()
-    local_laws: LocalLaws = None
-    initial_displacement: np.ndarray = None
-    initial_velocity: np.ndarray = None
-    constant_force: np.ndarray = None
+    local_laws: LocalLaws = None  # type: ignore[assignment]
+    initial_displacement: np.ndarray = None  # type: ignore[assignment]
+    initial_velocity: np.ndarray = None  # type: ignore[assignment]
+    constant_force: np.ndarray = None  # type: ignore[assignment]
 
-    def __post_init__(self):
-        """Fill in what is off, and refuse wrong shapes and values, all of them in one sentence."""
+    def __post_init__(self) -> None:
+        """Fill in the neutral values and check all shapes and values."""
         modes = np.size(self.omega)
         neutral = {
             "contact_laws": ContactLaws.neutral(np.size(self.support_of_point)),
@@ -113,24 +131,23 @@ class ModalModel:
         for name, value in neutral.items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
-        problems = [*self._wrong_shapes()]
-        problems = problems or [*self._wrong_values()]
+        problems = [*self._wrong_shapes()] or [*self._wrong_values()]
         if problems:
             raise ValueError("the modal model is not valid: " + "; ".join(problems))
 
     @property
-    def modes(self):
+    def modes(self) -> int:
         """Return the number of modes."""
         return len(self.omega)
 
     @property
-    def frequencies(self):
+    def frequencies(self) -> np.ndarray:
         """Return (mode,) undamped frequencies in Hz."""
         return self.omega / (2.0 * np.pi)
 
     @property
-    def conservative(self):
-        """Return True when no contact and no local element takes energy."""
+    def conservative(self) -> bool:
+        """Return True when no contact and no local element dissipates energy."""
         contact, local = self.contact_laws, self.local_laws
         lossy = (
             contact.damping,
@@ -143,21 +160,19 @@ class ModalModel:
         return not any(np.any(column) for column in lossy)
 
     @cached_property
-    def blocks(self):
-        """Return [(mode_indices, [(contact_point, direction), ...])]: groups of modes that no
-        contact force couples.
+    def blocks(self) -> list[tuple[np.ndarray, list[tuple[int, int]]]]:
+        """Return [(mode indices (mode,), [(contact_point, direction), ...])]: uncoupled blocks.
 
-        mode_indices is an ascending (mode,) int array. Two modes belong together when a contact
-        point and direction moves in both; a shape of exactly 0.0 is no motion (the reduction treats
-        uncoupled degrees of freedom apart, so zeros are exact). Modes that a local element moves
-        belong together too. Modes that move no contact point and no element form one last block
-        without contacts.
+        Two modes are in the same block when the same contact point and direction, or the same local
+        element, moves in both. A shape of exactly 0.0 is no motion: the reduction treats uncoupled
+        degrees of freedom separately, so zeros are exact. Modes that move no contact point and no
+        element form a last block without contacts.
         """
         points = 2 * self.contact_shapes.shape[1]
-        moved = (
-            np.hstack([self.contact_shapes.reshape(self.modes, points), self.element_shapes]) != 0.0
-        )
-        unassigned, groups = set(range(self.modes)), []
+        shapes = np.hstack([self.contact_shapes.reshape(self.modes, points), self.element_shapes])
+        moved = shapes != 0.0
+        unassigned = set(range(self.modes))
+        groups = []
         while unassigned:
             modes, reached = {min(unassigned)}, np.zeros(moved.shape[1], dtype=bool)
             while True:
@@ -167,15 +182,15 @@ class ModalModel:
                 reached = contacts
                 modes |= set(np.flatnonzero(moved[:, contacts].any(axis=1)).tolist())
             unassigned -= modes
-            contacts = [divmod(int(contact), 2) for contact in np.flatnonzero(reached[:points])]
-            groups.append((sorted(modes), contacts, reached.any()))
-        coupled = [(np.array(modes), contacts) for modes, contacts, held in groups if held]
-        alone = sorted(mode for modes, _, held in groups if not held for mode in modes)
-        return coupled + ([(np.array(alone), [])] if alone else [])
+            pairs = [divmod(int(contact), 2) for contact in np.flatnonzero(reached[:points])]
+            groups.append((sorted(modes), pairs, reached.any()))
+        coupled = [(np.array(members), pairs) for members, pairs, local in groups if local]
+        free = sorted(mode for members, _, local in groups if not local for mode in members)
+        return coupled + ([(np.array(free), [])] if free else [])
 
-    def _wrong_shapes(self):
+    def _wrong_shapes(self) -> Iterator[str]:
         """Yield a sentence for every array or tuple whose axes disagree."""
-        sizes = {}
+        sizes: dict[str, int] = {}
         for name, axes in AXES.items():
             shape = np.shape(getattr(self, name))
             if len(shape) != len(axes):
@@ -189,7 +204,7 @@ class ModalModel:
             if axis in sizes and len(getattr(self, name)) != sizes[axis]:
                 yield f"{name} has {len(getattr(self, name))} names for {sizes[axis]} along {axis}"
 
-    def _wrong_values(self):
+    def _wrong_values(self) -> Iterator[str]:
         """Yield a sentence for every value that makes no physical sense."""
         for name in (field.name for field in fields(self) if field.name in AXES):
             if not np.isfinite(getattr(self, name)).all():
@@ -213,10 +228,9 @@ class ModalModel:
         ):
             yield "support_of_point must index support_names"
             return
-        shares = (
-            np.bincount(self.support_of_point, self.contact_weight, len(self.support_names))
-            if points
-            else np.ones(0)
-        )
+        if not points:
+            return
+        count = len(self.support_names)
+        shares = np.bincount(self.support_of_point, self.contact_weight, count)
         if not np.allclose(shares, 1.0, rtol=0.0, atol=1.0e-9):
             yield f"contact_weight must sum to 1 per support, sums are {shares.tolist()}"

@@ -1,11 +1,13 @@
-"""A structure known by its measured modes: frequencies, damping ratios and shapes scaled by the
-drive point, and the models made of them.
+"""A structure known by its measured modes, and the models made of them.
 
-The response per force is sum over modes of shape drive / (s² + 2 zeta omega s + omega²), times s²
-for accelerations. What lies outside the band is kept as residual modes, one or more below and
-above, whose frequency and damping mean nothing by themselves: they stand for the mass line and the
-flexibility of the modes that were not measured, and keep the model a model of masses and springs
-that can be simulated.
+The modes have frequencies, damping ratios, and shapes scaled by the drive point. The response per
+unit force is the sum over modes of
+
+    shape drive / (s² + 2 zeta omega s + omega²),
+
+times s² for accelerations. Residual modes below and above the band stand for the mass line and for
+the flexibility of the modes that were not measured. Their own frequency and damping have no
+meaning. With them the model remains one of masses and springs that can be simulated.
 """
 
 from dataclasses import dataclass, replace
@@ -20,84 +22,93 @@ from .modal_model import ModalModel
 
 @dataclass(frozen=True, eq=False)
 class IdentifiedModes:
-    """frequency (mode,) Hz undamped; damping_ratio (mode,); shapes (mode, channel) kg^-1/2 (per
-    unit modal amplitude in kg^1/2 m).
+    """Measured modes.
 
-    drive: index of the channel at the point and in the direction of the force, which scales the
-    shapes; kinds (channel,): displacement, velocity, acceleration, or generic, which is taken for a
-    displacement; names (channel,); residual (mode,) bool.
+    frequency: (mode,) Hz, undamped.
+    damping_ratio: (mode,).
+    shapes: (mode, channel) in kg^-1/2, per unit modal amplitude in kg^1/2 m.
+    drive: index of the channel at the point and along the direction of the force; it scales the
+        shapes.
+    kinds: (channel,) displacement, velocity, acceleration, or generic, taken as a displacement.
+    names: (channel,).
+    residual: (mode,) bool.
     """
 
     frequency: np.ndarray
     damping_ratio: np.ndarray
     shapes: np.ndarray
     drive: int
-    kinds: tuple
-    names: tuple
+    kinds: tuple[str, ...]
+    names: tuple[str, ...]
     residual: np.ndarray
 
     @property
-    def omega(self):
+    def omega(self) -> np.ndarray:
         """Return (mode,) rad/s."""
         return 2.0 * np.pi * self.frequency
 
     @property
-    def damping(self):
+    def damping(self) -> np.ndarray:
         """Return (mode,) 2 zeta omega in 1/s."""
         return 2.0 * self.damping_ratio * self.omega
 
     @property
-    def modes(self):
+    def modes(self) -> int:
         """Return the number of modes."""
         return self.frequency.size
 
-    def receptance(self, frequency):
+    def receptance(self, frequency: np.ndarray) -> np.ndarray:
         """Return (mode, line) modal displacement per modal force in s² at frequency (line,) Hz."""
         laplace = 2j * np.pi * np.asarray(frequency, float)
         return 1.0 / (laplace**2 + laplace * self.damping[:, None] + self.omega[:, None] ** 2)
 
-    def observed(self, frequency):
-        """Return (channel, line): what turns the displacement of each channel into what it
-        measures.
+    def sensor_factors(self, frequency: np.ndarray) -> np.ndarray:
+        """Return (channel, line): (i omega)^n, what the sensor measures per unit displacement.
+
+        n is 0, 1 or 2 for displacement, velocity and acceleration; frequency (line,) in Hz.
         """
         laplace = 2j * np.pi * np.asarray(frequency, float)
         return np.stack([laplace ** TIME_DERIVATIVES.get(kind, 0) for kind in self.kinds])
 
-    def frf(self, frequency, participation=None):
-        """Return (channel, line) response per unit force at frequency (line,) Hz: of the drive, or
-        with participation (mode,) of any force.
+    def frf(self, frequency: np.ndarray, participation: np.ndarray | None = None) -> np.ndarray:
+        """Return (channel, line) response per unit force at frequency (line,) Hz.
+
+        participation: (mode,) shapes along the force; those of the drive by default.
         """
         participation = self.shapes[:, self.drive] if participation is None else participation
-        return self.observed(frequency) * (
-            (self.shapes * participation[:, None]).T @ self.receptance(frequency)
-        )
+        displacement = (self.shapes * participation[:, None]).T @ self.receptance(frequency)
+        return self.sensor_factors(frequency) * displacement
 
-    def sorted(self):
+    def sorted(self) -> "IdentifiedModes":
         """Return the modes in ascending frequency."""
         order = np.argsort(self.frequency)
         return replace(
             self,
-            **{
-                name: getattr(self, name)[order]
-                for name in ("frequency", "damping_ratio", "shapes", "residual")
-            },
+            frequency=self.frequency[order],
+            damping_ratio=self.damping_ratio[order],
+            shapes=self.shapes[order],
+            residual=self.residual[order],
         )
 
 
-def modal_model(modes, participation, laws=None, constant_force=0.0):
-    """Return the ModalModel of IdentifiedModes, driven at their drive, with local elements.
+def modal_model(
+    modes: IdentifiedModes,
+    participation: np.ndarray,
+    laws: LocalLaws | None = None,
+    constant_force: float = 0.0,
+) -> ModalModel:
+    """Return the ModalModel of measured modes with local elements, driven at their drive point.
 
-    participation (mode, element): relative displacement of each element per unit modal amplitude;
-    laws: their LocalLaws, none when left out; constant_force N at the drive. Sensors: every
-    channel, as displacement.
+    Every channel is a sensor, read as a displacement.
+
+    participation: (mode, element) relative displacement of each element per unit modal amplitude.
+    laws: LocalLaws of the elements; no force by default.
+    constant_force: N at the drive point.
     """
     order = np.argsort(modes.frequency)
-    participation, channels, elements = (
-        participation[order],
-        modes.shapes.shape[1],
-        participation.shape[1],
-    )
-    empty, shapes = np.zeros, modes.shapes[order]
+    participation, shapes = participation[order], modes.shapes[order]
+    channels, elements = shapes.shape[1], participation.shape[1]
+    empty = np.zeros
     return ModalModel(
         omega=modes.omega[order],
         damping=modes.damping[order],

@@ -1,6 +1,8 @@
-"""The file of a reduced model: one variable per field, SI units as in ModalModel."""
+"""The netCDF file of a reduced model: one variable per field, SI units as in ModalModel."""
 
 from dataclasses import fields
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,49 +12,47 @@ from vibroimpact.records import read_record, write_record
 
 from .modal_model import ModalModel
 
-# Fields of the model that are tables themselves.
-LAWS = {"contact_laws": ContactLaws, "local_laws": LocalLaws}
+# Fields of the model that are tables themselves: field -> class.
+LAWS: dict[str, type] = {"contact_laws": ContactLaws, "local_laws": LocalLaws}
 
 
-def write_model(model: ModalModel, path, attributes: dict | None = None) -> None:
-    """Write a reduced model as netCDF: one variable per field, SI units as in ModalModel."""
+def write_model(
+    model: ModalModel, path: str | Path, attributes: dict[str, Any] | None = None
+) -> None:
+    """Write a reduced model; attributes: global attributes of the file."""
     data = {}
     for item in fields(ModalModel):
         value = getattr(model, item.name)
         if item.name in LAWS:
             for column in fields(value):
-                array = np.asarray(getattr(value, column.name))
-                data[f"{item.name}_{column.name}"] = (
-                    tuple(f"{item.name}_{column.name}_{axis}" for axis in range(array.ndim)),
-                    array,
-                )
+                name = f"{item.name}_{column.name}"
+                data[name] = _array_variable(name, getattr(value, column.name))
         elif item.name.endswith("_names"):
-            data[item.name] = (
-                (f"{item.name[:-6]}",),
-                np.array(value, dtype=object if value else str),
-            )
+            names = np.array(value, dtype=object if value else str)
+            data[item.name] = ((item.name.removesuffix("_names"),), names)
         else:
-            data[item.name] = (
-                tuple(f"{item.name}_{axis}" for axis in range(np.ndim(value))),
-                np.asarray(value),
-            )
-    write_record(
-        xr.Dataset(data, attrs={"title": "vibroimpact reduced model", **(attributes or {})}), path
-    )
+            data[item.name] = _array_variable(item.name, value)
+    attributes = {"title": "vibroimpact reduced model", **(attributes or {})}
+    write_record(xr.Dataset(data, attrs=attributes), path)
 
 
-def read_model(path) -> ModalModel:
-    """The reduced model of a file written by write_model. Raises RecordError, and ValueError when a
-    field is missing.
+def _array_variable(name, values):
+    """Return (dimensions, values) of a variable whose dimensions are its own."""
+    array = np.asarray(values)
+    return tuple(f"{name}_{axis}" for axis in range(array.ndim)), array
+
+
+def read_model(path: str | Path) -> ModalModel:
+    """Return the reduced model of a file of write_model.
+
+    Raises RecordError, and ValueError when a field is missing.
     """
     dataset = read_record(path)
     values = {}
     for item in fields(ModalModel):
-        names = (
-            [f"{item.name}_{column.name}" for column in fields(LAWS[item.name])]
-            if item.name in LAWS
-            else [item.name]
-        )
+        names = [item.name]
+        if item.name in LAWS:
+            names = [f"{item.name}_{column.name}" for column in fields(LAWS[item.name])]
         for name in names:
             if name not in dataset:
                 raise ValueError(
@@ -63,7 +63,6 @@ def read_model(path) -> ModalModel:
             values[item.name] = LAWS[item.name](*(dataset[name].values for name in names))
             continue
         value = dataset[item.name].values
-        values[item.name] = (
-            tuple(str(name) for name in value) if item.name.endswith("_names") else value
-        )
+        is_names = item.name.endswith("_names")
+        values[item.name] = tuple(str(name) for name in value) if is_names else value
     return ModalModel(**values)

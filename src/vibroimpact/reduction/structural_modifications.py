@@ -1,33 +1,42 @@
-"""What changes a structure or its modes beyond elements and supports: point masses, corrected
-frequencies, plates that give way.
-"""
+"""Changes of a structure or its modes: point masses, corrected frequencies, flexible plates."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import MODE_FIELDS
 
 
-def with_masses(structure, masses, place):
-    """Return the structure with `masses` (config entries) added at their points; place: function
-    name -> (3, dof) displacement rows.
+def with_point_masses(
+    structure: Any, masses: Sequence[ConfigPart], point_rows: Callable[[str], np.ndarray]
+) -> Any:
+    """Return the structure with masses added at named points.
+
+    masses: entries of the configuration.
+    point_rows: function of a point's name that returns its displacement rows (3, dof).
     """
     if not masses:
         return structure
-    rows = np.vstack([np.sqrt(mass.mass_kg) * place(mass.point) for mass in masses])
+    rows = np.vstack([np.sqrt(mass.mass_kg) * point_rows(mass.point) for mass in masses])
     rows = sparse.csr_array(np.where(np.abs(rows) > 1.0e-15 * np.abs(rows).max(), rows, 0.0))
     return replace(structure, mass=(structure.mass + rows.T @ rows).tocsr())
 
 
-def with_factors(omega, factors):
-    """Return (omega (mode,) rad/s ascending, order (mode,)): free modes measured at other
-    frequencies than computed.
+def with_frequency_factors(
+    omega: np.ndarray, factors: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (omega (mode,) rad/s ascending, order (mode,)) with the first frequencies corrected.
 
-    factors: measured over computed frequency of the first modes as they were computed; order: the
-    number that each mode had then, for a mode may pass its neighbours. Raises ValueError when there
-    are more factors than modes.
+    order is the number that each mode had before, because a corrected mode may pass its neighbours.
+
+    omega: (mode,) rad/s as computed, ascending.
+    factors: measured over computed frequency of the first modes.
+
+    Raises ValueError when there are more factors than modes.
     """
     if len(factors) > len(omega):
         raise ValueError(f"mode_frequency_factors has {len(factors)} values for {len(omega)} modes")
@@ -37,13 +46,15 @@ def with_factors(omega, factors):
     return out[order], order
 
 
-def with_plates(fields, supports):
-    """Return the fields of a ModalModel with two modes more per support that a plate carries: its
-    motion along the contact directions.
+def with_support_plates(fields: dict[str, Any], supports: Sequence[ConfigPart]) -> dict[str, Any]:
+    """Return the fields of a ModalModel with two more modes per support on a flexible plate.
 
-    The contact sees the difference of tube and plate: the plate's shape there is -1/sqrt(mass), and
-    the contact force pushes it back. fields: {name: array} with the mode axis first, as ModalModel
-    has them.
+    They are the plate's motion along the contact directions. The contact sees the difference of
+    tube and plate: the plate's shape there is -1/sqrt(mass), so that the contact force pushes it
+    back.
+
+    fields: {name: array} of a ModalModel, with the mode axis first.
+    supports: entries of the configuration.
     """
     grown = dict(fields)
     for number, support in enumerate(supports):
@@ -53,16 +64,12 @@ def with_plates(fields, supports):
         for direction in range(2):
             for name in MODE_FIELDS:
                 grown[name] = np.concatenate([grown[name], np.zeros((1, *grown[name].shape[1:]))])
-            grown["omega"][-1], grown["damping"][-1] = (
-                omega,
-                2.0 * support.plate.damping_ratio * omega,
-            )
-            grown["contact_shapes"][-1, fields["support_of_point"] == number, direction] = (
-                -1.0 / np.sqrt(support.plate.mass_kg)
-            )
+            grown["omega"][-1] = omega
+            grown["damping"][-1] = 2.0 * support.plate.damping_ratio * omega
+            own_points = fields["support_of_point"] == number
+            shape = -1.0 / np.sqrt(support.plate.mass_kg)
+            grown["contact_shapes"][-1, own_points, direction] = shape
+    if len(grown["omega"]) == len(fields["omega"]):
+        return fields
     order = np.argsort(grown["omega"], kind="stable")
-    return (
-        grown | {name: grown[name][order] for name in MODE_FIELDS}
-        if len(order) > len(fields["omega"])
-        else fields
-    )
+    return grown | {name: grown[name][order] for name in MODE_FIELDS}

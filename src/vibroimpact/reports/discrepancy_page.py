@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.discrepancy.results_folder import best_places
-from vibroimpact.display_units import shown_unit
+from vibroimpact.display_units import display_unit
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.verdict.content import Misfit
@@ -234,7 +234,7 @@ def digits(value):
 def _for_reading(row):
     """Return {value, low, high, unit} of an Estimate in the unit that it is shown in."""
     values = {"value": row.value, "low": row.low, "high": row.high}
-    unit, factor = shown_unit(row.unit, values.values())
+    unit, factor = display_unit(row.unit, values.values())
     return {
         "unit": unit,
         **{key: None if value is None else factor * value for key, value in values.items()},

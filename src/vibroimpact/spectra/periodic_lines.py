@@ -1,23 +1,33 @@
-"""Periodic records by their lines: the mean over periods, the scatter between them, and what no
-linear structure can make.
+"""Periodic records by the lines of their spectrum: mean over periods, noise, and distortion.
 
 A multisine repeats, and so does the steady response of a structure to it. The mean over periods is
-the response at every line of the spectrum without leakage or window; the scatter between periods is
-noise; what is left at lines that the force does not excite, or as scatter of the response per force
-from line to line, is distortion. Source: Pintelon, Schoukens, System Identification, 2nd ed. 2012,
-ch. 4.
+the response at every line, without leakage or window. The scatter between periods is noise. A
+response at lines that the force does not excite is distortion, which no linear structure makes.
+Source: Pintelon and Schoukens, System Identification, 2nd ed. 2012, chapter 4.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 USUAL_PERIODS = (8192, 16384, 4096, 32768, 2048, 65536, 1024)  # samples, tried first
-SHORTEST_PERIOD, MOST_PERIODS = 64, 200  # samples; in one record
-FRACTIONS = (2, 3, 5, 7)  # of a period that are tried for a shorter one
-# relative difference of the force between periods, at most, for the record to be called periodic
+SHORTEST_PERIOD = 64  # samples
+MOST_PERIODS = 200  # in one record
+FRACTIONS = (2, 3, 5, 7)  # of a period, tried for a shorter one
+# Largest relative difference of the force between two periods of a periodic record.
 REPEATS = 0.05
-EXCITED = 0.05  # of the largest line in the band: a line below it is not excited
+EXCITED = 0.05  # of the largest line in the band; a line below it is not excited
+
+ALL_EXCITED = (
+    "every line of the band is excited: distortion cannot be told from the linear response line by"
+    " line; the scatter of the response per force about a fitted curve bounds it"
+)
+DETECTION_LINES = (
+    "distortion read at the lines that the force leaves out: odd ones from odd, even ones from even"
+    " nonlinearities"
+)
 
 
 class PeriodError(ValueError):
@@ -26,14 +36,18 @@ class PeriodError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class LevelLines:
-    """One record of whole periods by its lines: name, split ("fit" or "holdout"), load_rms of the
-    force; frequency (line,) Hz from 0.
+    """One record of whole periods by its spectral lines.
 
-    force (line,) and response (channel, line): complex amplitudes c of c exp(i omega t), the mean
-    square of a signal being |c_0|² + 2 sum
-    |c|²; force_noise (line,) and noise (channel, line): standard deviation of those means, from the
-    scatter between periods (NaN where
-    there is one period only); periods: how many were averaged.
+    Amplitudes c belong to c exp(i omega t); the mean square of a signal is |c_0|² + 2 sum |c|².
+
+    name: of the record.
+    split: "fit" or "holdout".
+    load_rms: RMS of the force.
+    frequency: (line,) Hz from 0.
+    force, response: (line,) and (channel, line), means over periods.
+    force_noise, noise: (line,) and (channel, line), standard deviations of these means from the
+        scatter between periods; NaN for a single period.
+    periods: number of periods averaged.
     """
 
     name: str
@@ -46,39 +60,54 @@ class LevelLines:
     noise: np.ndarray
     periods: int
 
-    def inside(self, band_Hz):
+    def inside(self, band_Hz: Sequence[float]) -> np.ndarray:
         """Return (line,) bool: the lines of a band, its ends included."""
         return (self.frequency >= band_Hz[0]) & (self.frequency <= band_Hz[1])
 
-    def excited(self, band_Hz):
-        """Return (line,) bool: the lines of a band, the mean left out, at which the force is not
-        negligible.
+    def excited(self, band_Hz: Sequence[float]) -> np.ndarray:
+        """Return (line,) bool: the lines of a band at which the force is not negligible.
+
+        The mean (line 0) is left out.
         """
         inside = self.inside(band_Hz) & (self.frequency > 0.0)
         size = np.abs(self.force)
         return inside & (size > EXCITED * size[inside].max())
 
-    def rms(self, band_Hz):
+    def rms(self, band_Hz: Sequence[float]) -> np.ndarray:
         """Return (channel,) RMS of the mean response over a band."""
         return np.sqrt(line_power(self.response, self.frequency, self.inside(band_Hz)))
 
 
-def line_power(lines, frequency, inside):
-    """Return (...) mean square carried by complex line amplitudes (..., line) at the lines `inside`
-    (line,).
+def line_power(lines: np.ndarray, frequency: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """Return (...) the mean square that complex amplitudes (..., line) carry.
+
+    frequency: (line,) Hz.
+    inside: (line,) bool, the lines that count.
     """
     weight = np.where(frequency == 0.0, 1.0, 2.0) * inside
     return np.sum(weight * np.abs(lines) ** 2, axis=-1)
 
 
 def level_lines(
-    name, split, force, response, sampling_frequency, period_samples=0, transient_periods=1
-):
-    """Return the LevelLines of one record: force (time,), response (channel, time),
-    sampling_frequency Hz.
+    name: str,
+    split: str,
+    force: np.ndarray,
+    response: np.ndarray,
+    sampling_frequency: float,
+    period_samples: int = 0,
+    transient_periods: int = 1,
+) -> LevelLines:
+    """Return the LevelLines of one record.
 
-    period_samples: 0 to find it (find_period). Whole periods are counted from the end; the first
-    transient_periods are left out as far as one period remains. Raises PeriodError.
+    Whole periods are counted from the end of the record.
+
+    name, split: see LevelLines.
+    force, response: (time,) and (channel, time).
+    sampling_frequency: Hz.
+    period_samples: length of a period; 0 for find_period.
+    transient_periods: periods left out at the start, as far as one remains.
+
+    Raises PeriodError.
     """
     period = period_samples or find_period(force, name)
     count = force.size // period
@@ -89,24 +118,23 @@ def level_lines(
     driven = np.fft.rfft(force[cut].reshape(-1, period), axis=-1) / period
     lines = np.fft.rfft(response[:, cut].reshape(len(response), -1, period), axis=-1) / period
     return LevelLines(
-        name,
-        split,
-        float(np.sqrt(np.mean(force[cut] ** 2))),
-        np.fft.rfftfreq(period, 1.0 / sampling_frequency),
-        driven.mean(axis=0),
-        lines.mean(axis=1),
-        _scatter(driven, 0),
-        _scatter(lines, 1),
-        count - drop,
+        name=name,
+        split=split,
+        load_rms=float(np.sqrt(np.mean(force[cut] ** 2))),
+        frequency=np.fft.rfftfreq(period, 1.0 / sampling_frequency),
+        force=driven.mean(axis=0),
+        response=lines.mean(axis=1),
+        force_noise=_scatter(driven, 0),
+        noise=_scatter(lines, 1),
+        periods=count - drop,
     )
 
 
-def find_period(force, name="record"):
-    """Return the number of samples after which the force (time,) repeats: of the usual ones, the
-    whole fractions of its length, then any.
+def find_period(force: np.ndarray, name: str = "record") -> int:
+    """Return the number of samples after which the force (time,) repeats.
 
-    A record shorter than two periods of a usual length that is exactly that long counts as one
-    period. Raises PeriodError.
+    Usual lengths are tried first, then whole fractions of the record, then any length. A record of
+    exactly one period of a usual length counts as periodic. Raises PeriodError.
     """
     fractions = [force.size // count for count in range(20, 1, -1) if force.size % count == 0]
     for period in (*USUAL_PERIODS, *fractions):
@@ -123,79 +151,67 @@ def find_period(force, name="record"):
     )
 
 
-def _likeliest_lag(force):
-    """The lag in samples at which the force agrees best with itself, up to half its length; 0 for a
-    force too short or constant.
+def _likeliest_lag(force: np.ndarray) -> int:
+    """Return the lag in samples, up to half the length, of the force's largest autocorrelation.
+
+    It is 0 for a force that is too short or constant.
     """
     shortest = max(SHORTEST_PERIOD, force.size // MOST_PERIODS)
     if force.size < 2 * shortest + 2 or np.ptp(force) == 0.0:
         return 0
     centred = force - force.mean()
-    likeness = np.fft.irfft(np.abs(np.fft.rfft(centred, 2 * force.size)) ** 2)[
-        : force.size // 2 + 1
-    ]
-    likeness /= np.arange(
-        force.size, force.size - likeness.size, -1
-    )  # by the number of samples that overlap
-    return shortest + int(np.argmax(likeness[shortest:]))
+    power = np.abs(np.fft.rfft(centred, 2 * force.size)) ** 2
+    correlation = np.fft.irfft(power)[: force.size // 2 + 1]
+    overlap = np.arange(force.size, force.size - correlation.size, -1)
+    correlation /= overlap
+    return shortest + int(np.argmax(correlation[shortest:]))
 
 
-def _shortest(force, period):
-    """The shortest whole fraction of a period after which the force repeats as well."""
+def _shortest(force: np.ndarray, period: int) -> int:
+    """Return the shortest whole fraction of a period after which the force repeats as well."""
     for count in FRACTIONS:
-        while (
-            period % count == 0
-            and period // count >= SHORTEST_PERIOD
-            and _repeats(force, period // count)
-        ):
+        while period % count == 0 and period // count >= SHORTEST_PERIOD:
+            if not _repeats(force, period // count):
+                break
             period //= count
     return period
 
 
-def _repeats(force, period):
-    """Whether the last two periods of the force agree, and are not both nothing."""
+def _repeats(force: np.ndarray, period: int) -> bool:
+    """Return True when the last two periods of the force agree and are not zero."""
     last, before = force[-period:], force[-2 * period : -period]
     return np.ptp(last) > 0.0 and np.std(last - before) < REPEATS * np.std(last)
 
 
-def _scatter(lines, axis):
-    """Standard deviation of the mean over periods along an axis; NaN for one period."""
+def _scatter(lines: np.ndarray, axis: int) -> np.ndarray:
+    """Return the standard deviation of the mean over periods along an axis; NaN for one period."""
     count = lines.shape[axis]
     if count < 2:
         return np.full(np.delete(lines.shape, axis), np.nan)
     return np.sqrt(np.var(lines, axis=axis, ddof=1) / count)
 
 
-def distortion(level, band_Hz):
-    """Return what lines without force tell of the nonlinearity, {name: value or sentence}.
+def distortion(level: LevelLines, band_Hz: Sequence[float]) -> dict[str, Any]:
+    """Return what the lines without force say about nonlinearity, {name: value}.
 
-    excited_lines; detection_lines: lines of the band without force; odd_fraction and even_fraction
-    (channel,): RMS at odd and at even detection lines over the RMS at excited lines, noise taken
-    off. `told` is a sentence.
+    excited_lines, detection_lines: numbers of lines of the band with and without force.
+    odd_fraction, even_fraction: (channel,) RMS at odd and even detection lines over the RMS at
+        excited lines, noise subtracted; left out where there are too few lines.
+    summary: a sentence for the reader.
     """
     inside, excited = level.inside(band_Hz) & (level.frequency > 0.0), level.excited(band_Hz)
     number, silent = np.arange(level.frequency.size), inside & ~excited
     reference = np.sqrt(line_power(level.response, level.frequency, excited))
-    found = {"excited_lines": int(excited.sum()), "detection_lines": int(silent.sum())}
+    found: dict[str, Any] = {
+        "excited_lines": int(excited.sum()),
+        "detection_lines": int(silent.sum()),
+    }
     if silent.sum() < 4:
-        return found | {
-            "told": (
-                "every line of the band is excited: distortion can not be told from the linear"
-                " response line by line; the scatter of the response per force about a fitted curve"
-                " bounds it"
-            )
-        }
+        return found | {"summary": ALL_EXCITED}
     for name, parity in (("odd_fraction", 1), ("even_fraction", 0)):
         lines = silent & (number % 2 == parity)
-        power = line_power(level.response, level.frequency, lines) - line_power(
-            np.nan_to_num(level.noise), level.frequency, lines
-        )
-        found[name] = (
-            (np.sqrt(np.maximum(power, 0.0)) / reference).tolist() if lines.any() else None
-        )
-    return found | {
-        "told": (
-            "distortion read at the lines that the force leaves out: odd ones from odd, even ones"
-            " from even nonlinearities"
-        )
-    }
+        noise = line_power(np.nan_to_num(level.noise), level.frequency, lines)
+        power = line_power(level.response, level.frequency, lines) - noise
+        fraction = np.sqrt(np.maximum(power, 0.0)) / reference
+        found[name] = fraction.tolist() if lines.any() else None
+    return found | {"summary": DETECTION_LINES}

@@ -1,46 +1,48 @@
-"""Averaged spectra of records: PSD with mean, minimum and maximum over segments, and segment
-spectra.
+"""Averaged spectra of records: PSD with mean, minimum and maximum over segments, segment spectra.
 
-Source: Thénint, Balmes, Corus (ISMA 2012), eq. (3), corrected: the printed formula lacks the
-division by the window's power and the segment's length. Everything here is one-sided, in unit²/Hz;
-the time axis or the frequency axis is last.
+Spectra are one-sided, in unit²/Hz; the time or frequency axis is last. Source: Thénint, Balmes and
+Corus (ISMA 2012), eq. (3), corrected: the printed formula lacks the division by the power of the
+window and by the length of the segment.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from scipy.fft import rfft  # three times as fast as numpy for many channels of float32
+
+from vibroimpact.config.stage_settings import ConfigPart
 
 
 @dataclass(frozen=True)
 class SegmentSpectra:
-    """Windowed Fourier transforms of the segments of one record, scaled so that the mean of
-    |values|² is the PSD.
+    """Windowed Fourier transforms of the segments of a record; the mean of |values|² is the PSD.
 
-    frequency: (frequency,) Hz; values: (channel, segment, frequency) complex, unit/sqrt(Hz).
+    frequency: (frequency,) Hz.
+    values: (channel, segment, frequency) complex, unit/sqrt(Hz).
     """
 
     frequency: np.ndarray
     values: np.ndarray
 
 
-def window_values(window, length):
-    """Return the samples (length,) of a named window, in its periodic form as spectral estimation
-    needs it.
-    """
+def window_values(window: str, length: int) -> np.ndarray:
+    """Return the samples (length,) of a window, hann or boxcar, in its periodic form."""
     if window == "boxcar":
         return np.ones(length)
-    if (
-        window == "hann"
-    ):  # written out: importing scipy.signal costs more than all spectra of a load
+    # Written out: importing scipy.signal takes longer than all spectra of a load.
+    if window == "hann":
         return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
     raise ValueError(f"unknown window '{window}': choose hann or boxcar")
 
 
-def segment_layout(samples, sampling_frequency_Hz, segment_s, overlap):
-    """Return (segment length, step between segments, number of segments), all in samples or counts.
+def segment_layout(
+    samples: int, sampling_frequency_Hz: float, segment_s: float, overlap: float
+) -> tuple[int, int, int]:
+    """Return (segment length, step between segments, number of segments), in samples and counts.
 
-    Raises ValueError when not even one segment fits, saying both lengths.
+    Raises ValueError when not even one segment fits.
     """
     length = int(round(segment_s * sampling_frequency_Hz))
     step = length - int(round(overlap * length))
@@ -56,12 +58,18 @@ def segment_layout(samples, sampling_frequency_Hz, segment_s, overlap):
     return length, step, 1 + (samples - length) // step
 
 
-def segment_spectra(signals, sampling_frequency_Hz, spectra, highest_Hz=None):
+def segment_spectra(
+    signals: np.ndarray,
+    sampling_frequency_Hz: float,
+    spectra: ConfigPart,
+    highest_Hz: float | None = None,
+) -> SegmentSpectra:
     """Return the SegmentSpectra of signals (channel, time).
 
-    spectra: object with segment_s (s), overlap (fraction of a segment), window (name), the
-    `spectra` part of the configuration. highest_Hz: bins above it are dropped. No trend is removed:
-    an excitation without power below some Hz leaves none.
+    No trend is removed: an excitation without power at the lowest frequencies leaves none.
+
+    spectra: section of the configuration with segment_s (s), overlap (fraction) and window (name).
+    highest_Hz: bins above it are dropped.
     """
     signals = np.atleast_2d(signals)
     transform = SegmentTransform(sampling_frequency_Hz, spectra, signals.dtype, highest_Hz)
@@ -75,60 +83,65 @@ def segment_spectra(signals, sampling_frequency_Hz, spectra, highest_Hz=None):
 
 
 class SegmentTransform:
-    """The windowed Fourier transform of one segment, scaled as SegmentSpectra are.
+    """The windowed Fourier transform of one segment, scaled as in SegmentSpectra.
 
-    frequency (frequency,) Hz; dtype of its values: complex64 for signals of type float32, else
-    complex128.
+    frequency: (frequency,) Hz.
+    dtype: of the values; complex64 for signals of type float32, else complex128.
     """
 
-    def __init__(self, sampling_frequency_Hz, spectra, signal_type, highest_Hz=None):
+    def __init__(
+        self,
+        sampling_frequency_Hz: float,
+        spectra: ConfigPart,
+        signal_type: np.dtype | type,
+        highest_Hz: float | None = None,
+    ) -> None:
         length = int(round(spectra.segment_s * sampling_frequency_Hz))
         frequency = np.arange(length // 2 + 1) * (sampling_frequency_Hz / length)
-        kept = (
-            frequency.size
-            if highest_Hz is None
-            else int(np.searchsorted(frequency, highest_Hz, side="right"))
-        )
+        count = frequency.size
+        if highest_Hz is not None:
+            count = int(np.searchsorted(frequency, highest_Hz, side="right"))
         window = window_values(spectra.window, length)
-        scale = np.full(kept, np.sqrt(2.0 / (sampling_frequency_Hz * np.sum(window**2))))
-        scale[0] /= np.sqrt(
-            2.0
-        )  # the zero and the Nyquist bin have no mirror image to be folded in
-        if length % 2 == 0 and kept == frequency.size:
+        scale = np.full(count, np.sqrt(2.0 / (sampling_frequency_Hz * np.sum(window**2))))
+        # The zero and the Nyquist bin have no mirror image to be folded in.
+        scale[0] /= np.sqrt(2.0)
+        if length % 2 == 0 and count == frequency.size:
             scale[-1] /= np.sqrt(2.0)
-        real = np.float32 if signal_type == np.float32 else np.float64
-        self.frequency, self.dtype = (
-            frequency[:kept],
-            (np.complex64 if real is np.float32 else np.complex128),
-        )
+        single = signal_type == np.float32
+        real = np.float32 if single else np.float64
+        self.frequency = frequency[:count]
+        self.dtype = np.complex64 if single else np.complex128
         self._window, self._scale = window.astype(real), scale.astype(real)
 
-    def __call__(self, segment):
+    def __call__(self, segment: np.ndarray) -> np.ndarray:
         """Return the transforms (channel, frequency) of one segment (channel, time)."""
         return rfft(segment * self._window, axis=-1)[:, : self.frequency.size] * self._scale
 
 
-def psd_statistics(values):
-    """Return (mean, minimum, maximum) over segments of |values|² for values (..., segment,
-    frequency), each (..., frequency).
+def psd_statistics(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (mean, minimum, maximum) of |values|² over segments, each (..., frequency).
+
+    values: (..., segment, frequency).
     """
     power = values.real**2 + values.imag**2
     return power.mean(axis=-2), power.min(axis=-2), power.max(axis=-2)
 
 
-def cross_spectra(outputs, references):
-    """Return the averaged one-sided cross-spectra (output, reference, frequency), mean over
-    segments of X_output conj(X_reference).
+def cross_spectra(outputs: np.ndarray, references: np.ndarray) -> np.ndarray:
+    """Return the averaged one-sided cross-spectra (output, reference, frequency).
 
-    outputs: (output, segment, frequency), references: (reference, segment, frequency), both as in
-    SegmentSpectra.
+    They are the mean over segments of X_output conj(X_reference).
+
+    outputs: (output, segment, frequency) as in SegmentSpectra.
+    references: (reference, segment, frequency).
     """
     return np.einsum("osf,rsf->orf", outputs, references.conj(), optimize=True) / outputs.shape[-2]
 
 
-def segment_correlation(spectra, sampling_frequency_Hz, lags):
-    """Return rho (lags,): squared correlation of the spectra of two segments 1, 2, ... steps apart,
-    for white noise.
+def segment_correlation(spectra: ConfigPart, sampling_frequency_Hz: float, lags: int) -> np.ndarray:
+    """Return rho (lags,): squared correlation of the spectra of segments 1, 2, ... steps apart.
+
+    It holds for white noise.
     """
     length, step, _ = segment_layout(
         round(spectra.segment_s * sampling_frequency_Hz),
@@ -144,12 +157,13 @@ def segment_correlation(spectra, sampling_frequency_Hz, lags):
     return (np.array(products) / np.dot(window, window)) ** 2
 
 
-def effective_averages(duration_s, sampling_frequency_Hz, spectra):
-    """Return nu, the effective degrees of freedom of one bin of the averaged PSD: nu/2 independent
-    averages.
+def effective_averages(
+    duration_s: float, sampling_frequency_Hz: float, spectra: ConfigPart
+) -> float:
+    """Return nu, the effective degrees of freedom of one bin of the averaged PSD.
 
-    nu = 2 M / (1 + 2 sum_k (1 - k/M) rho_k) with M segments; overlapping segments share data, so nu
-    < 2 M.
+    A bin is worth nu/2 independent averages: nu = 2 M / (1 + 2 sum_k (1 - k/M) rho_k) with M
+    segments and rho of segment_correlation. Overlapping segments share data, so nu < 2 M.
     """
     samples = int(round(duration_s * sampling_frequency_Hz))
     _, _, count = segment_layout(samples, sampling_frequency_Hz, spectra.segment_s, spectra.overlap)
@@ -160,24 +174,21 @@ def effective_averages(duration_s, sampling_frequency_Hz, spectra):
     return 2.0 * count / (1.0 + 2.0 * np.sum((1.0 - lag / count) * rho))
 
 
-def driven_axis(direction):
+def driven_axis(direction: Sequence[float] | np.ndarray) -> str:
     """Return "x", "y" or "z": the global axis closest to the excitation's direction (3,)."""
     return "xyz"[int(np.argmax(np.abs(direction)))]
 
 
-def kept_to_Hz(config):
-    """Return the frequency (Hz) up to which segment spectra are kept: the bands that the
-    identification reads, and a margin.
+def highest_kept_frequency_Hz(config: ConfigPart) -> float:
+    """Return the frequency in Hz up to which the identification needs segment spectra.
 
-    The half spectra of the pole estimator need twice its band, the broadband correlation what its
-    window smears across the end.
+    The half spectra of the pole estimator need twice its band. The broadband correlation needs what
+    the window smears across the end of its band.
     """
     identification = config.identification
     return max(2.0 * identification.lscf.band_Hz[1], 1.2 * identification.broadband.band_Hz[1])
 
 
-def complex_values(dataset, name):
-    """Return the complex array stored in dataset as name_re and name_im (netCDF has no complex
-    numbers).
-    """
+def complex_values(dataset: xr.Dataset, name: str) -> np.ndarray:
+    """Return the complex array stored in a dataset as name_re and name_im."""
     return dataset[name + "_re"].values + 1j * dataset[name + "_im"].values

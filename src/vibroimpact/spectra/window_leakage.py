@@ -1,9 +1,8 @@
-"""What the analysis window does to a PSD: the expected averaged spectrum is the true one convolved
-with the window's |W|².
+"""The effect of the analysis window on a PSD.
 
-A 10 s Hann window widens the half-power width of the first peak by about 8 %. The cure here is to
-pass every MODEL spectrum through the same kernel before it is compared with an estimate, so that
-nothing is divided out of noisy data.
+The expected averaged spectrum is the true one convolved with the window's |W|². A 10 s Hann window
+widens the half-power width of the first peak by about 8 %. Every model spectrum therefore passes
+through the same kernel before it is compared with an estimate, and noisy data are not deconvolved.
 """
 
 from dataclasses import dataclass
@@ -12,8 +11,8 @@ import numpy as np
 
 from .welch import window_values
 
-SIDE_LOBES = 1.0e-5  # part of the kernel's area that may be cut off
-LONGEST_REACH = 40  # bins
+SIDE_LOBES = 1.0e-5  # fraction of the kernel's area that may be cut off
+MAX_HALF_WIDTH = 40  # bins
 WINDOW_SAMPLES = 1024  # the kernel near zero frequency does not depend on them
 
 
@@ -21,9 +20,11 @@ WINDOW_SAMPLES = 1024  # the kernel near zero frequency does not depend on them
 class SpectralKernel:
     """Weights of the window's power kernel on a grid finer than the bins.
 
-    spacing_Hz: distance of two bins; oversampling: fine points per bin; weights: (tap,) summing to
-    1, odd length, centred; bin_correlation: (distance,) squared correlation of the segment spectra
-    0, 1, ... bins apart for a flat PSD.
+    spacing_Hz: distance of two bins.
+    oversampling: fine points per bin.
+    weights: (tap,) centred, of odd length, summing to 1.
+    bin_correlation: (distance,) squared correlation of segment spectra 0, 1, ... bins apart, for a
+        flat PSD.
     """
 
     spacing_Hz: float
@@ -32,27 +33,26 @@ class SpectralKernel:
     bin_correlation: np.ndarray
 
     @property
-    def reach(self):
+    def half_width(self) -> int:
         """Return the number of fine points on each side of the kernel's centre."""
         return self.weights.size // 2
 
-    def fine_index(self, frequency):
-        """Return (fine,) indices into a grid from 0 Hz in steps of spacing/oversampling, on which a
-        model PSD must be given.
+    def fine_index(self, frequency: np.ndarray) -> np.ndarray:
+        """Return (fine,) indices into a grid from 0 Hz in steps of spacing_Hz / oversampling.
 
-        frequency: (frequency,) Hz, contiguous bins. Below 0 Hz a PSD is its own mirror image.
+        A model PSD must be given at these points to be smoothed. Below 0 Hz a PSD is its own mirror
+        image.
+
+        frequency: (frequency,) Hz, contiguous bins.
         """
         first = int(round(frequency[0] / self.spacing_Hz)) * self.oversampling
-        return np.abs(
-            np.arange(
-                first - self.reach,
-                first + (frequency.size - 1) * self.oversampling + self.reach + 1,
-            )
-        )
+        last = first + (frequency.size - 1) * self.oversampling
+        return np.abs(np.arange(first - self.half_width, last + self.half_width + 1))
 
-    def smooth(self, fine_psd):
-        """Return the expected averaged PSD (..., frequency) from the true PSD (..., fine) on
-        `fine_index`.
+    def smooth(self, fine_psd: np.ndarray) -> np.ndarray:
+        """Return the expected averaged PSD (..., frequency).
+
+        fine_psd: (..., fine), the true PSD on `fine_index`.
         """
         if self.weights.size == 1:
             return fine_psd[..., :: self.oversampling]
@@ -60,24 +60,24 @@ class SpectralKernel:
         return windows[..., :: self.oversampling, :] @ self.weights
 
 
-def spectral_kernel(window, segment_s, oversampling=4):
-    """Return the SpectralKernel of a named window over segment_s seconds; window "none" gives the
-    identity (spectra known without one).
+def spectral_kernel(window: str, segment_s: float, oversampling: int = 4) -> SpectralKernel:
+    """Return the SpectralKernel of a window over segments of segment_s seconds.
 
     With 4 points per bin the discrete convolution is exact up to the correlation of the response at
     lags beyond 3 segments: the kernel's Fourier transform is the window's autocorrelation, which
     ends at one segment, and its images start at 4.
+
+    window: hann, boxcar, or "none" for the identity (spectra known without a window).
     """
     if window == "none":
         return SpectralKernel(1.0 / segment_s, 1, np.ones(1), np.ones(1))
     values = window_values(window, WINDOW_SAMPLES)
     transform = np.abs(np.fft.fft(values, WINDOW_SAMPLES * oversampling)) ** 2
-    inside = (
-        np.cumsum(np.concatenate([transform[:1], 2.0 * transform[1 : transform.size // 2]]))
-        / transform.sum()
-    )
-    reach = min(oversampling * LONGEST_REACH, int(np.searchsorted(inside, 1.0 - SIDE_LOBES)))
-    weights = np.concatenate([transform[-reach:], transform[: reach + 1]])
+    both_sides = np.concatenate([transform[:1], 2.0 * transform[1 : transform.size // 2]])
+    area = np.cumsum(both_sides) / transform.sum()
+    needed = int(np.searchsorted(area, 1.0 - SIDE_LOBES))
+    half_width = min(oversampling * MAX_HALF_WIDTH, needed)
+    weights = np.concatenate([transform[-half_width:], transform[: half_width + 1]])
     spread = np.abs(np.fft.fft(values**2)[:8]) ** 2
     spread = spread[: 1 + int(np.flatnonzero(spread > 1.0e-6 * spread[0])[-1])]
     return SpectralKernel(
@@ -85,12 +85,13 @@ def spectral_kernel(window, segment_s, oversampling=4):
     )
 
 
-def correlated_sum(weighted, kernel):
-    """Return sum over bins f, f' of weighted_f rho(f - f') weighted_f'^T (parameter, parameter) for
-    weighted (parameter, bin).
+def correlated_sum(weighted: np.ndarray, kernel: SpectralKernel) -> np.ndarray:
+    """Return (parameter, parameter): sum over bins f, f' of w_f rho(f - f') w_f'^T.
 
-    Times 2/averages it is the covariance of sum_f weighted_f (estimate/expectation - 1):
+    Times 2/averages it is the covariance of sum_f w_f (estimate/expectation - 1), in which
     neighbouring bins share the window.
+
+    weighted: w, (parameter, bin).
     """
     total = np.zeros((len(weighted), len(weighted)))
     for distance, share in enumerate(kernel.bin_correlation[: weighted.shape[1]]):
@@ -99,12 +100,13 @@ def correlated_sum(weighted, kernel):
     return total
 
 
-def window_autocorrelation(window, length, lags):
-    """Return (lags,) the autocorrelation of the window of `length` samples at lags 0 .. lags-1,
-    divided by its value at 0.
+def window_autocorrelation(window: str, length: int, lags: int) -> np.ndarray:
+    """Return (lags,) the autocorrelation of a window at lags 0 .. lags-1, relative to lag 0.
 
-    The inverse transform of an averaged PSD is the true correlation times this: dividing by it
-    undoes the window exactly.
+    The inverse transform of an averaged PSD is the true correlation times this, so that division by
+    it removes the window exactly.
+
+    length: samples of the window.
     """
     if window == "none":
         return np.ones(lags)

@@ -1,3 +1,1 @@
-"""The linear structure without contact: beam elements of a tube, masses and springs, or matrices
-from files.
-"""
+"""The linear structure without contact: a tube, masses and springs, or matrices."""

@@ -1,42 +1,50 @@
 """Three-dimensional beam elements of a tube: stiffness, consistent mass and shape functions.
 
-Two nodes of six degrees of freedom (three translations, three rotations, global axes). Bending
-follows the exact static solution of a Timoshenko beam between its nodes, so that shear does not
-lock; Euler-Bernoulli is the same element with an infinite shear stiffness and no rotary inertia.
-Frequencies converge with the fourth power of the element length for Euler-Bernoulli and with the
-second for Timoshenko, whose shear angle is constant along an element; for a slender tube that
-second-order part is small.
+An element has two nodes of six degrees of freedom: three translations and three rotations about the
+global axes. Bending follows the exact static solution of a Timoshenko beam between its nodes, so
+there is no shear locking. Euler-Bernoulli is the same element with an infinite shear stiffness and
+no rotary inertia.
 
-Sources: J. S. Przemieniecki, Theory of Matrix Structural Analysis (McGraw-Hill 1968), chapter 5
-(stiffness with shear parameter phi); Z. Friedman and J. B. Kosmatka, An improved two-node
-Timoshenko beam finite element, Computers and Structures 47 (1993) 473-481 (shape functions, from
-which the consistent mass follows); G. R. Cowper, The shear coefficient in Timoshenko's beam theory,
-J. Applied Mechanics 33 (1966) 335-340.
+Frequencies converge with the fourth power of the element length for Euler-Bernoulli, and with the
+second for Timoshenko, whose shear angle is constant along an element. The second-order part is
+small for a slender tube.
+
+Sources:
+- stiffness: J. S. Przemieniecki, Theory of Matrix Structural Analysis (McGraw-Hill 1968), ch. 5.
+- shape functions and consistent mass: Z. Friedman and J. B. Kosmatka, An improved two-node
+  Timoshenko beam finite element, Computers and Structures 47 (1993) 473-481.
+- shear coefficient: G. R. Cowper, The shear coefficient in Timoshenko's beam theory, J. Applied
+  Mechanics 33 (1966) 335-340.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-DOF_PER_NODE = 6
-ROTATION_SIGN = np.array(
-    [1.0, -1.0, 1.0, -1.0]
-)  # second bending plane: the rotation about the first transverse axis is -w'
+from vibroimpact.config.stage_settings import ConfigPart
 
-# The integrands of the mass matrix are polynomials of degree six: four Gauss points integrate them
-# exactly.
+DOF_PER_NODE = 6
+# In the second bending plane the rotation about the first transverse axis is -w'.
+ROTATION_SIGN = np.array([1.0, -1.0, 1.0, -1.0])
+
+# Four Gauss points integrate the mass matrix exactly: its integrands are of degree six.
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 GAUSS_POINTS, GAUSS_WEIGHTS = 0.5 * (GAUSS_POINTS + 1.0), 0.5 * GAUSS_WEIGHTS
 
 
 @dataclass(frozen=True)
 class Beam:
-    """Constants of a uniform beam with a circular section; SI units.
+    """Constants of a uniform beam with a circular section.
 
-    axial_stiffness EA [N], bending_stiffness EI [N m²], torsion_stiffness GJ [N m²],
-    shear_stiffness kGA [N] (infinite for Euler-Bernoulli), mass_per_length [kg/m], rotary_inertia
-    rho I [kg m] (0 for Euler-Bernoulli), torsion_inertia rho J [kg m], fibre_stiffness E r [N/m]:
-    outer-fibre bending stress per unit curvature.
+    axial_stiffness: EA in N.
+    bending_stiffness: EI in N m².
+    torsion_stiffness: GJ in N m².
+    shear_stiffness: kGA in N; infinite for Euler-Bernoulli.
+    mass_per_length: kg/m.
+    rotary_inertia: rho I in kg m; 0 for Euler-Bernoulli.
+    torsion_inertia: rho J in kg m.
+    fibre_stiffness: E r in N/m, the outer-fibre bending stress per unit curvature.
     """
 
     axial_stiffness: float
@@ -48,16 +56,17 @@ class Beam:
     torsion_inertia: float
     fibre_stiffness: float
 
-    def shear_parameter(self, length):
-        """Return phi = 12 EI / (kGA L²) (dimensionless), 0 for Euler-Bernoulli; `length` in m."""
+    def shear_parameter(self, length: float) -> float:
+        """Return phi = 12 EI / (kGA L²) for an element length L in m; 0 for Euler-Bernoulli."""
         return 12.0 * self.bending_stiffness / (self.shear_stiffness * length**2)
 
 
-def tube_beam(section, material, theory):
+def tube_beam(section: ConfigPart, material: ConfigPart, theory: str) -> Beam:
     """Return the Beam of a circular tube.
 
-    section: outer_diameter_m, wall_thickness_m, shear_coefficient. material: young_modulus_Pa,
-    poisson_ratio, density_kg_per_m3. theory: "timoshenko" or "euler_bernoulli".
+    section: outer_diameter_m, wall_thickness_m, shear_coefficient.
+    material: young_modulus_Pa, poisson_ratio, density_kg_per_m3.
+    theory: "timoshenko" or "euler_bernoulli".
 
     Raises ValueError for another theory or a wall thicker than the radius; the message names the
     value.
@@ -88,16 +97,19 @@ def tube_beam(section, material, theory):
     )
 
 
-def bending_shapes(xi, length, phi):
-    """Return (deflection, rotation, curvature), each (4, point): static shapes of the dofs (v1,
-    theta1, v2, theta2).
+def bending_shapes(
+    xi: Sequence[float] | np.ndarray, length: float, phi: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (deflection, rotation, curvature), each (4, point): static shapes in one plane.
 
-    xi: (point,) position on the element, 0 to 1. Deflection in m, rotation in rad, curvature in 1/m
-    per unit dof. The shear angle v' - theta is constant along the element. Source: Friedman and
-    Kosmatka (1993).
+    Rows belong to the dofs (v1, theta1, v2, theta2); values are m, rad and 1/m per unit dof. The
+    shear angle v' - theta is constant along the element. Source: Friedman and Kosmatka (1993).
+
+    xi: (point,) position on the element, 0 to 1.
+    length: element length in m.
+    phi: shear parameter.
     """
     xi = np.asarray(xi, dtype=float)
-    one = np.ones_like(xi)
     deflection = np.array(
         [
             1.0 - 3.0 * xi**2 + 2.0 * xi**3 + phi * (1.0 - xi),
@@ -114,23 +126,22 @@ def bending_shapes(xi, length, phi):
             3.0 * xi**2 - 2.0 * xi + phi * xi,
         ]
     )
-    curvature = (
-        np.array(
-            [
-                6.0 / length * (2.0 * xi - 1.0),
-                6.0 * xi - 4.0 - phi * one,
-                -6.0 / length * (2.0 * xi - 1.0),
-                6.0 * xi - 2.0 + phi * one,
-            ]
-        )
-        / length
+    slope = np.array(
+        [
+            6.0 / length * (2.0 * xi - 1.0),
+            6.0 * xi - 4.0 - phi,
+            -6.0 / length * (2.0 * xi - 1.0),
+            6.0 * xi - 2.0 + phi,
+        ]
     )
+    curvature = slope / length
     return deflection / (1.0 + phi), rotation / (1.0 + phi), curvature / (1.0 + phi)
 
 
-def bending_stiffness(beam, length):
-    """Return the 4 × 4 stiffness of one bending plane, dofs (v1, theta1, v2, theta2). Source:
-    Przemieniecki (1968), eq. 5.116.
+def bending_stiffness(beam: Beam, length: float) -> np.ndarray:
+    """Return the (4, 4) stiffness of one bending plane, dofs (v1, theta1, v2, theta2).
+
+    Source: Przemieniecki (1968), eq. 5.116.
     """
     phi = beam.shear_parameter(length)
     near, far, slope = (4.0 + phi) * length**2, (2.0 - phi) * length**2, 6.0 * length
@@ -145,9 +156,10 @@ def bending_stiffness(beam, length):
     return beam.bending_stiffness / (length**3 * (1.0 + phi)) * pattern
 
 
-def bending_mass(beam, length):
-    """Return the 4 × 4 consistent mass of one bending plane (translation and rotary inertia), dofs
-    (v1, theta1, v2, theta2).
+def bending_mass(beam: Beam, length: float) -> np.ndarray:
+    """Return the (4, 4) consistent mass of one bending plane, dofs (v1, theta1, v2, theta2).
+
+    It holds translation and rotary inertia.
     """
     deflection, rotation, _ = bending_shapes(GAUSS_POINTS, length, beam.shear_parameter(length))
     weights = GAUSS_WEIGHTS * length
@@ -157,11 +169,13 @@ def bending_mass(beam, length):
     )
 
 
-def element_matrices(beam, length, axes):
-    """Return (stiffness, mass), each (12, 12) in global axes, of an element of `length` m.
+def element_matrices(beam: Beam, length: float, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return (stiffness, mass), each (12, 12), of an element in global axes.
 
-    axes: (3, 3), rows = unit tangent, first and second transverse axis (right-handed). Dofs per
-    node: ux, uy, uz, rx, ry, rz.
+    Dofs per node: ux, uy, uz, rx, ry, rz.
+
+    length: element length in m.
+    axes: (3, 3), rows are the unit tangent and the two transverse axes (right-handed).
     """
     stiffness, mass = np.zeros((12, 12)), np.zeros((12, 12))
     bar = np.array([[1.0, -1.0], [-1.0, 1.0]]) / length
@@ -175,20 +189,23 @@ def element_matrices(beam, length, axes):
     for dofs, sign in (([1, 5, 7, 11], np.ones(4)), ([2, 4, 8, 10], ROTATION_SIGN)):
         stiffness[np.ix_(dofs, dofs)] = bending_stiffness(beam, length) * np.outer(sign, sign)
         mass[np.ix_(dofs, dofs)] = bending_mass(beam, length) * np.outer(sign, sign)
-    turn = np.kron(np.eye(4), axes)
-    return turn.T @ stiffness @ turn, turn.T @ mass @ turn
+    to_local = np.kron(np.eye(4), axes)
+    return to_local.T @ stiffness @ to_local, to_local.T @ mass @ to_local
 
 
-def interpolation(beam, length, axes, xi):
-    """Return (displacement, rotation_gradient), each (3, 12): rows of global components at xi (0 to
-    1) per unit element dof.
+def interpolation(
+    beam: Beam, length: float, axes: np.ndarray, xi: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (displacement, rotation_gradient), each (3, 12), at a point of an element.
 
-    displacement in m; rotation_gradient is the derivative of the rotation vector along the element
-    in rad/m, whose transverse components are the bending curvatures. axes as in `element_matrices`.
+    Rows are global components per unit element dof. displacement is in m. rotation_gradient is the
+    derivative of the rotation vector along the element in rad/m; its transverse components are the
+    bending curvatures.
+
+    xi: position on the element, 0 to 1; other arguments as in element_matrices.
     """
-    deflection, _, curvature = (
-        shape[:, 0] for shape in bending_shapes([xi], length, beam.shear_parameter(length))
-    )
+    shapes = bending_shapes([xi], length, beam.shear_parameter(length))
+    deflection, _, curvature = (shape[:, 0] for shape in shapes)
     displacement, gradient = np.zeros((3, 12)), np.zeros((3, 12))
     displacement[0, [0, 6]] = 1.0 - xi, xi
     displacement[1, [1, 5, 7, 11]] = deflection
@@ -196,5 +213,5 @@ def interpolation(beam, length, axes, xi):
     gradient[0, [3, 9]] = -1.0 / length, 1.0 / length
     gradient[2, [1, 5, 7, 11]] = curvature
     gradient[1, [2, 4, 8, 10]] = -curvature * ROTATION_SIGN
-    turn = np.kron(np.eye(4), axes)
-    return axes.T @ displacement @ turn, axes.T @ gradient @ turn
+    to_local = np.kron(np.eye(4), axes)
+    return axes.T @ displacement @ to_local, axes.T @ gradient @ to_local

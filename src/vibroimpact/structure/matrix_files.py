@@ -1,29 +1,36 @@
-"""Mass, stiffness and damping matrices from files: NumPy, MATLAB, MatrixMarket and Nastran OP4."""
+"""Mass, stiffness and damping matrices from NumPy, MATLAB, MatrixMarket and Nastran OP4 files."""
 
 import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy import io, sparse
 
 LETTERS = {"mass": ("M", "m"), "stiffness": ("K", "k"), "damping": ("C", "c")}
 OP4_READER = "pyyeti==1.4.7"
-OP4_NAME_LENGTH = 8  # characters that the format keeps of a name: stiffnes
+OP4_NAME_LENGTH = 8  # characters of a name in the format: stiffnes
 OP4_LETTERS = {"mass": ("m",), "stiffness": ("k",), "damping": ("c", "b")}
-# Sets of displacements whose matrices Nastran writes (KGG, KAA, ...). Not hh: its dofs are modes.
-# Not K4GG: structural damping is no C.
+# Displacement sets whose matrices Nastran writes (KGG, KAA, ...). Left out: hh, whose dofs are
+# modes, and K4GG, which is structural damping and no C.
 OP4_SETS = ("gg", "nn", "ff", "aa", "ll", "xx")
 
 
+# What pyyeti raises on a truncated file or one of another format.
+OP4_ERRORS = (ValueError, RuntimeError, IndexError, OverflowError, OSError, struct.error)
+
+
 class MatrixFileError(ValueError):
-    """A matrix file that can not be used; the message names it, what it holds and the remedy."""
+    """A matrix file that cannot be used; the message names it, what it holds and the remedy."""
 
 
-def read_matrix(path, name):
-    """Return the square, symmetric, real matrix (dof, dof) of a .npz, .mat, .mtx or .op4 file as
-    sparse; `name` chooses among several arrays.
+def read_matrix(path: str | Path, name: str) -> sparse.csr_array:
+    """Return the symmetric real matrix (dof, dof) of a .npz, .mat, .mtx or .op4 file.
 
-    A MatrixMarket file or a scipy.sparse .npz holds one matrix. Raises MatrixFileError.
+    name: mass, stiffness or damping; it chooses among several arrays. A MatrixMarket file or a
+        scipy.sparse .npz holds one matrix.
+
+    Raises MatrixFileError.
     """
     path = Path(path)
     if not path.is_file():
@@ -51,24 +58,23 @@ def _npz(path, name):
     with np.load(path, allow_pickle=False) as arrays:
         if "format" in arrays.files:
             return sparse.load_npz(path)
-        return arrays[
-            _choose(path, arrays.files, [name, *LETTERS[name]], f"name the {name} matrix '{name}'")
-        ]
+        return arrays[_choose_letter(path, arrays.files, name)]
 
 
 def _mat(path, name):
     arrays = {key: value for key, value in io.loadmat(path).items() if not key.startswith("__")}
-    return arrays[
-        _choose(path, list(arrays), [name, *LETTERS[name]], f"name the {name} matrix '{name}'")
-    ]
+    return arrays[_choose_letter(path, list(arrays), name)]
 
 
-def _op4(path, name):
-    """The matrix of an OP4 file, ASCII or binary, dense or sparse; its names come in lower case.
-    Raises MatrixFileError.
-    """
+def _choose_letter(path, names, name):
+    """Return the name of the wanted matrix: mass, M or m. Raises MatrixFileError."""
+    return _choose(path, names, [name, *LETTERS[name]], f"name the {name} matrix '{name}'")
+
+
+def _op4(path: Path, name: str) -> Any:
+    """Return a matrix of an OP4 file, ASCII or binary. Raises MatrixFileError."""
     try:
-        from pyyeti.nastran import op4  # here: it takes seconds, and the other formats do without
+        from pyyeti.nastran import op4  # imported here: it takes seconds, only OP4 needs it
     except ImportError as error:
         raise MatrixFileError(
             f"{path}: reading OP4 needs pyyeti: pip install {OP4_READER}"
@@ -79,22 +85,17 @@ def _op4(path, name):
         return op4.read(str(path), chosen, sparse=None)[chosen]
     except MatrixFileError:
         raise
-    except (
-        ValueError,
-        RuntimeError,
-        IndexError,
-        OverflowError,
-        OSError,
-        struct.error,
-    ) as error:  # what pyyeti raises on a cut or foreign file
+    except OP4_ERRORS as error:
         raise MatrixFileError(
-            f"{path}: can not be read as OP4 ({error}): write it anew with OUTPUT4"
+            f"{path}: cannot be read as OP4 ({error}): write it anew with OUTPUT4"
         ) from error
 
 
-def _choose_op4(path, names, name):
-    """The matrix called mass, then m, then by one of Nastran's names (mgg, maa, ...), or the only
-    one; never one of two that would do.
+def _choose_op4(path: Path, names: list[str], name: str) -> str:
+    """Return the name of the wanted matrix in an OP4 file; names there are in lower case.
+
+    In order: mass (or stiffness, damping), its letter, one of Nastran's names (mgg, maa, ...), the
+    only matrix of the file. Raises MatrixFileError where two names fit equally.
     """
     letters = OP4_LETTERS[name]
     plain = [wanted for wanted in (name[:OP4_NAME_LENGTH], *letters) if wanted in names]
@@ -114,10 +115,8 @@ def _choose_op4(path, names, name):
     )
 
 
-def _choose(path, names, fitting, remedy):
-    """The first of the fitting names that a file holds, or its only one. Raises MatrixFileError,
-    with the remedy.
-    """
+def _choose(path: Path, names: list[str], fitting: list[str], remedy: str) -> str:
+    """Return the first fitting name that a file holds, or its only one. Raises MatrixFileError."""
     for wanted in fitting:
         if wanted in names:
             return wanted

@@ -1,11 +1,13 @@
-"""A structure that is not a tube: masses on springs, or matrices from files, with named points."""
+"""Structures that are not tubes: masses on springs, matrices, or measured modes; named points."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
-from vibroimpact.contact.supports import ContactPoints, place_at_points
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.contact.supports import ContactPoints, contacts_at_points
 
 from .matrix_files import MatrixFileError, read_matrix
 
@@ -17,9 +19,13 @@ GROUND = "ground"
 class PointStructure:
     """A linear structure known by its matrices and named points.
 
-    mass, stiffness, damping (dof, dof) sparse, SI; directions {point: {axis: dof}}; dampers: list
-    of ((dof,) row, coefficient N s/m) that are not in `damping`, each between two dofs or a dof and
-    the ground; contact: the ContactPoints of its supports.
+    mass, stiffness, damping: (dof, dof) sparse, SI.
+    dampers: list of ((dof,) row, coefficient in N s/m) that are not in `damping`; each acts between
+        two dofs, or a dof and the ground.
+    directions: {point: {axis: dof}}.
+    contact: the ContactPoints of its supports.
+    contact_points: per contact point, the names of its point and of the other point, None for the
+        ground.
     """
 
     mass: sparse.csr_array
@@ -31,13 +37,14 @@ class PointStructure:
     contact_points: list
 
     @property
-    def dofs(self):
+    def dofs(self) -> int:
         """Return the number of degrees of freedom."""
         return self.mass.shape[0]
 
-    def point_rows(self, name):
-        """Return (3, dof): displacement of a named point along x, y and z per unit dof; zeros where
-        it has no dof. Raises ValueError.
+    def point_rows(self, name: str) -> np.ndarray:
+        """Return (3, dof): the displacement of a named point along x, y and z per unit dof.
+
+        Rows are zero where the point has no dof. Raises ValueError for an unknown point.
         """
         if name not in self.directions:
             raise ValueError(
@@ -48,25 +55,25 @@ class PointStructure:
             rows[AXES[axis], dof] = 1.0
         return rows
 
-    def contact_rows(self):
-        """Return (contact_point, 2, dof): displacement of each contact point along its two
-        directions, relative where it has two ends.
+    def contact_rows(self) -> np.ndarray:
+        """Return (contact_point, 2, dof): displacement along the two directions of contact.
+
+        It is relative where a contact point has two ends.
         """
         rows = [
             self.point_rows(one) - (self.point_rows(other) if other else 0.0)
             for one, other in self.contact_points
         ]
-        return np.array(
-            [
-                directions @ row
-                for directions, row in zip(self.contact.directions, rows, strict=True)
-            ]
-        ).reshape(-1, 2, self.dofs)
+        along = [
+            directions @ row for directions, row in zip(self.contact.directions, rows, strict=True)
+        ]
+        return np.array(along).reshape(-1, 2, self.dofs)
 
     @property
-    def inertia(self):
-        """Return (3, dof): force in N per unit acceleration of the base along x, y, z, on each dof,
-        with the sign turned.
+    def inertia(self) -> np.ndarray:
+        """Return (3, dof) in kg: minus the force on each dof per unit acceleration of the base.
+
+        The base accelerates along x, y, z.
         """
         rigid = np.zeros((self.dofs, 3))
         for axes in self.directions.values():
@@ -77,18 +84,18 @@ class PointStructure:
 
 @dataclass(frozen=True, eq=False)
 class IdentifiedStructure(PointStructure):
-    """A structure known by its measured modes: its dofs are modal amplitudes (kg^1/2 m), a point
-    moves by the modes' shapes.
+    """A structure known by its measured modes; its dofs are modal amplitudes in kg^1/2 m.
 
-    rows {point: (3, dof)} kg^-1/2; directions {point: {axis: axis}} name what was measured, and are
-    no dofs.
+    rows: {point: (3, dof)} in kg^-1/2, the mode shapes at the points.
+    directions: {point: {axis: axis number}}, what was measured.
     """
 
     rows: dict
 
-    def point_rows(self, name):
-        """Return (3, dof): displacement of a named point along x, y and z per unit modal amplitude.
-        Raises ValueError.
+    def point_rows(self, name: str) -> np.ndarray:
+        """Return (3, dof): the displacement of a named point per unit modal amplitude.
+
+        Raises ValueError for an unknown point.
         """
         if name not in self.rows:
             raise ValueError(
@@ -97,23 +104,21 @@ class IdentifiedStructure(PointStructure):
         return self.rows[name]
 
     @property
-    def inertia(self):
-        """Refuse: measured modes do not tell what moves with the base. Raises ValueError."""
+    def inertia(self) -> np.ndarray:
+        """Raise ValueError: the modes alone do not give the mass that moves with the base."""
         raise ValueError(
-            "structure.kind identified can not be driven by its base: its mass is not known, only"
+            "structure.kind identified cannot be driven by its base: its mass is not known, only"
             " its modes"
         )
 
 
-def build_point_structure(config):
-    """Return the PointStructure of a configuration with structure.kind chain, matrices or
-    identified.
+def build_point_structure(config: ConfigPart) -> PointStructure:
+    """Return the PointStructure of a configuration: a chain, matrices or identified modes.
 
-    Raises ValueError: a spring or support names a mass or point that is not there; MatrixFileError.
+    Raises ValueError when a spring or support names a mass or point that is not there, and
+    MatrixFileError.
     """
-    parts = {"chain": _chain, "matrices": _matrices, "identified": _identified}[
-        config.structure.kind
-    ](config.structure)
+    parts = PARTS[config.structure.kind](config.structure)
     kind = IdentifiedStructure if config.structure.kind == "identified" else PointStructure
     directions = parts["directions"]
     for support in config.supports:
@@ -125,12 +130,13 @@ def build_point_structure(config):
                 )
     return kind(
         **parts,
-        contact=place_at_points(config.supports),
+        contact=contacts_at_points(config.supports),
         contact_points=[(each.point, each.other_point) for each in config.supports],
     )
 
 
-def _chain(chain):
+def _chain(chain: ConfigPart) -> dict[str, Any]:
+    """Return the fields of a PointStructure of masses on springs."""
     place = {mass.name: dof for dof, mass in enumerate(chain.masses)}
     stiffness, dampers = np.zeros((len(place), len(place))), []
     for spring in chain.springs:
@@ -150,14 +156,13 @@ def _chain(chain):
     }
 
 
-def _matrices(structure):
+def _matrices(structure: ConfigPart) -> dict[str, Any]:
+    """Return the fields of a PointStructure whose matrices are in files."""
     mass = read_matrix(structure.mass, "mass")
     stiffness = read_matrix(structure.stiffness, "stiffness")
-    damping = (
-        read_matrix(structure.damping, "damping")
-        if structure.damping
-        else sparse.csr_array(mass.shape)
-    )
+    damping = sparse.csr_array(mass.shape)
+    if structure.damping:
+        damping = read_matrix(structure.damping, "damping")
     for path, matrix in ((structure.stiffness, stiffness), (structure.damping, damping)):
         if matrix.shape != mass.shape:
             raise MatrixFileError(
@@ -181,25 +186,26 @@ def _matrices(structure):
     }
 
 
-def _identified(structure):
+def _identified(structure: ConfigPart) -> dict[str, Any]:
+    """Return the fields of an IdentifiedStructure of measured modes."""
     modes = sorted(structure.modes, key=lambda mode: mode.frequency_Hz)
     omega = 2.0 * np.pi * np.array([mode.frequency_Hz for mode in modes])
     ratios = np.array([mode.damping_ratio for mode in modes])
-    rows, directions = {}, {}
+    rows: dict[str, np.ndarray] = {}
+    directions: dict[str, dict[str, int]] = {}
     for number, mode in enumerate(modes):
         for name, axes in mode.shape.items():
             for axis, value in axes.items():
                 rows.setdefault(name, np.zeros((3, len(modes))))[AXES[axis], number] = value
                 directions.setdefault(name, {})[axis] = AXES[axis]
-    diagonal = [
-        sparse.diags_array(values, format="csr")
-        for values in (np.ones(len(modes)), omega**2, 2.0 * ratios * omega)
-    ]
     return {
-        "mass": diagonal[0],
-        "stiffness": diagonal[1],
-        "damping": diagonal[2],
+        "mass": sparse.diags_array(np.ones(len(modes)), format="csr"),
+        "stiffness": sparse.diags_array(omega**2, format="csr"),
+        "damping": sparse.diags_array(2.0 * ratios * omega, format="csr"),
         "dampers": [],
         "directions": directions,
         "rows": rows,
     }
+
+
+PARTS = {"chain": _chain, "matrices": _matrices, "identified": _identified}

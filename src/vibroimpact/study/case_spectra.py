@@ -13,7 +13,7 @@ from vibroimpact.spectra.welch import (
     SegmentTransform,
     driven_axis,
     effective_averages,
-    kept_to_Hz,
+    highest_kept_frequency_Hz,
     segment_layout,
 )
 
@@ -49,7 +49,7 @@ class SpectraOfCase:
             if name.endswith("." + driven_axis(config.excitation.direction))
         ]
         self._low, self._band = (
-            int(np.sum(frequency <= kept_to_Hz(config))),
+            int(np.sum(frequency <= highest_kept_frequency_Hz(config))),
             line_frequency >= lowest,
         )
         self._held = np.empty((2 * len(sensors) + line_points, self._length), dtype)

@@ -4,7 +4,7 @@ without start-up and without filter.
 
 import numpy as np
 
-from vibroimpact.excitation.force_stream import unit_force
+from vibroimpact.excitation.force_stream import normalised_force
 from vibroimpact.integration.every_step import Traces, trace_lanes
 from vibroimpact.integration.kernels import LANES
 from vibroimpact.random_streams import random_generator
@@ -44,7 +44,7 @@ def trace_cases(config, model: ModalModel, cases: list[Case]):
 
 def _unit_force(config, seed, steps, rate):
     generator = random_generator(config.seed, seed, "force")
-    return unit_force(
+    return normalised_force(
         config.excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0
     )
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.discrepancy.results_folder import best_places
-from vibroimpact.display_units import shown_unit
+from vibroimpact.display_units import display_unit
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -250,7 +250,7 @@ def _same(effects, name, value):
 
 def _profile(sheet, axes, curve, effects):
     """Draw one profile, with the interval of the verdict where it names the parameter."""
-    unit, factor = shown_unit(curve["unit"], curve["values"])
+    unit, factor = display_unit(curve["unit"], curve["values"])
     order = np.argsort(curve["values"])
     values = np.asarray(curve["values"], float)[order] * factor
     score = np.asarray(curve["score"], float)[order]
@@ -327,7 +327,7 @@ def levels_figure(candidates, effects):
     )
     for key, curve in zip(keys, curves, strict=True):
         axes = sheet.axes[key]
-        unit, factor = shown_unit(curve["unit"], curve["value"])
+        unit, factor = display_unit(curve["unit"], curve["value"])
         load, value, low, high = (
             np.asarray(curve[part], float) for part in ("load_rms_N", "value", "low", "high")
         )

@@ -29,7 +29,7 @@ def basis_quality(config, rows):
     """Return the Sheet of the worst relative error of the reduced frequencies against the bilateral
     stiffness.
 
-    rows: table of reduction.quality_report, list of {column: value}.
+    rows: table of reduction.basis_accuracy.basis_frequency_errors, list of {column: value}.
     """
     highest = max(row["full_Hz"] for row in rows)
     caption = (

@@ -17,7 +17,7 @@ from vibroimpact.figures.style import (
     ordered_colours,
     ordered_norm,
 )
-from vibroimpact.linear.equivalent_linear import psd_family
+from vibroimpact.linear.responses import psd_family
 
 from .cases_of_gap import first_seed, transition_load
 from .linear_limits import contact_stiffness

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.linear.equivalent_linear import contact_matrix, first_block
+from vibroimpact.linear.modes import contact_matrix, driven_block
 
 HELD = 1.0e14  # N/m: as good as held at the contact points; beyond it round-off shows
 
@@ -16,7 +16,7 @@ def driven_frequencies(model, stiffness, count=1):
     """Return (k, count) lowest frequencies in Hz of the block that the drive excites, for support
     stiffness (k,) in N/m.
     """
-    modes = first_block(model)
+    modes = driven_block(model)
     contact = contact_matrix(model)[modes]
     rows = []
     for k in np.atleast_1d(stiffness):

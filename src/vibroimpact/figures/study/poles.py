@@ -20,7 +20,7 @@ from vibroimpact.figures.style import (
     shown,
 )
 from vibroimpact.identify.peak import LEVELS, level_edges
-from vibroimpact.linear.equivalent_linear import first_pole
+from vibroimpact.linear.poles import first_pole
 
 from .cases_of_gap import first_seed, spread_loads, transition_load
 from .linear_limits import contact_stiffness

@@ -20,7 +20,7 @@ from vibroimpact.figures.style import (
     ordered_colours,
     ordered_norm,
 )
-from vibroimpact.linear.equivalent_linear import psd_family
+from vibroimpact.linear.responses import psd_family
 
 from .linear_limits import contact_stiffness, linear_modes, shown_band
 from .psd_table import driven_sensor, unit_force_psd

@@ -16,7 +16,7 @@ from vibroimpact.figures.style import (
     gap_label,
     ordered_colours,
 )
-from vibroimpact.linear.equivalent_linear import first_mode_shape
+from vibroimpact.linear.modes import first_mode_shape
 
 from .cases_of_gap import spread_loads
 from .linear_limits import contact_stiffness

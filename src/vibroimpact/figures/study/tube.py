@@ -396,7 +396,7 @@ def free_modes(structure, highest_Hz, count=SHOWN_MODES):
         for index in range(min(count, len(omega))):
             dofs = np.zeros(structure.dofs)
             dofs[group.dofs] = vectors[:, index]
-            motion = (structure.held @ dofs).reshape(-1, DOF_PER_NODE)[:, :3]
+            motion = (structure.transformation @ dofs).reshape(-1, DOF_PER_NODE)[:, :3]
             found.append(
                 (omega[index] / (2.0 * np.pi), motion / motion.ravel()[np.argmax(np.abs(motion))])
             )

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED
-from vibroimpact.linear.equivalent_linear import first_pole
+from vibroimpact.linear.poles import first_pole
 from vibroimpact.validation.claims.response import peaks_by_sensor, valleys
 from vibroimpact.validation.claims.shapes import node_places, quadrature
 from vibroimpact.validation.study_curves import POLES, median

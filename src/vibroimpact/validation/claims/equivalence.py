@@ -4,7 +4,7 @@ and what the model needs.
 
 import numpy as np
 
-from vibroimpact.linear.equivalent_linear import natural_frequencies
+from vibroimpact.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.study_curves import STIFFNESS
 from vibroimpact.validation.variant import changed

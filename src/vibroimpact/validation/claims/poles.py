@@ -4,7 +4,7 @@ apparent damping.
 
 import numpy as np
 
-from vibroimpact.linear.equivalent_linear import first_pole
+from vibroimpact.linear.poles import first_pole
 from vibroimpact.validation.study_curves import median, standard_error
 
 from .claim import AGREE, Claim, graded, text

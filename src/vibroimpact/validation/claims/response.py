@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.linear.equivalent_linear import frf
+from vibroimpact.linear.responses import frf
 from vibroimpact.validation.study_curves import median
 
 from .claim import Claim, graded

@@ -9,7 +9,7 @@ it 2/(N - 1)², order 2. Both orders are asserted.
 
 import numpy as np
 
-from vibroimpact.linear.equivalent_linear import natural_frequencies
+from vibroimpact.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.check import Check
 from vibroimpact.validation.variant import changed

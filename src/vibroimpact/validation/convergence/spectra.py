@@ -18,7 +18,7 @@ import numpy as np
 
 from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.linear.equivalent_linear import frf, synthesise_records
+from vibroimpact.linear.responses import frf, synthesise_records
 from vibroimpact.random_streams import random_generator
 from vibroimpact.spectra.welch import (
     effective_averages,

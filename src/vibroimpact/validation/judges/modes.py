@@ -201,14 +201,14 @@ def _softer_bend(tube, structure, factor):
     soft = replace(tube.beam, bending_stiffness=tube.beam.bending_stiffness / factor)
     begin, end = structure.leg_length_m, tube.centreline.length - structure.leg_length_m
     middle = 0.5 * (tube.node_arc_length[1:] + tube.node_arc_length[:-1])
-    change = sparse.lil_array((tube.held.shape[0],) * 2)
+    change = sparse.lil_array((tube.transformation.shape[0],) * 2)
     for element in np.flatnonzero((middle > begin) & (middle < end)):
         length, axes = element_geometry(tube.nodes[element], tube.nodes[element + 1])
         dofs = np.ix_(range(6 * element, 6 * element + 12), range(6 * element, 6 * element + 12))
         change[dofs] += (
             element_matrices(soft, length, axes)[0] - element_matrices(tube.beam, length, axes)[0]
         )
-    return (tube.held.T @ change.tocsr() @ tube.held).tocsr()
+    return (tube.transformation.T @ change.tocsr() @ tube.transformation).tocsr()
 
 
 def _largest(name, source, reference, ours, tolerance):

@@ -13,8 +13,9 @@ from vibroimpact.identify.half_spectra import half_spectra, lag_window
 from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.operational_pole import PoleSearch, operational_pole
 from vibroimpact.identify.peak import find_peak
-from vibroimpact.identify.update import frequency_of
-from vibroimpact.linear import equivalent_linear as linear
+from vibroimpact.linear.modes import contact_matrix, driven_block
+from vibroimpact.linear.poles import first_pole, frequency_of
+from vibroimpact.linear.responses import frf, synthesise_records
 from vibroimpact.spectra.welch import (
     cross_spectra,
     effective_averages,
@@ -57,7 +58,7 @@ def sdypy_checks(model) -> list[Check]:
     """
     ema = sdypy_ema()
     frequency = np.arange(0.0, RATE_HZ + 1.0e-9, EMA_STEP_HZ)
-    response = linear.frf(model, *SUPPORT, frequency, sensors_across(model))
+    response = frf(model, *SUPPORT, frequency, sensors_across(model))
     judge = ema.Model(
         frf=response.copy(),
         freq=frequency.copy(),
@@ -89,8 +90,8 @@ def exact_poles(model):
     """Return (pole,) rad/s across the plane, by frequency: eigenvalues of the state matrix of the
     tube on its support.
     """
-    modes, (k, c) = linear.first_block(model), SUPPORT
-    contact = linear.contact_matrix(model)[modes]
+    modes, (k, c) = driven_block(model), SUPPORT
+    contact = contact_matrix(model)[modes]
     held, size = contact @ contact.T, len(modes)
     state = np.block(
         [
@@ -128,7 +129,7 @@ def pyoma_checks(model, seeds=SEEDS) -> list[Check]:
     within their own scatter. Raises JudgeAbsent.
     """
     ssi, plscf = pyoma2()
-    exact = linear.first_pole(model, *SUPPORT)
+    exact = first_pole(model, *SUPPORT)
     records = [record(model, seed) for seed in range(seeds)]
     checks = _same_spectra_checks(plscf, records[0], exact)
     ours, theirs = (
@@ -191,7 +192,7 @@ def record(model, seed):
     force = band_limited_noise(
         np.random.default_rng(seed), round(PERIOD_S * RATE_HZ), RATE_HZ, BAND_HZ
     )
-    return linear.synthesise_records(model, *SUPPORT, force, RATE_HZ, sensors_across(model))[
+    return synthesise_records(model, *SUPPORT, force, RATE_HZ, sensors_across(model))[
         :, : round(DURATION_S * RATE_HZ)
     ]
 

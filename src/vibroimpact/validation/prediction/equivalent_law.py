@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.equivalent_linear import frf
+from vibroimpact.linear.responses import frf
 from vibroimpact.study.method_agreement import COMPARED
 
 NEIGHBOURS = 7  # points of the fit that a place of the law is the median of

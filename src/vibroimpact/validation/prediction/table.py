@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.linear.equivalent_linear import frf
+from vibroimpact.linear.responses import frf
 
 BANDS_HZ = ((5.0, 20.0), (20.0, 40.0), (40.0, 60.0), (60.0, 100.0), (100.0, 200.0))
 RESOLUTION_HZ = 0.01

@@ -1,12 +1,11 @@
-"""The poles of a band from measured frequency responses: those of the stabilisation chart that stay
-put over many orders.
-"""
+"""The poles of a band from measured frequency responses: those stable over many orders."""
 
 import numpy as np
 
+from vibroimpact.linear.poles import frequency_of
+
 from .lscf import NormalEquations
-from .stabilisation import stabilisation_chart
-from .update import frequency_of
+from .stabilisation import StabilisationChart, stabilisation_chart
 
 HIGHEST_ORDER = 40
 CLUSTER_HZ = 0.012  # relative width in frequency of one pole's column
@@ -14,18 +13,18 @@ FEWEST_ORDERS = 6  # orders in which a pole must be stable
 LARGEST_RATIO = 0.15  # a pole with more damping is background
 
 
-def stable_poles(frequency, response, highest_order=HIGHEST_ORDER):
-    """Return (frequency (pole,) Hz ascending, damping_ratio (pole,), chart): medians over the
-    orders in which each pole is stable.
+def stable_poles(
+    frequency: np.ndarray, response: np.ndarray, highest_order: int = HIGHEST_ORDER
+) -> tuple[np.ndarray, np.ndarray, StabilisationChart]:
+    """Return (frequency (pole,) Hz ascending, damping ratio (pole,), chart).
 
-    frequency (line,) Hz; response (output, line) complex, of one force; the noise of a line may
-    have been weighted in.
+    They are medians over the orders in which each pole is stable.
+
+    frequency: (line,) Hz.
+    response: (output, line) complex, of one force; lines may be weighted by their noise.
     """
-    chart = stabilisation_chart(
-        NormalEquations(frequency, response[:, None, :], highest_order),
-        0.0,
-        range(2, highest_order + 1),
-    )
+    equations = NormalEquations(frequency, response[:, None, :], highest_order)
+    chart = stabilisation_chart(equations, 0.0, range(2, highest_order + 1))
     place, ratio = frequency_of(chart.pole)
     usable = (
         chart.stable
@@ -43,5 +42,5 @@ def stable_poles(frequency, response, highest_order=HIGHEST_ORDER):
             break
         found.append((float(np.median(place[near])), float(np.median(ratio[near]))))
         place, ratio, order = place[~near], ratio[~near], order[~near]
-    found = np.array(sorted(found)).reshape(-1, 2)
-    return found[:, 0], found[:, 1], chart
+    medians = np.array(sorted(found)).reshape(-1, 2)
+    return medians[:, 0], medians[:, 1], chart

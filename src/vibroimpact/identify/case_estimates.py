@@ -1,0 +1,139 @@
+"""From what each method fitted to one case to graded estimates of the equivalent support."""
+
+from functools import lru_cache
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .broadband import BroadbandFit
+from .equivalent_support import equivalent_support
+from .estimate import FREQUENCY_ERROR, Estimate, grade, mark_weak, unresolved
+from .ods import DeflectionShape, ShapeMatch
+from .operational_pole import OperationalPole
+from .peak import PeakFit
+from .reference_tube import ReferenceTube
+from .secant import secant_stiffness
+from .segment_scatter import jackknife_influences, segment_covariance
+from .statistical_linearisation import Linearisation, statistical_linearisation
+
+# c is not resolved when its standard error exceeds this fraction of the pole's damping ratio.
+DAMPING_RATIO_LIMIT = 0.5
+# MAC below which the motion around the peak is no longer one shape of the family.
+LOWEST_MAC = 0.9
+# Correlation below which the best spectrum of the family does not look like the measured one.
+LOWEST_CORRELATION = 0.8
+
+
+def estimate_from_pole(
+    method: str, fit: PeakFit | OperationalPole | None, tube: ReferenceTube
+) -> Estimate:
+    """Return the Estimate of a fitted pole."""
+    if fit is None:
+        return unresolved(method, "no resonance could be fitted to the main peak")
+    support = equivalent_support(tube.modes, fit.frequency, fit.damping_ratio)
+    errors = np.sqrt(np.diag(support.jacobian @ fit.covariance @ support.jacobian.T))
+    estimate = Estimate(
+        method=method,
+        k=support.k,
+        k_standard_error=float(errors[0]),
+        c=support.c,
+        c_standard_error=float(errors[1]),
+        frequency=fit.frequency,
+        damping_ratio=fit.damping_ratio,
+    )
+    model_error = abs(support.jacobian[0, 0]) * FREQUENCY_ERROR * fit.frequency
+    limit = DAMPING_RATIO_LIMIT * fit.damping_ratio * abs(support.jacobian[1, 1])
+    return grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+
+
+def estimate_from_operational_pole(pole: OperationalPole | None, tube: ReferenceTube) -> Estimate:
+    """Return the Estimate of the LSCF pole."""
+    estimate = estimate_from_pole("lscf", pole, tube)
+    if pole is not None and not pole.stable:
+        note = f"no single pole is stable from order to order; order {pole.order} taken"
+        estimate = mark_weak(estimate, note)
+    return estimate
+
+
+def estimate_from_shape(
+    shape: tuple[DeflectionShape, ShapeMatch] | None, tube: ReferenceTube, averages: float
+) -> Estimate:
+    """Return the Estimate of a matched shape: k alone, because a shape carries no damping.
+
+    averages: effective degrees of freedom of a bin.
+    """
+    if shape is None:
+        return unresolved("ods", "no peak sets a band inside that of the shape line's spectra")
+    measured, match = shape
+    influences = jackknife_influences(match.segment_changes[:, None])
+    variance = segment_covariance(influences, averages)[0, 0]
+    error = float(np.sqrt(variance + match.damping_change**2))
+    estimate = Estimate("ods", match.k, match.k * error)
+    model_error = match.k * match.model_error
+    estimate = grade(estimate, model_error, tube.shape_error_at_zero, tube.stiffness_range)
+    if match.mac < LOWEST_MAC:
+        estimate = mark_weak(estimate, f"best MAC only {match.mac:.2f}")
+    return estimate
+
+
+def estimate_from_broadband(fit: BroadbandFit | None, tube: ReferenceTube) -> Estimate:
+    """Return the Estimate of the broadband correlation.
+
+    The model's error is that of its first frequency.
+    """
+    if fit is None:
+        return unresolved("broadband", "the correlation has no maximum in the family")
+    frequency = tube.first_frequency(fit.k)
+    ratio = tube.first_damping_ratio(fit.k) + fit.c * tube.damping_ratio_slope(fit.k)
+    model_error = FREQUENCY_ERROR * fit.k / tube.frequency_slope(fit.k)
+    errors = np.sqrt(np.diag(fit.covariance))
+    estimate = Estimate(
+        "broadband", fit.k, float(errors[0]), fit.c, float(errors[1]), frequency, ratio
+    )
+    limit = DAMPING_RATIO_LIMIT * abs(ratio) / tube.damping_ratio_slope(fit.k)
+    estimate = grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+    if fit.correlation < LOWEST_CORRELATION:
+        estimate = mark_weak(estimate, f"correlation only {fit.correlation:.2f}")
+    return estimate
+
+
+def comparison_estimates(
+    config: ConfigPart, model: ModalModel, record: xr.Dataset
+) -> list[Estimate]:
+    """Return the Estimates of statistical linearisation and of the secant stiffness.
+
+    Neither uses the spectrum of a response.
+    """
+    if config.excitation.kind == "band_limited":
+        load, gap = float(record.attrs["load_rms_N"]), float(record.attrs["gap_m"])
+        case = _linearisation(model, load, gap, tuple(config.excitation.band_Hz))
+        predicted = Estimate(
+            method="statistical_linearisation",
+            k=case.k,
+            k_standard_error=0.0,
+            frequency=case.frequency,
+            damping_ratio=case.damping_ratio,
+        )
+        if not case.settled:
+            predicted = mark_weak(predicted, "the iteration did not settle")
+    else:
+        predicted = unresolved("statistical_linearisation", "needs a force of flat PSD in a band")
+    k, error = secant_stiffness(
+        record["force_displacement"].values,
+        record["displacement_square"].values,
+        model.contact_weight,
+        model.support_of_point,
+    )
+    secant = Estimate("secant", k, error, note="standard error from the scatter over supports")
+    return [predicted, secant]
+
+
+@lru_cache(maxsize=32)
+def _linearisation(
+    model: ModalModel, load_rms_N: float, gap_m: float, band_Hz: tuple[float, float]
+) -> Linearisation:
+    """Return the Linearisation of a case; the same for all its seeds."""
+    return statistical_linearisation(model, load_rms_N, gap_m, band_Hz)

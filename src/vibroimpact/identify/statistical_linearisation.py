@@ -1,0 +1,118 @@
+"""Gaussian statistical linearisation: contact stiffness predicted from the load alone."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import erfc
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+TOLERANCE = 1.0e-6
+PASSES = 200
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """The linearised contacts.
+
+    k: N/m per support.
+    frequency, damping_ratio: of the first mode (Hz) with the linearised contacts.
+    settled: whether the iteration converged.
+    """
+
+    k: float
+    frequency: float
+    damping_ratio: float
+    settled: bool
+
+
+def statistical_linearisation(
+    model: ModalModel, load_rms_N: float, gap_m: float, band_Hz: Sequence[float]
+) -> Linearisation:
+    """Return the Linearisation of the contacts under a random force of flat PSD.
+
+    Each contact point and direction that the force moves gets the stiffness
+    k erfc(g / (sigma sqrt 2)). It is E[df/du] of the force f of a two-sided stop under a Gaussian
+    motion of standard deviation sigma, and sigma is that of the linear tube with these stiffnesses.
+    The two are solved by relaxed iteration. k sums f u over a support's points as the secant
+    stiffness does. A circular obstacle counts as two stops per direction, because the force moves
+    one direction only. Source: Roberts and Spanos, Random vibration and statistical linearization,
+    1990.
+
+    load_rms_N: RMS of the force in N.
+    gap_m: radial gap in m.
+    band_Hz: band of the force in Hz.
+    """
+    drive = model.drive_shapes[:, 0]
+    driven = [block for block, _ in model.blocks if np.any(drive[block] != 0.0)]
+    modes = np.sort(np.concatenate(driven))
+    shapes = model.contact_shapes[modes].reshape(len(modes), -1)
+    rows = np.flatnonzero((shapes != 0.0).any(axis=0))
+    shapes, point = shapes[:, rows], rows // 2
+    gap = gap_m * model.gap_factor[point]
+    stiffness = np.zeros(rows.size)
+    force_psd = load_rms_N**2 / (band_Hz[1] - band_Hz[0])
+    settled, relaxation, change_before = False, 0.7, np.inf
+    for _ in range(PASSES):
+        variance, frequency, ratio = _contact_variance(
+            model, modes, shapes, stiffness, drive[modes], force_psd, band_Hz
+        )
+        wanted = model.contact_stiffness[point] * erfc(gap / np.sqrt(2.0 * variance))
+        change = np.max(np.abs(wanted - stiffness)) / (np.max(wanted) + 1.0e-9)
+        if change < TOLERANCE:
+            settled = True
+            break
+        if change > change_before:
+            relaxation = max(0.05, 0.6 * relaxation)
+        else:
+            relaxation = min(1.0, 1.1 * relaxation)
+        change_before = change
+        stiffness = stiffness + relaxation * (wanted - stiffness)
+    total = np.sum(stiffness * variance) / np.sum(model.contact_weight[point] * variance)
+    return Linearisation(float(total), float(frequency), float(ratio), settled)
+
+
+def _contact_variance(
+    model: ModalModel,
+    modes: np.ndarray,
+    shapes: np.ndarray,
+    stiffness: np.ndarray,
+    drive: np.ndarray,
+    force_psd: float,
+    band_Hz: Sequence[float],
+) -> tuple[np.ndarray, float, float]:
+    """Return (variance (contact,) in m², first frequency in Hz, its damping ratio).
+
+    They are those of the linear tube with these contact stiffnesses. The part of the damping matrix
+    that couples the modes of the tube on its contacts is neglected: it is of second order in the
+    damping.
+    """
+    square, vectors = np.linalg.eigh(
+        np.diag(model.omega[modes] ** 2) + (shapes * stiffness) @ shapes.T
+    )
+    omega = np.sqrt(square)
+    decay = 0.5 * (vectors**2).T @ model.damping[modes]
+    poles = -decay + 1j * np.sqrt(square - decay**2)
+    gains = (shapes.T @ vectors) * (vectors.T @ drive)
+    variance = force_psd * band_power(poles, gains, band_Hz)
+    return variance, omega[0] / (2.0 * np.pi), decay[0] / omega[0]
+
+
+def band_power(poles: np.ndarray, gains: np.ndarray, band_Hz: Sequence[float]) -> np.ndarray:
+    """Return (output,) the integral over a band of |sum_r gains_r / (s - p_r)(s - p_r*)|².
+
+    s = 2 pi i f, and the integral is over f in Hz. In partial fractions, with R_r the residue of
+    the response H at p_r and B_r = R_r H(-p_r), |H|² = sum_r 2 Re[B_r/(s - p_r)] +
+    2 Re[B_r/(-s - p_r)], which is integrated in closed form.
+
+    poles: (mode,) rad/s with positive imaginary and negative real parts.
+    gains: (output, mode).
+    """
+    residues = gains / (2j * poles.imag)
+    negative = -poles[:, None]
+    mirrored = np.sum(gains[:, None, :] / ((negative - poles) * (negative - poles.conj())), axis=-1)
+    low, high = 2j * np.pi * np.asarray(band_Hz)
+    forward = -1j * (np.log(high - poles) - np.log(low - poles))
+    backward = 1j * (np.log(-high - poles) - np.log(-low - poles))
+    return np.sum(2.0 * (residues * mirrored * (forward + backward)).real, axis=-1) / (2.0 * np.pi)

@@ -1,0 +1,122 @@
+"""Accuracy of the Ritz basis: frequencies on it against those of the full model.
+
+The basis is compared as a whole, family by family, and with each family left out.
+"""
+
+from typing import Any
+
+import numpy as np
+from scipy import linalg
+
+from vibroimpact.config.name_checks import TUBES
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.structure.tube import build_structure
+
+from .ritz_basis import (
+    FAMILIES,
+    DofGroup,
+    basis_vectors,
+    eigenmodes,
+    orthonormal_basis,
+    uncoupled_groups,
+)
+
+# N/m per support: the decades from 1 to 1e9, and the contact stiffness of the stand-in tube.
+STIFFNESSES = (*(10.0**power for power in range(7)), 4.0e6, 1.0e7, 1.0e8, 1.0e9)
+HIGHEST_HZ = 400.0
+# Name of a basis -> (families, fraction of the free modes' cut-off).
+BASES = {
+    "all": (FAMILIES, 1.0),
+    **{f"{family} alone": ((family,), 1.0) for family in FAMILIES},
+    **{
+        f"without {family}": (tuple(other for other in FAMILIES if other != family), 1.0)
+        for family in FAMILIES
+    },
+    "free_modes to a tenth": (FAMILIES, 0.1),
+    **{
+        f"free_modes to a tenth, without {family}": (
+            tuple(other for other in FAMILIES if other != family),
+            0.1,
+        )
+        for family in FAMILIES[1:]
+    },
+}
+
+
+def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
+    """Return rows that compare reduced with full frequencies of a tube on bilateral contact.
+
+    The keys of a row are
+
+    vectors: "all", "free_modes alone", ...: the families of the basis, see BASES;
+    modes: number of modes of the basis in the group;
+    stiffness_N_per_m: stiffness per support, 1 to 1e9 N/m;
+    group: number of the uncoupled group of degrees of freedom;
+    mode: number of the mode in its group, from 1;
+    full_Hz, reduced_Hz: frequencies up to 400 Hz; NaN where the basis has fewer modes;
+    relative_error: positive, because a Ritz basis can only stiffen, but for the round-off of the
+        full eigenvalues (about 1e-8).
+
+    Empty for a structure that is no tube: all modes are in the model, or the user's matrices set
+    the basis.
+    """
+    if config.structure.kind not in TUBES:
+        return []
+    structure = build_structure(config)
+    groups = uncoupled_groups(structure.mass, structure.stiffness, structure.contact_rows())
+    share = np.sqrt(np.repeat(structure.contact.weight, 2))
+    rows = []
+    for number, group in enumerate(groups):
+        contact = share[group.contact_rows][:, None] * group.contact
+        bases = _bases(group, config.basis)
+        for stiffness in STIFFNESSES:
+            supported = group.stiffness + stiffness * contact.T @ contact
+            full = eigenmodes(supported, group.mass, HIGHEST_HZ)[0] / (2.0 * np.pi)
+            for name, basis in bases.items():
+                reduced = _reduced_frequencies(basis, contact, stiffness, len(full))
+                rows += [
+                    {
+                        "vectors": name,
+                        "modes": len(basis[0]),
+                        "stiffness_N_per_m": stiffness,
+                        "group": number,
+                        "mode": mode + 1,
+                        "full_Hz": full[mode],
+                        "reduced_Hz": reduced[mode],
+                        "relative_error": reduced[mode] / full[mode] - 1.0,
+                    }
+                    for mode in range(len(full))
+                ]
+    return rows
+
+
+def _bases(group: DofGroup, basis: ConfigPart) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Return {name: (omega (mode,), shapes (dof, mode))}: the bases of BASES for one group."""
+    vectors = basis_vectors(group, basis)
+    free_Hz = eigenmodes(group.stiffness, group.mass, basis.free_modes_to_Hz)[0] / (2.0 * np.pi)
+    bases = {}
+    for name, (families, fraction) in BASES.items():
+        chosen = {family: vectors[family] for family in families if family in vectors}
+        if "free_modes" in chosen:
+            low = free_Hz <= fraction * basis.free_modes_to_Hz
+            chosen["free_modes"] = chosen["free_modes"][:, low]
+        bases[name] = orthonormal_basis(group, chosen)
+    return bases
+
+
+def _reduced_frequencies(
+    basis: tuple[np.ndarray, np.ndarray], contact: np.ndarray, stiffness: float, count: int
+) -> np.ndarray:
+    """Return (count,) Hz of a basis (omega, shapes) on springs; NaN beyond its modes.
+
+    contact: (contact_row, dof).
+    stiffness: N/m.
+    """
+    omega, shapes = basis
+    moved = contact @ shapes
+    squares = np.zeros(0)
+    if len(omega):
+        squares = linalg.eigvalsh(np.diag(omega**2) + stiffness * moved.T @ moved)
+    frequencies = np.full(count, np.nan)
+    frequencies[: len(squares)] = np.sqrt(np.maximum(squares[:count], 0.0)) / (2.0 * np.pi)
+    return frequencies
