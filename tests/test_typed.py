@@ -16,7 +16,6 @@ NOT_YET_TYPED = (
     "effects",
     "f16",
     "figures",
-    "geometry",
     "integration",
     "least_squares",
     "reports",
