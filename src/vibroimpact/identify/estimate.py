@@ -81,7 +81,7 @@ def grade(
     floor = MODEL_SIGMAS * model_error_at_zero + CHANCE_SIGMAS * chance
     reason = ""
     if k < floor:
-        reason = f"k = {k:.3g} N/m cannot be told from 0 (least {floor:.3g})"
+        reason = f"k = {k:.3g} N/m does not differ from 0 (least {floor:.3g})"
     elif not stiffness_range[0] <= k <= stiffness_range[1]:
         reason = f"k = {k:.3g} N/m is outside the range"
     elif error > UNRESOLVED_ABOVE * k:

@@ -25,7 +25,7 @@ def trace_cases(config, model: ModalModel, cases: list[Case]):
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
         forces = np.stack(
-            [case.load_rms_N * _unit_force(config, case.seed, steps, rate) for case in batch],
+            [case.load_rms_N * _normalised_force(config, case.seed, steps, rate) for case in batch],
             axis=-1,
         )[:, None]
         offset = np.zeros((model.support_of_point.size, 2, len(batch)))
@@ -42,7 +42,7 @@ def trace_cases(config, model: ModalModel, cases: list[Case]):
             yield case, _dataset(config, model, traces, lane, case)
 
 
-def _unit_force(config, seed, steps, rate):
+def _normalised_force(config, seed, steps, rate):
     generator = random_generator(config.seed, seed, "force")
     return normalised_force(
         config.excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0

@@ -22,7 +22,7 @@ from pydantic import (
     model_validator,
 )
 
-from vibroimpact.records import plain
+from vibroimpact.records import plain_values
 
 Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown", "not_testable"]
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
@@ -61,7 +61,7 @@ class _Content(BaseModel):
         Numbers that are not finite become None. Raises pydantic.ValidationError, a ValueError,
         that names every key that does not fit.
         """
-        return cls.model_validate(plain(values))
+        return cls.model_validate(plain_values(values))
 
     def to_values(self) -> dict[str, Any]:
         """Return nested dicts and lists, as the file holds them."""
