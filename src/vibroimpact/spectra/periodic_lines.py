@@ -21,8 +21,8 @@ REPEATS = 0.05
 EXCITED = 0.05  # of the largest line in the band; a line below it is not excited
 
 ALL_EXCITED = (
-    "every line of the band is excited: distortion cannot be separated from the linear response line by"
-    " line; the scatter of the response per force about a fitted curve bounds it"
+    "every line of the band is excited: distortion cannot be separated from the linear response"
+    " line by line; the scatter of the response per force about a fitted curve bounds it"
 )
 DETECTION_LINES = (
     "distortion read at the lines that the force leaves out: odd ones from odd, even ones from even"
