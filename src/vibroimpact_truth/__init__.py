@@ -1,3 +1,4 @@
-"""Campaigns with a hidden effect, made by a code that shares nothing with `vibroimpact` but the
-written campaign contract.
+"""Campaigns with a hidden effect, made by an independent code.
+
+It shares nothing with `vibroimpact` but the written campaign contract.
 """

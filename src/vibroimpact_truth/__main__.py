@@ -1,10 +1,10 @@
-"""Command line: a seeded set of sealed campaigns, one campaign by name, or the strength of the
-amounts.
+"""Command line: a seeded set of sealed campaigns, one campaign, or the strength of amounts.
 
-python -m vibroimpact_truth --out FOLDER --seed S --count N [--shard 0/1] [--duration 20] [--tube
-dev|stand_in] [--list] python -m vibroimpact_truth one --out x.nc --effect gap --set factor=1.25
-[--effect dry_friction --set mu=0.2] [--truth x.json] python -m vibroimpact_truth calibrate [effect
-...]
+python -m vibroimpact_truth --out FOLDER --seed S --count N [--shard 0/1] [--duration 20]
+    [--tube dev|stand_in] [--list]
+python -m vibroimpact_truth one --out x.nc --effect gap --set factor=1.25
+    [--effect dry_friction --set mu=0.2] [--truth x.json]
+python -m vibroimpact_truth calibrate [effect ...]
 """
 
 import argparse
@@ -16,14 +16,14 @@ from pathlib import Path
 from vibroimpact_truth.amounts import AMOUNTS
 from vibroimpact_truth.calibrate import table
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign
-from vibroimpact_truth.draw import drawn
+from vibroimpact_truth.draw import draw_plans
 from vibroimpact_truth.geometry import TUBES
 from vibroimpact_truth.hidden import EFFECTS, STRANGERS
 from vibroimpact_truth.measure import INSTRUMENTS
 
 
-class Hide(argparse.Action):
-    """--effect opens an effect, --set key=value adds a parameter to the last one opened."""
+class EffectOption(argparse.Action):
+    """--effect starts an effect, --set key=value adds a parameter to the last one."""
 
     def __call__(self, parser, namespace, value, option=None):
         effects = getattr(namespace, "effects", None) or []
@@ -34,11 +34,11 @@ class Hide(argparse.Action):
         elif not effects:
             parser.error("--set needs an --effect before it")
         else:
-            effects[-1][1].update([keyed(value)])
+            effects[-1][1].update([key_value(value)])
         namespace.effects = effects
 
 
-def keyed(text):
+def key_value(text):
     """(key, number or text) of key=value."""
     key, _, value = text.partition("=")
     try:
@@ -69,11 +69,9 @@ def options():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--count", type=int, default=24)
     parser.add_argument("--shard", default="0/1", help="i/n: every n-th campaign from the i-th on")
-    parser.add_argument(
-        "--list", action="store_true", help="tell what would be made, and make nothing"
-    )
-    parser.add_argument("--effect", action=Hide, dest="effects")
-    parser.add_argument("--set", action=Hide, dest="effects", metavar="KEY=VALUE")
+    parser.add_argument("--list", action="store_true", help="list the campaigns, and make nothing")
+    parser.add_argument("--effect", action=EffectOption, dest="effects")
+    parser.add_argument("--set", action=EffectOption, dest="effects", metavar="KEY=VALUE")
     parser.add_argument("--duration", type=float, default=20.0, help="s per record")
     parser.add_argument("--tube", default="stand_in", choices=sorted(TUBES))
     parser.add_argument(
@@ -86,7 +84,7 @@ def options():
     )
     parser.add_argument("--noise-floor", action="store_true", help="write noise_floor_rms")
     parser.add_argument(
-        "--no-twin", action="store_true", help="do not run the bare twin that states the strength"
+        "--no-twin", action="store_true", help="do not run the bare rig that gives the strength"
     )
     for name, value in (("gain", 0.02), ("frequency", 0.003), ("damping", 0.10)):
         parser.add_argument(f"--{name}-scatter", type=float, default=value)
@@ -94,11 +92,11 @@ def options():
     return parser
 
 
-def shared(given):
+def plan_fields(given):
     """Fields of Plan that the command line gives."""
     return {
         "tube": given.tube,
-        "changes": dict(keyed(text) for text in given.change),
+        "changes": dict(key_value(text) for text in given.change),
         "levels": given.levels,
         "duration": given.duration,
         "gain_scatter": given.gain_scatter,
@@ -112,20 +110,20 @@ def shared(given):
 
 
 def make_set(given):
-    """Make the campaigns of a shard that are not there yet."""
+    """Make those campaigns of a shard that do not exist yet."""
     first, every = (int(part) for part in given.shard.split("/"))
-    for index, plan in enumerate(drawn(given.seed, given.count, **shared(given))):
+    for index, plan in enumerate(draw_plans(given.seed, given.count, **plan_fields(given))):
         if given.list:
             print(index, plan.arm, *(f"{name}{parameters}" for name, parameters in plan.effects))
         elif index % every == first:
             path = Path(given.out) / f"campaign_s{given.seed}_{index:04d}.nc"
             truth = Path(given.out) / "truth" / f"{path.stem}.json"
             if not (path.exists() and truth.exists()):
-                made(plan, path, truth, not given.no_twin)
+                make_one(plan, path, truth, not given.no_twin)
 
 
-def made(plan, path, truth, twin):
-    """Make one campaign and say so in a line that does not tell what is hidden."""
+def make_one(plan, path, truth, twin):
+    """Make one campaign and print a line that does not reveal what is hidden."""
     start = time.perf_counter()
     try:
         make_campaign(plan, path, truth, twin)
@@ -145,8 +143,8 @@ def main(arguments=None):
         parser.error("--out is needed")
     elif given.command == "one":
         path = Path(given.out)
-        made(
-            Plan((given.seed,), tuple(given.effects or ()), "one", **shared(given)),
+        make_one(
+            Plan((given.seed,), tuple(given.effects or ()), "one", **plan_fields(given)),
             path,
             given.truth or path.with_suffix(".truth.json"),
             not given.no_twin,

@@ -1,11 +1,10 @@
-"""How much of each effect: parameters from one amount and a random generator, and the amounts that
-are "medium" and "strong".
+"""The amount of each effect: its parameters from one number, and ranges for "medium" and "strong".
 
-Medium and strong are judged by the excess of the misfit over its floor on the hold-out record
-(strength.py): 1 to 3 floors, and 3 or more. The two amounts of a row were measured with `python -m
-vibroimpact_truth calibrate` on the stand-in tube, 20 s, levels as by default; a draw takes an
-amount between them and states the strength that came out. A row without a second amount can not be
-strong below breaking.
+The strength of an effect is the excess of the misfit over its floor on the hold-out record
+(strength.py): medium is 1 to 3 floors, strong 3 or more. The ranges were measured with `python -m
+vibroimpact_truth calibrate` on the stand-in tube, 20 s, default levels. A draw takes an amount
+within the range and states the strength that results. Where there is no second range, no amount
+below breaking is strong.
 """
 
 from dataclasses import dataclass
@@ -17,8 +16,10 @@ TUBE_PLACES = ("apex", "bend45_right", "left_leg_upper", "right_leg_upper")
 
 @dataclass(frozen=True)
 class Amount:
-    """parameters(amount, rng) of an effect and the range of amounts that is medium, and that is
-    strong.
+    """The amounts of an effect.
+
+    parameters: function (amount, rng) that returns the parameters of the effect.
+    medium, strong: ranges of the amount; strong is None where there is none.
     """
 
     parameters: object
@@ -27,28 +28,28 @@ class Amount:
 
 
 def sign(rng):
-    """1 or -1."""
+    """1 or -1, at random."""
     return float(rng.choice([-1.0, 1.0]))
 
 
 def place(rng):
-    """A place of the tube."""
+    """A place of the tube, at random."""
     return str(rng.choice(TUBE_PLACES))
 
 
 def axis(rng):
-    """y mostly, as the drive is along y."""
+    """ "y" in most cases, as the drive is along y, else "x"."""
     return "y" if rng.random() < 0.8 else "x"
 
 
 def offset(a, rng):
-    """A support offset of a [m] in some direction."""
+    """A support offset of a [m] in a random direction."""
     angle = rng.uniform(0.0, 2.0 * np.pi)
     return {"offset_x": float(a * np.cos(angle)), "offset_y": float(a * np.sin(angle))}
 
 
 def dead_load(a, rng):
-    """A preload of a [N] in some direction."""
+    """A preload of a [N] in a random direction."""
     angle = rng.uniform(0.0, 2.0 * np.pi)
     return {"force_x": float(a * np.cos(angle)), "force_y": float(a * np.sin(angle))}
 

@@ -1,6 +1,4 @@
-"""One campaign from a plan: rig, forces, records, instruments, file and the sealed truth beside
-it.
-"""
+"""One campaign from a plan: rig, forces, records, instruments, file and the sealed truth."""
 
 import json
 import os
@@ -31,15 +29,20 @@ CHANNELS = (
 )
 UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 LEVELS = ((0.5, 1.3, "fit"), (3.0, 1.3, "fit"), (10.0, 1.3, "fit"), (10.0, 0.9, "holdout"))
-TWINS = 3  # runs with and without what is hidden that state the strength
+TWINS = 3  # runs with and without the hidden effects, for their strength
 FORCE, SCATTER, GAINS, NOISE, START, SECOND = range(6)  # random streams of a campaign
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a campaign is to be. effects: (id, {parameter: value}) each, of the rig or of the
-    instruments; levels: (N RMS, gap in % of the diameter, split) each; scatters are one sigma,
-    relative; noise relative to the largest channel RMS of the lowest level.
+    """The definition of a campaign.
+
+    effects: (id, {parameter: value}) each, of the rig or of the instruments.
+    levels: (N RMS, gap in % of the diameter, "fit" or "holdout") each.
+    duration: s of a record.
+    *_scatter: one sigma, relative.
+    noise: RMS relative to the largest channel RMS of the lowest level.
+    drive_force: campaign file to take the forces from.
     """
 
     seed: tuple
@@ -59,14 +62,12 @@ class Plan:
     drive_force: str | None = None
 
     def stream(self, *which):
-        """A random generator of this campaign's own."""
+        """A random generator of this campaign alone."""
         return np.random.default_rng([*self.seed, *which])
 
 
 def band_limited(rng, samples, sampling, band=BAND):
-    """(time,) Gaussian noise with a flat spectrum within `band` Hz and unit RMS, periodic over the
-    record.
-    """
+    """(time,) Gaussian noise of unit RMS, flat within `band` Hz, periodic over the record."""
     frequency = np.fft.rfftfreq(samples, 1.0 / sampling)
     inside = (frequency >= band[0]) & (frequency <= band[1])
     spectrum = np.zeros(len(frequency), complex)
@@ -92,7 +93,7 @@ def forces(plan):
 
 
 def build_rig(plan, hidden=True):
-    """The Rig of a plan; without its effects where not `hidden`."""
+    """The Rig of a plan, with its effects where `hidden`."""
     rig = Rig.bare(TUBES[plan.tube].with_changes(**plan.changes))
     for name, parameters in plan.effects if hidden else ():
         if name not in INSTRUMENTS:
@@ -100,9 +101,10 @@ def build_rig(plan, hidden=True):
     return rig
 
 
-def records_of(plan, force, hidden=True, start_stream=0, only=None):
-    """Noise-free (record, channel, time) responses of a plan, and the share of time in contact
-    (record, plate); `only` records of a split.
+def simulate_records(plan, force, hidden=True, start_stream=0, only=None):
+    """Noise-free responses (record, channel, time) and shares of time in contact (record, plate).
+
+    only: split of the records to simulate; None for all.
     """
     rig = build_rig(plan, hidden)
     scatter = {
@@ -143,7 +145,7 @@ def records_of(plan, force, hidden=True, start_stream=0, only=None):
 
 
 def channels_of(plan):
-    """What the file tells of every channel, and of the drive."""
+    """The channels and the drive as the file describes them."""
     tube = TUBES[plan.tube].with_changes(**plan.changes)
     arcs = named_places(tube)
     channels = [
@@ -172,23 +174,22 @@ def channels_of(plan):
     return channels, drive
 
 
-def noise_of(plan, response):
-    """(channel,) noise RMS that goes with the (record, channel, time) responses of all records of a
-    plan.
-    """
+def noise_rms(plan, response):
+    """(channel,) RMS of the noise, from responses (record, channel, time) of all records."""
     rms = np.sqrt(np.mean(response**2, axis=-1))
     lowest = int(np.argmin([load for load, _, _ in plan.levels]))
     accelerations = np.arange(response.shape[1]) < len(CHANNELS)
-    # A force cell has one range for all levels: its noise is a share of the largest record, where
-    # the lowest may not touch at all.
+    # A force cell has one range for all levels: its noise is a share of the largest record, as
+    # there may be no contact in the lowest.
     return plan.noise * np.where(
         accelerations, rms[lowest, accelerations].max(), rms[:, ~accelerations].max(initial=0.0)
     )
 
 
-def measured(plan, force, response, noise, stream=0, hidden=True):
-    """(force, response) as the instruments give them, with noise RMS (channel,); without hidden
-    faults where not `hidden`.
+def apply_instruments(plan, force, response, noise, stream=0, hidden=True):
+    """(force, response) as the instruments give them.
+
+    noise: (channel,) RMS. hidden: with the hidden faults of the instruments.
     """
     names = [channel["name"] for channel in channels_of(plan)[0]]
     gains = 1.0 + plan.gain_scatter * plan.stream(GAINS).standard_normal(len(names))
@@ -201,17 +202,20 @@ def measured(plan, force, response, noise, stream=0, hidden=True):
 
 
 def strength(plan, force, seen, noise):
-    """excess of the hold-out records of seen (record, channel, time) over the same with nothing
-    hidden.
+    """strength.excess of the hold-out records over the same records with nothing hidden.
+
+    seen: (record, channel, time) responses.
     """
     rows = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
     count = len(CHANNELS)
 
     def twins(hidden, first):
-        """Hold-out records from TWINS other starts, as measured."""
-        runs = [records_of(plan, force, hidden, first + k, "holdout")[0] for k in range(TWINS)]
+        """Hold-out records from TWINS other initial states, as measured."""
+        runs = [
+            simulate_records(plan, force, hidden, first + k, "holdout")[0] for k in range(TWINS)
+        ]
         return [
-            measured(plan, force[rows], run, noise, first + k, hidden)[1][:, :count]
+            apply_instruments(plan, force[rows], run, noise, first + k, hidden)[1][:, :count]
             for k, run in enumerate(runs)
         ]
 
@@ -221,13 +225,14 @@ def strength(plan, force, seen, noise):
 
 
 def make_campaign(plan, path, truth_path=None, twin=True):
-    """Write the campaign of a plan to `path` and its truth to `truth_path`; twin: also run it with
-    nothing hidden, to state its strength.
+    """Write the campaign of a plan to `path` and its truth to `truth_path`; return the truth.
+
+    twin: also run it with nothing hidden, to state its strength.
     """
     force = forces(plan)
-    response, contact = records_of(plan, force)
-    noise = noise_of(plan, response)
-    force_seen, seen = measured(plan, force, response, noise)
+    response, contact = simulate_records(plan, force)
+    noise = noise_rms(plan, response)
+    force_seen, seen = apply_instruments(plan, force, response, noise)
     tube = TUBES[plan.tube].with_changes(**plan.changes)
     records = [
         {

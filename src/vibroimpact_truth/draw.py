@@ -1,9 +1,8 @@
-"""The seeded draw: which campaigns a seed stands for, over the arms of the acceptance table in
-their proportions.
+"""The seeded draw: the campaigns of a seed, over the arms of the acceptance table.
 
-Any first N campaigns of a seed keep the proportions of the arms as well as N allows, and every arm
-walks through its effects in a shuffled order before it repeats one. A campaign depends on the seed
-and its number alone, so shards and counts do not change it.
+The first N campaigns of a seed have the proportions of the arms as closely as N allows. Every arm
+goes through its effects in a shuffled order before it repeats one. A campaign depends on the seed
+and its number alone: shards and counts do not change it.
 """
 
 import numpy as np
@@ -12,8 +11,8 @@ from vibroimpact_truth.amounts import AMOUNTS
 from vibroimpact_truth.campaign import CHANNELS, LEVELS, Plan
 from vibroimpact_truth.hidden import EFFECTS, STRANGERS
 
-# Campaigns of each arm in the full table; "left_out" is the true effect taken out of the catalogue
-# of who judges.
+# Campaigns of each arm in the full table. In "left_out" the true effect is missing from the
+# catalogue that is searched.
 ARMS = {
     "null": 60,
     "strong": 60,
@@ -32,11 +31,11 @@ ALIASES = (
 )
 FAULTS = ("sensor_gain", "swap", "clip", "sensor_delay", "dropout")
 NAMES = [f"{place}_{axis}" for place, axis in CHANNELS]
-VERTICAL = [name for name in NAMES if name.endswith("y")]  # those that see something at every level
+VERTICAL = [name for name in NAMES if name.endswith("y")]  # channels with a signal at every level
 
 
 def arms(count):
-    """(count,) the arm of every campaign: always the one that lags farthest behind its share."""
+    """(count,) pairs (arm, number within the arm): always the arm farthest behind its share."""
     total, given, order = sum(ARMS.values()), dict.fromkeys(ARMS, 0), []
     for number in range(count):
         arm = max(ARMS, key=lambda name: ARMS[name] * (number + 1) / total - given[name])
@@ -46,7 +45,7 @@ def arms(count):
 
 
 def cycled(seed, arm, items, number):
-    """The item of an arm's number-th campaign: a shuffled pass through all items after another."""
+    """The item for the number-th campaign of an arm, from repeated shuffled passes through all."""
     turn, place = divmod(number, len(items))
     return items[
         np.random.default_rng([seed, list(ARMS).index(arm), turn]).permutation(len(items))[place]
@@ -61,23 +60,21 @@ def amount_of(effect, which, rng):
 
 
 def instrument(name, rng):
-    """(id, parameters) of a fault of a measuring chain."""
+    """(id, parameters) of a fault of the measuring chain."""
     channel, other = rng.choice(VERTICAL, 2, replace=False)
     factor = float(rng.choice([rng.uniform(0.5, 0.8), rng.uniform(1.25, 2.0)]))
-    return (
-        name,
-        {
-            "sensor_gain": {"channel": str(channel), "factor": factor},
-            "sensor_delay": {"channel": str(channel), "delay": float(rng.uniform(2e-3, 1e-2))},
-            "swap": {"channel": str(channel), "other": str(other)},
-            "clip": {"channel": str(channel), "fraction": float(rng.uniform(0.2, 0.5))},
-            "dropout": {
-                "channel": str(channel),
-                "start": float(rng.uniform(0.2, 0.7)),
-                "duration": float(rng.uniform(0.5, 2.0)),
-            },
-        }[name],
-    )
+    parameters = {  # all are drawn, so that the sequence of random numbers is the same for all
+        "sensor_gain": {"channel": str(channel), "factor": factor},
+        "sensor_delay": {"channel": str(channel), "delay": float(rng.uniform(2e-3, 1e-2))},
+        "swap": {"channel": str(channel), "other": str(other)},
+        "clip": {"channel": str(channel), "fraction": float(rng.uniform(0.2, 0.5))},
+        "dropout": {
+            "channel": str(channel),
+            "start": float(rng.uniform(0.2, 0.7)),
+            "duration": float(rng.uniform(0.5, 2.0)),
+        },
+    }
+    return name, parameters[name]
 
 
 def hidden_in(seed, arm, number, rng):
@@ -97,24 +94,16 @@ def hidden_in(seed, arm, number, rng):
     if arm == "alias":
         effect = cycled(seed, arm, [effect for pair in ALIASES for effect in pair], number)
         if effect == "sensor_gain":
-            return (
-                (
-                    "sensor_gain",
-                    {
-                        "channel": "all",
-                        "factor": float(
-                            rng.choice([rng.uniform(0.6, 0.75), rng.uniform(1.3, 1.6)])
-                        ),
-                    },
-                ),
-            )
+            factor = float(rng.choice([rng.uniform(0.6, 0.75), rng.uniform(1.3, 1.6)]))
+            return (("sensor_gain", {"channel": "all", "factor": factor}),)
         return (amount_of(effect, "strong", rng),)
     return (instrument(cycled(seed, arm, FAULTS, number), rng),)
 
 
-def drawn(seed, count, **common):
-    """The first `count` Plans of a seed; common: fields of Plan that all share (duration, tube,
-    levels, ...).
+def draw_plans(seed, count, **common):
+    """The first `count` Plans of a seed.
+
+    common: fields that all share (duration, tube, levels, ...).
     """
     plans = []
     for index, (arm, number) in enumerate(arms(count)):

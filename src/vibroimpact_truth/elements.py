@@ -1,12 +1,11 @@
-"""Curved cubic beam elements: stiffness, mass and interpolation of a tube in space, the two planes
-apart.
+"""Curved cubic beam elements: stiffness, mass and interpolation, in plane and out of plane.
 
-Four nodes on the true centreline, displacement and rotation each interpolated by cubic Lagrange
-polynomials in arc length, the tangent taken exactly at every integration point. Strains by the
-general Timoshenko curved beam, Gamma = u' + t x theta and kappa = theta'. Stiffness by three Gauss
-points (reduced: neither shear nor membrane locks), mass by four (exact). Degrees of freedom per
-node, global axes: plane "y" (out of plane) uy, rx, rz; plane "x" (in plane) ux, uz, ry. Source:
-K.-J. Bathe, Finite Element Procedures (1996), section 5.4.
+Four nodes on the true centreline. Displacement and rotation are interpolated by cubic Lagrange
+polynomials in arc length; the tangent is exact at every integration point. Strains are those of the
+general Timoshenko curved beam, Gamma = u' + t x theta and kappa = theta'. Stiffness is integrated
+by three Gauss points (reduced, without shear or membrane locking), mass by four (exact). Degrees of
+freedom per node, in global axes: plane "y" (out of plane) uy, rx, rz; plane "x" (in plane) ux, uz,
+ry. Source: K.-J. Bathe, Finite Element Procedures (1996), section 5.4.
 """
 
 import numpy as np
@@ -29,8 +28,9 @@ def lagrange(xi):
 
 
 def strain_rows(plane, tangent, value, slope):
-    """(3, 12) strains per unit dof: plane "y" shear, torsion, bending; plane "x" stretch, shear,
-    bending. slope is d/ds [1/m].
+    """(3, 12) strains per unit dof.
+
+    Plane "y": shear, torsion, bending. Plane "x": stretch, shear, bending. slope: d/ds [1/m].
     """
     tx, tz = tangent
     zero = np.zeros(4)
@@ -75,11 +75,10 @@ def inertia(section, plane, tangent, fluid):
 
 
 class Mesh:
-    """A mesh of the tube: elements of at most element_length m, two within each plate, and the
-    assembled matrices of a plane.
+    """A mesh of the tube with elements of at most element_length m, two within each plate.
 
-    ends: (element + 1,) arc lengths in m. Nodes: 3 element + 1; the roots are the first and the
-    last.
+    ends: (element + 1,) arc lengths in m. There are 3 element + 1 nodes; the roots are the first
+    and the last.
     """
 
     def __init__(self, tube, element_length=0.036):
@@ -136,8 +135,6 @@ class Mesh:
         return row
 
     def direction_rows(self, s, direction):
-        """Rows (dof of "y",) and (dof of "x",) of the displacement along direction (3,) at arc
-        length s [m].
-        """
+        """Rows (dof of "y",), (dof of "x",) of the displacement along direction (3,) at s [m]."""
         x, y, z = direction
         return y * self.row(s, 0), x * self.row(s, 0) + z * self.row(s, 1)

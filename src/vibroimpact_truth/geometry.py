@@ -1,6 +1,4 @@
-"""The tubes: centreline of a U-tube by arc length, section constants, and the two tubes that
-campaigns are made of.
-"""
+"""The tubes: U-shaped centreline by arc length, section constants, and the tubes of campaigns."""
 
 from dataclasses import dataclass, replace
 from math import pi
@@ -12,9 +10,12 @@ import numpy as np
 class Tube:
     """A U-tube in the x-z plane, roots at x = -+bend_radius, z = 0; SI units, angles in rad.
 
-    plate_height: mid-height z of both plates; plate_length: their height; contact_nodes per plate,
-    edges included, sharing plate_stiffness [N/m] equally; drive_angle: on the bend, from the apex
-    towards the left leg; shear_coefficient: inf has no shear and no rotary inertia.
+    plate_height: z of the middle of both plates.
+    plate_length: height of a plate.
+    plate_stiffness: N/m of a plate, shared equally by its contact nodes.
+    contact_nodes: per plate, edges included.
+    drive_angle: on the bend, from the apex towards the left leg.
+    shear_coefficient: inf means no shear and no rotary inertia.
     """
 
     outer_diameter: float
@@ -40,9 +41,7 @@ class Tube:
 
     @property
     def section(self) -> dict:
-        """EA [N], EI [N m²], GJ [N m²], kGA [N], mass [kg/m], inertia rho I [kg m], polar rho J [kg
-        m].
-        """
+        """EA [N], EI [N m²], GJ [N m²], kGA [N], mass [kg/m], inertia rho I, polar rho J [kg m]."""
         outer, inner = 0.5 * self.outer_diameter, 0.5 * self.outer_diameter - self.wall
         area, second = pi * (outer**2 - inner**2), 0.25 * pi * (outer**4 - inner**4)
         shear = 0.5 * self.young / (1.0 + self.poisson)
@@ -59,9 +58,8 @@ class Tube:
     def position(self, s):
         """(…, 3) position in m at arc length s [m] from the left root."""
         s = np.asarray(s, float)
-        angle = np.clip(
-            (s - self.leg) / self.bend_radius, 0.0, pi
-        )  # 0 where the bend begins on the left, pi on the right
+        # 0 where the bend begins on the left, pi on the right
+        angle = np.clip((s - self.leg) / self.bend_radius, 0.0, pi)
         rise = np.where(
             s < self.leg, s, np.where(s > self.length - self.leg, self.length - s, self.leg)
         )
@@ -80,8 +78,9 @@ class Tube:
         return np.stack([np.sin(angle), np.cos(angle)], axis=-1)
 
     def bend(self, angle: float) -> float:
-        """Arc length in m of a point of the bend, angle [rad] from the apex, positive towards the
-        right leg.
+        """Arc length in m of a point of the bend.
+
+        angle: rad, from the apex, positive towards the right leg.
         """
         return self.leg + self.bend_radius * (0.5 * pi + angle)
 
@@ -90,9 +89,7 @@ class Tube:
         return z if side == "left" else self.length - z
 
     def plate_nodes(self, side: str):
-        """(contact_nodes,) arc lengths in m of the contact nodes of the plate of a side,
-        upwards.
-        """
+        """(contact_nodes,) arc lengths in m of the contact nodes of a plate, upwards."""
         half = 0.5 * self.plate_length if self.contact_nodes > 1 else 0.0
         heights = np.linspace(
             self.plate_height - half, self.plate_height + half, self.contact_nodes
@@ -115,11 +112,9 @@ TUBES = {
 
 
 def named_places(tube: Tube) -> dict:
-    """Arc length in m of the places that sensors, masses and springs are put at, by name."""
+    """Arc length in m of the places of sensors, masses and springs, by name."""
 
-    def upper(
-        side,
-    ):  # between the plate and the bend, off the middle, as in the development campaigns
+    def upper(side):  # between the plate and the bend, off the middle
         return tube.leg_height(side, tube.plate_height + 0.5227 * (tube.leg - tube.plate_height))
 
     return {

@@ -1,8 +1,7 @@
-"""The effects that can be hidden in a rig: one function per id, changing a Rig in place; parameters
-in SI, named as in the catalogue.
+"""Effects that can be hidden in a rig: one function per id, which changes a Rig in place.
 
-EFFECTS are of the catalogue, STRANGERS are not. `places` are the names of geometry.named_places;
-`plates` is "both", "left" or "right".
+Parameters are in SI and named as in the catalogue. EFFECTS are in the catalogue, STRANGERS are not.
+`place` is a name of geometry.named_places; `plates` is "both", "left" or "right".
 """
 
 import numpy as np
@@ -10,77 +9,79 @@ import numpy as np
 from vibroimpact_truth.rig import Element, LooseMass
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-# the catalogue states the coefficient per contact point of a plate with five; here the plate's
-# total is kept
+# The catalogue states the coefficient per contact point of a plate with five points; a Plate has
+# the total.
 HERTZ_POINTS = 5
 
 
-def chosen(rig, plates):
+def selected(rig, plates):
     """The plates of a rig that an effect acts on."""
     return [plate for plate in rig.plates if plates in ("both", plate.side)]
 
 
 def gap(rig, factor=1.25, plates="both"):
     """Radial clearance factor times the nominal."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.gap_factor *= factor
 
 
 def contact_stiffness(rig, factor=0.4, plates="both"):
     """Stiffness of the plates factor times the nominal."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.stiffness *= factor
 
 
 def contact_damping(rig, damping=200.0, plates="both"):
     """Kelvin-Voigt damping [N s/m per plate]; the force never pulls."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.damping += damping
 
 
 def hunt_crossley(rig, alpha=5.0, plates="both"):
     """Force k p max(0, 1 + alpha dp/dt), alpha [s/m]."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.hunt_crossley += alpha
 
 
 def hertz(rig, coefficient=2.0e8, plates="both"):
-    """Force of p^1.5 in place of k p; coefficient [N/m^1.5] per point of a plate with five."""
-    for plate in chosen(rig, plates):
+    """Force proportional to p^1.5; coefficient [N/m^1.5] per point of a plate with five."""
+    for plate in selected(rig, plates):
         plate.hertz = HERTZ_POINTS * coefficient
 
 
 def dry_friction(rig, mu=0.2, slip_speed=0.0, plates="both"):
-    """Coulomb friction mu of the plates: a Dahl bristle, or tanh(v / slip_speed [m/s]) where
-    slip_speed is positive.
+    """Coulomb friction mu of the plates.
+
+    A Dahl bristle, or tanh(v / slip_speed [m/s]) where slip_speed is positive.
     """
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.friction, plate.slip_speed = mu, slip_speed
 
 
 def support_offset(rig, offset_x=0.0, offset_y=1.0e-4, plates="both"):
     """Centre of the plates away from the tube [m]."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.offset = (plate.offset[0] + offset_x, plate.offset[1] + offset_y)
 
 
 def foliate_obstacle(rig, lobes=4, depth=2.0e-4, angle=0.3, shape="lobes", plates="both"):
-    """Hole with `lobes` lands at the angle [rad]: shape "lobes" has arcs with recesses of depth [m]
-    between them, "lands" is flat lands.
+    """Hole with `lobes` lands, the first at the angle [rad].
+
+    shape "lobes": arcs with recesses of depth [m] between them; "lands": flat lands.
     """
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.profile, plate.lobes, plate.depth, plate.angle = shape, lobes, depth, angle
 
 
 def preload(rig, force_x=0.0, force_y=5.0, plates="both"):
     """Dead load [N] on the tube at the plates."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.preload = (plate.preload[0] + force_x, plate.preload[1] + force_y)
 
 
 def plate_flexibility(rig, mass=0.5, stiffness=2.0e6, plates="both"):
     """Plates of a mass [kg] on a spring [N/m] in x and y."""
-    for plate in chosen(rig, plates):
+    for plate in selected(rig, plates):
         plate.plate_mass, plate.plate_stiffness = mass, stiffness
 
 
@@ -112,7 +113,7 @@ def lateral_stinger(rig, stiffness=2.0e3, damping=0.0, direction="x"):
 
 
 def fluid_added_mass_damping(rig, mass=0.15, damping=5.0):
-    """Mass [kg/m] and damping [N s/m²] of a fluid about the tube, across it."""
+    """Mass [kg/m] and damping [N s/m²] of a surrounding fluid, across the tube."""
     rig.fluid = (rig.fluid[0] + mass, rig.fluid[1] + damping)
 
 
@@ -137,9 +138,7 @@ def quadratic_drag(rig, drag=20.0):
 
 
 def coulomb_friction(rig, force=1.0, place="apex", direction="y"):
-    """Friction of a limit [N] between a place and the ground, a Dahl bristle that yields in 10
-    micrometres.
-    """
+    """Friction of a limit [N] between a place and the ground: a Dahl bristle, 10 um long."""
     rig.elements.append(Element("coulomb", place, AXES[direction], (force, force / 1.0e-5)))
 
 
@@ -149,9 +148,7 @@ def clearance(rig, half_gap=5.0e-4, stiffness=5.0e4, place="apex", direction="y"
 
 
 def force_misalignment(rig, angle=0.3):
-    """The force turned by angle [rad] about the tube's axis, from y towards the outside of the
-    bend.
-    """
+    """The force turned by angle [rad] about the tube's axis, from y towards the outer side."""
     rig.drive_angle += angle
 
 
@@ -161,8 +158,9 @@ def loose_mass(rig, mass=0.05, clearance=2.0e-4, place="apex"):
 
 
 def hysteretic_root(rig, stiffness=3.0e3, limit=0.3, translation=1.0e9, rotation=1.2e4):
-    """Roots on springs, of whose rotation [N m/rad] a part `stiffness` slips by hysteresis at the
-    limit [N m] (Bouc-Wen).
+    """Roots on springs whose rotation [N m/rad] is partly hysteretic (Bouc-Wen).
+
+    stiffness [N m/rad]: the part that slips at the limit [N m].
     """
     rig.root = (translation, rotation)
     for root in ("left_root", "right_root"):
@@ -171,8 +169,8 @@ def hysteretic_root(rig, stiffness=3.0e3, limit=0.3, translation=1.0e9, rotation
 
 
 def drifting_gap(rig, rate=0.01, plates="both"):
-    """Gap growing by the relative rate [1/s] over all records one after another."""
-    for plate in chosen(rig, plates):
+    """Gap that grows by the relative rate [1/s] over all records in sequence."""
+    for plate in selected(rig, plates):
         plate.gap_rate += rate
 
 
@@ -182,15 +180,13 @@ def one_sided_stop(rig, distance=4.0e-4, stiffness=2.0e5, place="apex", directio
 
 
 def unmeasured_force(rig, rms=0.5, place="right_leg_upper", direction="y"):
-    """A second random force [N RMS per N RMS of the drive] that nobody measured."""
+    """A second random force [N RMS per N RMS of the drive] that is not measured."""
     rig.unmeasured = (place, AXES[direction], rms)
 
 
 def tilted_plate(rig, slope=0.012, direction="y", plates="left"):
-    """Plates whose axis leans by the slope [rad] against the tube, so that they touch at an edge
-    first.
-    """
-    for plate in chosen(rig, plates):
+    """Plates whose axis is tilted by the slope [rad] against the tube: an edge touches first."""
+    for plate in selected(rig, plates):
         plate.tilt = tuple(slope * np.array(AXES[direction][:2]))
 
 

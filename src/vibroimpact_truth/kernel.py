@@ -1,13 +1,12 @@
-"""The compiled march: kick, drift, kick with the drift exact. All compiled code of the package is
-in this file.
+"""The compiled integration: kick, exact drift, kick. All compiled code of the package is here.
 
-Per step h: v += h × (all forces at the displacement now), then every mode turns exactly as a damped
-oscillator left alone. Symmetric, of second order, symplectic where nothing is lost; linear motion
-has no period error at any step. The force of a contact sees the modes kept plus the static
-compliance of those left out (`residual`), by two passes of a contraction of about 0.03. Sources: E.
-Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), XIII.1 (impulse method); P.
-Dahl, AIAA J. 14 (1976) 1675-1682 (friction); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102 (1976)
-249-263 (hysteresis).
+Per step h: v += h × (all forces at the present displacement); then every mode moves exactly as a
+free damped oscillator. The scheme is symmetric, of second order, and symplectic where nothing is
+lost; linear motion has no period error at any step. The contact force sees the displacement of the
+modes plus the static compliance of those left out (`residual`), by two passes of a fixed-point
+iteration with a contraction of about 0.03. Sources: E. Hairer, C. Lubich and G. Wanner, Geometric
+Numerical Integration (2006), XIII.1 (impulse method); P. Dahl, AIAA J. 14 (1976) 1675-1682
+(friction); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102 (1976) 249-263 (hysteresis).
 """
 
 from typing import NamedTuple
@@ -15,16 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-# shapes that the nodes of a plate follow in one plane; rows projected at once; places for nodes of
-# a plate
-SHAPES = 4
-ROWS = 8
-NODES = 8
-# m sqrt(kg), where a march is given up; false for what is no number, as isfinite is not with these
-# flags
+SHAPES = 4  # shapes that span the motion of a plate's nodes in one plane
+ROWS = 8  # rows projected at once
+NODES = 8  # places for nodes of a plate
+# m sqrt(kg): |q| at which the integration stops. The comparison is false for NaN, which isfinite
+# does not detect with these compiler flags.
 RUNAWAY = 1.0e6
-# Without references counted (nothing here allocates): counting them costs as much as the contact
-# itself.
+# Without reference counting: nothing here allocates, and counting costs as much as the contact.
 NRT = {"cache": True, "error_model": "numpy", "_nrt": False}
 FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -44,13 +40,15 @@ LOOSE_MASS, LOOSE_GAP, LOOSE_STIFFNESS, LOOSE_DAMPING = 0, 1, 2, 3
 
 
 class Contacts(NamedTuple):
-    """Contact nodes, eight places per plate, unused ones with no share. The rows of a plate's nodes
-    span few shapes: rows = lift × shape.
+    """Contact nodes, eight places per plate; unused ones have no share.
 
-    lift_y, lift_x (plate, SHAPES, node); share (plate, node) of the plate's stiffness; residual_y,
-    residual_x (plate, node, node) m/N; tilt_y, tilt_x (plate, node) m: the hole's axis beside the
-    plate's centre; shape_y (8, y mode), shape_x (8, x mode): SHAPES rows per plate, two plates at
-    most.
+    The rows of a plate's nodes span few shapes: rows = lift × shape.
+
+    lift_y, lift_x (plate, SHAPES, node).
+    share (plate, node): of the plate's stiffness.
+    residual_y, residual_x (plate, node, node): m/N.
+    tilt_y, tilt_x (plate, node): offset of the hole's axis from the plate's centre, m.
+    shape_y (8, y mode), shape_x (8, x mode): SHAPES rows per plate, two plates at most.
     """
 
     lift_y: np.ndarray
@@ -65,9 +63,12 @@ class Contacts(NamedTuple):
 
 
 class Locals(NamedTuple):
-    """Local elements: law (element,), parameters (element, 4), rows (element, mode); loose masses
-    (mass, 4), rows (mass, mode) along y and x; drag N s²/m² per station (station,) and its rows
-    (station, mode) across the tube along y and in plane.
+    """Local elements, loose masses and drag.
+
+    law (element,), parameters (element, 4), row (element, mode).
+    loose (mass, 4); loose_y, loose_x (mass, mode): rows along y and x.
+    drag (station,): N s²/m² per station; drag_y, drag_x (station, mode): rows across the tube,
+    along y and in plane.
     """
 
     law: np.ndarray
@@ -82,8 +83,10 @@ class Locals(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a march changes: q, v (mode,), bristle, contact force fx, fy (plate, node), memory
-    (element,), plate (plate, 4), loose (mass, 4).
+    """The variables that change with time.
+
+    q, v (mode,). bristle, fx, fy (plate, node): bristle deflection and contact force.
+    memory (element,). plate (plate, 4) and loose (mass, 4): x, y and their rates.
     """
 
     q: np.ndarray
@@ -98,8 +101,9 @@ class State(NamedTuple):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def obstacle(table, gap, x, y):
-    """Penetration (negative when free) and outward normal of the obstacle of a plate nearest to (x,
-    y); one land only where it has lands.
+    """Penetration (negative when free) and outward normal of a plate's obstacle at (x, y).
+
+    With lands, the one nearest to (x, y) counts.
     """
     radius = np.sqrt(x * x + y * y)
     kind = int(table[PROFILE])
@@ -133,8 +137,9 @@ def obstacle(table, gap, x, y):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def normal_force(table, share, depth, rate):
-    """Normal force in N, never a pull, of a node that carries `share` of the plate: penetration m
-    and its rate m/s.
+    """Normal force in N, never tensile, of a node with a `share` of the plate.
+
+    depth: penetration, m. rate: its rate, m/s.
     """
     elastic = (
         table[STIFFNESS] * depth if table[HERTZ] == 0.0 else table[HERTZ] * depth * np.sqrt(depth)
@@ -144,10 +149,10 @@ def normal_force(table, share, depth, rate):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def friction_force(table, share, bristle, normal, speed, step):
-    """Tangential force in N on the tube and the bristle deflection in m after this step.
+    """Tangential force in N on the tube, and bristle deflection in m after the step.
 
-    A Dahl bristle, integrated exactly over a step of constant speed; with a slip speed, Coulomb
-    smoothed by tanh, limited so that it can not turn the sliding round within a step.
+    A Dahl bristle, integrated exactly over a step of constant speed. With a slip speed, Coulomb
+    friction smoothed by tanh, limited so that it can not reverse the sliding within a step.
     """
     limit = table[MU] * normal
     if table[SLIP_SPEED] > 0.0:
@@ -171,12 +176,13 @@ def friction_force(table, share, bristle, normal, speed, step):
 
 @njit(fastmath=FAST, **NRT, inline="always")
 def element_force(law, p, d, v, memory, step):
-    """Force in N (or N m) of a local element at displacement d, rate v, and its memory after this
-    step; p: its parameters.
+    """Force in N (or N m) of a local element, and its memory after the step.
+
+    law: number of rig.LAWS. p: its parameters. d, v: displacement and rate.
 
     linear k, c; cubic k3; quadratic k2; saturation k, limit (smooth); coulomb limit, bristle
-    stiffness; clearance half gap, k; bouc_wen k, limit (the spring k of the structure made
-    hysteretic); one_sided k, distance; drag c.
+    stiffness; clearance half gap, k; bouc_wen k, limit (makes the structure's spring k hysteretic);
+    one_sided k, distance; drag c.
     """
     if law == 0:
         return -p[0] * d - p[1] * v, memory
@@ -194,9 +200,8 @@ def element_force(law, p, d, v, memory, step):
     if law == 5:
         over = max(0.0, d - p[0]) + min(0.0, d + p[0])
         return -p[1] * over, memory
-    if (
-        law == 6
-    ):  # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²), and the structure's own k d is given back
+    if law == 6:
+        # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²); the structure's own spring k d is removed
         end = p[1] / p[0]
         share = memory / end
         memory += step * v * (1.0 - (0.5 + 0.5 * np.sign(v * memory)) * share * share)
@@ -242,11 +247,10 @@ def project(rows, first, q, out):
 
 @njit(fastmath=FAST, **NRT)
 def advance(rows, q, v, turn, step, force, drive, extra, load, place):
-    """Kick every mode by force × drive + extra + loads on the eight rows, turn it exactly, and
-    project the new place on the rows.
+    """Kick every mode, move it exactly, and project its new displacement on the eight rows.
 
-    Plain: v += step (force drive + extra + rows' load); q, v = turn (q, v); place = rows q. One
-    pass, as memory is what it costs.
+    Plain form: v += step (force drive + extra + rows' load); q, v = turn (q, v); place = rows q.
+    It is one pass, because memory access is what it costs.
     """
     a = b = c = d = e = f = g = h = 0.0
     l0 = load[0]
@@ -303,9 +307,10 @@ def advance(rows, q, v, turn, step, force, drive, extra, load, place):
 
 
 @njit(fastmath=FAST, **NRT)
-def lifted(lift, p, amplitude, nodes):
-    """nodes[p, :] = displacement (or rate) of the nodes of plate p from the amplitudes (8,) of the
-    shapes.
+def lift_to_nodes(lift, p, amplitude, nodes):
+    """nodes[p, :] = displacement (or rate) of the nodes of plate p.
+
+    amplitude (8,): of the shapes.
     """
     for i in range(NODES):
         nodes[p, i] = 0.0
@@ -317,8 +322,9 @@ def lifted(lift, p, amplitude, nodes):
 
 @njit(fastmath=FAST, **NRT)
 def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, step):
-    """Force fx, fy in N on the tube of a node at (ux, uy) from the plate's centre, moving at the
-    rates; and its bristle.
+    """Force fx, fy in N on the tube of a node, and its bristle deflection.
+
+    ux, uy: from the plate's centre, m. rate_x, rate_y: m/s.
     """
     depth, nx, ny = obstacle(table, gap, ux, uy)
     if depth <= 0.0:
@@ -334,9 +340,10 @@ def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, step):
 def contact_forces(
     contacts, plates, state, place_y, place_x, load_y, load_x, work, elapsed, ramp, step, touching
 ):
-    """load_y, load_x (8,): forces of all contacts on the shapes, at their places (8,); touching
-    (plate,) 1.0 where a node touches.
+    """Set load_y, load_x (8,) to the forces of all contacts on the shapes.
 
+    place_y, place_x (8,): displacements of the shapes.
+    touching (plate,): set to 1.0 where a node touches.
     work (8, plate, 8): displacements x and y, the same with the residual, rates x and y, rates of
     the shapes x and y.
     """
@@ -354,8 +361,8 @@ def contact_forces(
         load_y[k] = 0.0
         load_x[k] = 0.0
     for p in range(len(plates)):
-        lifted(contacts.lift_x, p, place_x, ux)
-        lifted(contacts.lift_y, p, place_y, uy)
+        lift_to_nodes(contacts.lift_x, p, place_x, ux)
+        lift_to_nodes(contacts.lift_y, p, place_y, uy)
         shift_x = ramp * plates[p, OFFSET_X] + state.plate[p, 0]
         shift_y = ramp * plates[p, OFFSET_Y] + state.plate[p, 1]
         gap = plates[p, GAP] * (1.0 + plates[p, GAP_RATE] * elapsed)
@@ -371,8 +378,8 @@ def contact_forces(
                 rates_known = True
                 project(contacts.shape_x, 0, state.v[contacts.shape_y.shape[1] :], rate_x)
                 project(contacts.shape_y, 0, state.v[: contacts.shape_y.shape[1]], rate_y)
-            lifted(contacts.lift_x, p, rate_x, wx)
-            lifted(contacts.lift_y, p, rate_y, wy)
+            lift_to_nodes(contacts.lift_x, p, rate_x, wx)
+            lift_to_nodes(contacts.lift_y, p, rate_y, wy)
         touching[p] = 0.0
         for last in range(2):
             for i in range(NODES):
@@ -416,7 +423,7 @@ def plate_resultants(state, resultant):
 
 @njit(fastmath=FAST, **NRT)
 def plate_step(plates, state, step, resultant):
-    """Kick and drift of every plate that yields, under the forces of the tube."""
+    """Kick and drift of every flexible plate, under the forces of the tube."""
     for p in range(len(plates)):
         table = plates[p]
         if table[PLATE_MASS] > 0.0:
@@ -432,8 +439,9 @@ def plate_step(plates, state, step, resultant):
 
 @njit(fastmath=FAST, **NRT)
 def local_kick(local, state, kick, step):
-    """Add the forces of local elements, drag and loose masses to the modal kick; loose masses are
-    kicked and moved here.
+    """Add the forces of local elements, drag and loose masses to the modal kick.
+
+    Loose masses are kicked and moved here too.
     """
     for e in range(len(local.law)):
         force, state.memory[e] = element_force(
@@ -494,15 +502,16 @@ def march(
     reaction,
     touched,
 ):
-    """March len(force) steps; out (sample, channel) displacements m, reaction (sample, 2 plate) N,
-    one sample per `stride` steps.
+    """Integrate len(force) steps; return the step at which the state diverged, or -1.
 
-    split: number of the "y" modes, which come first. turn (4, mode): the exact drift q' = t0 q + t1
-    v, v' = t2 q + t3 v. drive (mode,) and force (step,) N; other (mode,) and unmeasured (step or
-    0,) N a second one; dead (mode,) dead load, ramp (step or 1,) its factor, and that of the
-    offsets. sensors (channel, mode), channels a multiple of 8. start: time in s at the first step.
-    touched (plate,) is increased by the steps in contact. Returns the number of the step at which
-    the state is no longer finite, or -1.
+    split: number of the "y" modes, which come first.
+    turn (4, mode): exact drift q' = t0 q + t1 v, v' = t2 q + t3 v.
+    drive (mode,) and force (step,) N; other (mode,) and unmeasured (step or 0,) N: a second force.
+    dead (mode,): dead load; ramp (step or 1,): its factor, and that of the offsets.
+    sensors (channel, mode): a multiple of 8 channels.
+    stride: steps per sample. start: time at the first step, s.
+    out (sample, channel): displacements, m. reaction (sample, 2 plate): N.
+    touched (plate,): increased by the steps in contact.
     """
     modes, count = len(state.q), len(plates)
     extra, work = np.zeros(modes), np.zeros((8, max(count, 1), NODES))

@@ -1,6 +1,4 @@
-"""One record: the rig marched from rest under a force, its accelerations and plate forces decimated
-to the sampling frequency.
-"""
+"""One record: the rig integrated from rest under a force, decimated to the sampling frequency."""
 
 from dataclasses import dataclass
 
@@ -10,18 +8,18 @@ from scipy.signal import firwin, kaiser_beta, upfirdn
 from vibroimpact_truth import kernel
 
 STRIDE = 4  # steps per sample before decimation: 40960 Hz, where the modes end at 15000 Hz
-SETTLE_S = 2.5  # dead loads and offsets are brought in this slowly, before the record
-PASS_HZ, STOP_HZ, STOP_DB = (
-    800.0,
-    1024.0,
-    86.0,
-)  # "fir80" of the contract at 2048 Hz, with 6 dB in hand
+SETTLE_S = 2.5  # duration of the ramp of dead loads and offsets, before the record
+# "fir80" of the contract at 2048 Hz, with a margin of 6 dB
+PASS_HZ, STOP_HZ, STOP_DB = 800.0, 1024.0, 86.0
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """acceleration (channel, time) m/s² and reaction (plate, 2, time) N on the tube at the sampling
-    frequency; contact (plate,) share of time.
+    """The response of one record.
+
+    acceleration (channel, time): m/s².
+    reaction (plate, 2, time): force on the tube, N.
+    contact (plate,): share of time in contact.
     """
 
     acceleration: np.ndarray
@@ -30,7 +28,7 @@ class Record:
 
 
 def upsample(force, factor):
-    """(time × factor,) of a force (time,) N: band-limited (whole-record Fourier) interpolation."""
+    """(time × factor,) of a force (time,) N: band-limited interpolation by Fourier transform."""
     spectrum = np.fft.rfft(force)
     full = np.zeros(len(force) * factor // 2 + 1, complex)
     full[: len(spectrum)] = spectrum
@@ -38,15 +36,15 @@ def upsample(force, factor):
 
 
 def anti_alias(fast, factor):
-    """Linear-phase filter (odd number of taps) at `fast` Hz before keeping every `factor`-th
-    sample; edges scale with the sampling frequency.
+    """Taps of a linear-phase filter at `fast` Hz for decimation by `factor`; an odd number.
+
+    The band edges scale with the sampling frequency.
     """
     scale = fast / factor / 2048.0
     width = (STOP_HZ - PASS_HZ) * scale
     taps = int(np.ceil((STOP_DB - 7.95) / (2.285 * 2.0 * np.pi * width / fast))) + 1
-    half = (
-        -(-taps // (2 * factor)) * factor
-    )  # a whole number of kept samples, so that the delay can be removed exactly
+    # A whole number of decimated samples, so that the delay can be removed exactly.
+    half = -(-taps // (2 * factor)) * factor
     return firwin(
         2 * half + 1,
         0.5 * (PASS_HZ + STOP_HZ) * scale,
@@ -56,18 +54,17 @@ def anti_alias(fast, factor):
 
 
 def decimate(series, factor, taps):
-    """(…, time / factor) of (…, time): filtered, group delay removed, silence before and after."""
+    """(…, time / factor) of (…, time): filtered, group delay removed, zeros before and after."""
     delay = (len(taps) - 1) // 2 // factor
     kept = series.shape[-1] // factor
     return upfirdn(taps, series, 1, factor, axis=-1)[..., delay : delay + kept]
 
 
 def accelerations(displacement, step):
-    """(…, time) second differences over `step` [s] of displacements that begin at rest, 0.02 dB low
-    at 1 kHz.
+    """(…, time) second differences of displacements over `step` [s]; 0.02 dB low at 1 kHz.
 
-    Not the modal forces at the kicks: there omega² q answers a steady force g by g (1 - (omega
-    step)²/12), which would leave the sensors near a plate with a share of the contact force at
+    The modal forces at the kicks are not used: there omega² q responds to a constant force g by
+    g (1 - (omega step)²/12). Sensors near a plate would show a share of the contact force at
     frequencies where they hardly move.
     """
     change = np.diff(displacement, axis=-1, prepend=displacement[..., :1])
@@ -75,8 +72,9 @@ def accelerations(displacement, step):
 
 
 def rest_state(reduced, imperfection, rng):
-    """A State at rest but for a seeded push of `imperfection` m on the first in-plane modes, so
-    that nothing rides on round-off.
+    """A State at rest but for a random displacement of the first in-plane modes.
+
+    imperfection: its size, m. Without it the in-plane motion would start from round-off.
     """
     modes, plates = len(reduced.frequency), len(reduced.plates)
     state = kernel.State(
@@ -93,14 +91,17 @@ def rest_state(reduced, imperfection, rng):
 
 
 def run_record(reduced, force, gap, sampling, steps_per_second, rng, start=0.0, unmeasured=None):
-    """The Record of a force (time,) N at `sampling` Hz; gap: (plate,) m; start: s of the campaign
-    that went by before it; unmeasured: (time,) N of a second force, or None.
+    """The Record of a force (time,) N at `sampling` Hz.
+
+    gap: (plate,) m.
+    start: time of the campaign before the record, s.
+    unmeasured: (time,) N of a second force, or None.
     """
     factor = round(steps_per_second / sampling)
     step, plates = 1.0 / steps_per_second, reduced.plates.copy()
     plates[:, kernel.GAP] = gap
     state = rest_state(reduced, 1e-6 * float(np.min(gap)), rng)
-    turn = reduced.turn(1.0 / steps_per_second)
+    turn = reduced.propagator(1.0 / steps_per_second)
     group = (reduced.split, turn, reduced.contacts, plates, reduced.local, reduced.drive)
     touched = np.zeros(len(plates))
     if (
@@ -164,7 +165,7 @@ def run_record(reduced, force, gap, sampling, steps_per_second, rng, start=0.0, 
 
 
 def _require_finite(failed, step):
-    """Raise FloatingPointError where the march went to infinity."""
+    """Raise FloatingPointError where the integration diverged."""
     if failed >= 0:
         raise FloatingPointError(
             f"the march is no longer finite at t = {failed * step:.4f} s: more steps per second, or"

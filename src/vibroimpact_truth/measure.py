@@ -1,13 +1,12 @@
-"""What instruments make of the truth: gains, delays, noise, and faults. Ids that end up here leave
-the rig alone.
-"""
+"""The instruments: gains, delays, noise and faults, applied to the true signals."""
 
 import numpy as np
 
 
 def sensor_gain(data, channel="apex_y", factor=1.15):
-    """A channel, "force", or "all" (the force and every response: the exact alias of a scaled gap)
-    times factor.
+    """Multiply a channel, "force", or "all" by factor.
+
+    "all" is the force and every response, which is exactly the same as a scaled gap.
     """
     if channel in ("force", "all"):
         data.force *= factor
@@ -17,19 +16,19 @@ def sensor_gain(data, channel="apex_y", factor=1.15):
 
 
 def sensor_delay(data, channel="apex_y", delay=1.0e-3):
-    """A channel or "force" late by delay [s]."""
+    """Delay a channel or "force" by delay [s]."""
     for series in data.series(channel):
         series[:] = delayed(series, delay * data.sampling)
 
 
 def swap(data, channel="apex_y", other="left_leg_upper_y"):
-    """Two channels on each other's cable."""
+    """Exchange two channels."""
     a, b = data.names.index(channel), data.names.index(other)
     data.response[:, [a, b]] = data.response[:, [b, a]]
 
 
 def clip(data, channel="apex_y", fraction=0.4):
-    """A channel whose range ends at a fraction of its highest peak."""
+    """Limit a channel to a fraction of its highest peak."""
     series = data.series(channel)
     limit = fraction * max(np.abs(one).max() for one in series)
     for one in series:
@@ -37,14 +36,14 @@ def clip(data, channel="apex_y", fraction=0.4):
 
 
 def dropout(data, channel="apex_y", start=0.4, duration=1.5):
-    """A channel dead (zero) from a fraction `start` of each record, for duration [s]."""
+    """Set a channel to zero for duration [s], from a fraction `start` of each record."""
     for series in data.series(channel):
         first = int(start * len(series))
         series[first : first + int(duration * data.sampling)] = 0.0
 
 
 def delayed(series, samples):
-    """(time,) a series late by a number of samples, band-limited, silence before it."""
+    """(time,) a series delayed by a number of samples, band-limited, zero before it begins."""
     pad = len(series) // 8
     wide = np.concatenate([np.zeros(pad), series, np.zeros(pad)])
     turn = np.exp(-2j * np.pi * np.fft.rfftfreq(len(wide)) * samples)
@@ -57,15 +56,17 @@ INSTRUMENTS = SENSOR_EFFECTS | FAULTS
 
 
 class Measured:
-    """Force (record, time) and response (record, channel, time) on their way through the
-    instruments; names of the channels, sampling Hz.
+    """The signals that instruments act on.
+
+    force (record, time), response (record, channel, time).
+    names: of the channels. sampling: Hz.
     """
 
     def __init__(self, force, response, names, sampling):
         self.force, self.response, self.names, self.sampling = force, response, names, sampling
 
     def series(self, channel):
-        """The (time,) series of a channel, or of the force, one per record; views."""
+        """The (time,) series of a channel, or of "force", one per record; views."""
         if channel == "force":
             return list(self.force)
         return list(self.response[:, self.names.index(channel)])

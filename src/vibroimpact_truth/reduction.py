@@ -1,27 +1,27 @@
-"""Modes of a rig, to about 15 kHz, and everything the march needs of them; what the modes left out
-still yield statically.
-"""
+"""Modal model of a rig: modes up to about 15 kHz, and residual compliance of all higher ones."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, eigh
+from scipy.linalg import cho_factor, cho_solve
 
 from vibroimpact_truth import kernel
-from vibroimpact_truth.elements import Mesh
-from vibroimpact_truth.geometry import named_places
+from vibroimpact_truth.planes import Planes
 from vibroimpact_truth.rig import LAWS, PROFILES
 
 DRAG_STATIONS = 40
-PLATE_DAMPING_RATIO = 0.02  # of a plate that yields
-LANES = 8  # modes of a plane are filled up to a multiple
+PLATE_DAMPING_RATIO = 0.02  # of a flexible plate
+LANES = 8  # the number of modes of a plane is padded to a multiple of this
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """What march needs, and the modes themselves, (mode,): omega2 rad²/s², rate = 2 zeta omega 1/s,
-    frequency Hz, damping ratio, real False for the fillers of 1 Hz; the `split` modes of the "y"
-    plane come first.
+    """A modal model: the arguments of kernel.march, and the modes.
+
+    split: number of modes of the "y" plane, which come first.
+    omega2 (mode,): rad²/s². rate (mode,): 2 zeta omega, 1/s.
+    frequency (mode,): Hz. ratio (mode,): damping ratio.
+    real (mode,): False for padding modes of 1 Hz.
     """
 
     split: int
@@ -38,14 +38,15 @@ class Reduced:
     ratio: np.ndarray
     real: np.ndarray
 
-    def turn(self, step):
-        """(4, mode) exact motion of each mode over a step [s]."""
-        return turn_of(self.omega2, self.rate, step)
+    def propagator(self, step):
+        """(4, mode) exact free motion of each mode over a step [s]."""
+        return exact_propagator(self.omega2, self.rate, step)
 
 
-def turn_of(omega2, rate, step):
-    """(4, mode) exact drift of damped oscillators, omega2 rad²/s² and rate 2 zeta omega 1/s, over a
-    step [s]; less than critical damping.
+def exact_propagator(omega2, rate, step):
+    """(4, mode) exact free motion of damped oscillators over a step [s].
+
+    omega2 (mode,): rad²/s². rate (mode,): 2 zeta omega, 1/s, less than critical.
     """
     damped = np.sqrt(omega2 - 0.25 * rate**2)
     decay = np.exp(-0.5 * rate * step)
@@ -53,82 +54,13 @@ def turn_of(omega2, rate, step):
     return np.array([cosine + 0.5 * rate * sine, sine, -omega2 * sine, cosine - 0.5 * rate * sine])
 
 
-class Planes:
-    """The finite-element matrices of a rig in both planes, with its springs, masses, fluid and
-    roots.
-    """
-
-    def __init__(self, rig, element_length=0.036):
-        self.rig, self.mesh = rig, Mesh(rig.tube, element_length)
-        self.places = named_places(rig.tube)
-        self.stiffness, self.mass, self.bare_mass = {}, {}, {}
-        for plane in ("y", "x"):
-            self.stiffness[plane], self.mass[plane] = self.mesh.matrices(plane, rig.fluid[0])
-        for place, direction, value in rig.springs:
-            self._add(self.stiffness, place, direction, value)
-        for place, value in rig.masses:
-            for direction in np.eye(3):
-                self._add(self.mass, place, direction, value)
-        last = 3 * self.mesh.nodes
-        ends = {
-            "y": ([0, last - 3], [1, 2, last - 2, last - 1]),
-            "x": ([0, 1, last - 3, last - 2], [2, last - 1]),
-        }
-        self.free = {}
-        for plane, (moves, turns) in ends.items():
-            self.free[plane] = np.ones(last, bool)
-            if rig.root is None:
-                self.free[plane][moves + turns] = False
-            else:
-                self.stiffness[plane][moves, moves] += rig.root[0]
-                self.stiffness[plane][turns, turns] += rig.root[1]
-
-    def arc(self, place):
-        """Arc length in m of a place: its name, or the arc length itself."""
-        return self.places[place] if isinstance(place, str) else float(place)
-
-    def _add(self, matrices, place, direction, value):
-        for plane, row in self.rows(place, direction).items():
-            if row.any():
-                matrices[plane] += value * np.outer(row, row)
-
-    def rows(self, place, direction):
-        """{plane: (dof,)} displacement along direction (3,) at a place, or the rotation of the left
-        root about "rx" or "ry".
-        """
-        size = 3 * self.mesh.nodes
-        if isinstance(direction, str):
-            rows = {"y": np.zeros(size), "x": np.zeros(size)}
-            end = 0 if place == "left_root" else size - 3
-            rows["y" if direction == "rx" else "x"][end + (1 if direction == "rx" else 2)] = 1.0
-            return rows
-        return dict(
-            zip(("y", "x"), self.mesh.direction_rows(self.arc(place), direction), strict=True)
-        )
-
-    def modes(self, plane, highest=None, extra=()):
-        """(mode,) frequencies [Hz] and (dof, mode) mass-normalised shapes up to `highest` Hz;
-        extra: (row, N/m) springs.
-        """
-        free = self.free[plane]
-        stiffness = self.stiffness[plane].copy()
-        for row, value in extra:
-            stiffness += value * np.outer(row, row)
-        bounds = None if highest is None else (-1.0, (2.0 * np.pi * highest) ** 2)
-        values, vectors = eigh(
-            stiffness[np.ix_(free, free)],
-            self.mass[plane][np.ix_(free, free)],
-            subset_by_value=bounds,
-        )
-        shapes = np.zeros((len(free), len(values)))
-        shapes[free] = vectors
-        return np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi), shapes
-
-
 def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
-    """The Reduced rig. sensors: (place, direction (3,)) of the accelerations; scatter: {frequency,
-    damping: factor of a mode by its number from 0 in order of frequency} as functions of the number
-    of modes, or None; highest: Hz of the last mode kept.
+    """The Reduced model of a rig.
+
+    sensors: (place, direction (3,)) of the accelerations.
+    scatter: {"frequency", "damping": function of the number of modes that returns a factor for each
+    mode in order of frequency}, or None.
+    highest: Hz, of the last mode.
     """
     planes = Planes(rig)
     found = {plane: planes.modes(plane, highest) for plane in ("y", "x")}
@@ -186,16 +118,14 @@ def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
 
 
 def _damping(rig, frequency, real):
-    """(mode,) damping ratios: the first two modes of all, then the others."""
+    """(mode,) damping ratios: one for the two lowest modes, one for all others."""
     ratio = np.full(len(frequency), rig.tube.other_damping)
     ratio[np.flatnonzero(real)[np.argsort(frequency[real])[:2]]] = rig.tube.first_damping
     return ratio * rig.damping_factor
 
 
 def _drive_rows(planes):
-    """Rows of the force: along y, turned by drive_angle about the tube's axis towards the outside
-    of the bend.
-    """
+    """Rows of the force: along y, turned by drive_angle about the tube's axis."""
     rig = planes.rig
     tx, tz = rig.tube.tangent(planes.places["drive"])
     return planes.rows(
@@ -205,7 +135,7 @@ def _drive_rows(planes):
 
 
 def _contacts(planes, found, split, modes):
-    """kernel.Contacts of all plates, with the static compliance that the modes kept do not have."""
+    """kernel.Contacts of all plates, with the static compliance of the modes left out."""
     rig, plates = planes.rig, len(planes.rig.plates)
     lift = {plane: np.zeros((plates, kernel.SHAPES, kernel.NODES)) for plane in ("y", "x")}
     shape = {"y": np.zeros((kernel.ROWS, split)), "x": np.zeros((kernel.ROWS, modes - split))}
@@ -231,9 +161,8 @@ def _contacts(planes, found, split, modes):
                 - (projected / (2.0 * np.pi * frequency) ** 2) @ projected.T
             )
             left, size, right = np.linalg.svd(projected, full_matrices=False)
-            kept = min(
-                kernel.SHAPES, len(size)
-            )  # seven nodes within 30 mm follow four shapes to about 1e-5
+            # The motion of seven nodes within 30 mm is spanned by four shapes, to about 1e-5.
+            kept = min(kernel.SHAPES, len(size))
             lift[plane][p, :kept, nodes] = left[:, :kept].T
             shape[plane][kernel.SHAPES * p : kernel.SHAPES * p + kept, : len(frequency)] = (
                 size[:kept, None] * right[:kept]
@@ -263,9 +192,8 @@ def _plate_table(rig, contacts):
             plate.stick_ratio * plate.stiffness,
             plate.slip_speed,
         )
-        row[kernel.MOBILITY] = np.linalg.eigvalsh(rows @ rows.T)[
-            -1
-        ]  # of the whole plate sliding at once, 1/kg
+        # 1/kg, of all nodes of the plate sliding at once
+        row[kernel.MOBILITY] = np.linalg.eigvalsh(rows @ rows.T)[-1]
         row[kernel.GAP_RATE] = plate.gap_rate
         row[kernel.OFFSET_X], row[kernel.OFFSET_Y] = plate.offset
         row[kernel.PROFILE], row[kernel.LOBES], row[kernel.DEPTH] = (

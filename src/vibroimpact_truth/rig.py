@@ -1,6 +1,4 @@
-"""What a test rig is made of: the tube and everything that an effect may change on it. Plain data,
-SI units.
-"""
+"""A test rig: the tube and everything that an effect may change. Plain data in SI units."""
 
 from dataclasses import dataclass, field
 
@@ -22,13 +20,18 @@ PROFILES = {"circle": 0, "lands": 1, "lobes": 2}
 
 @dataclass
 class Plate:
-    """A support plate: radial gap = gap_factor × nominal (+ gap_rate per second of the campaign,
-    relative), centre offset m, laws of the contact (stiffness N/m, damping N s/m, hertz N/m^1.5 are
-    totals of the plate, shared by its nodes; hertz > 0 replaces the stiffness), friction (mu;
-    bristle of stick_ratio × stiffness, or tanh(v / slip_speed) where slip_speed m/s > 0), profile
-    of the hole (lobes or lands, angle rad, depth m, land_half_angle rad), preload N in x and y, a
-    mass [kg] on a spring [N/m] where the plate yields, and the tilt of its axis, rad towards x and
-    y.
+    """A support plate; stiffness, damping and hertz are totals, shared by its contact nodes.
+
+    gap_factor: radial gap over the nominal one.
+    gap_rate: its relative change per s of the campaign.
+    offset: of the centre, m.
+    stiffness N/m, damping N s/m, hunt_crossley s/m; hertz N/m^1.5 replaces the stiffness where > 0.
+    friction: mu of a bristle of stick_ratio × stiffness, or of tanh(v / slip_speed) where
+    slip_speed m/s is > 0.
+    profile of the hole: "circle", "lands" or "lobes"; angle rad, depth m, land_half_angle rad.
+    preload: N in x and y.
+    plate_mass kg on a spring plate_stiffness N/m; rigid where the mass is 0.
+    tilt: of the axis, rad towards x and y.
     """
 
     side: str
@@ -55,11 +58,11 @@ class Plate:
 
 @dataclass
 class Element:
-    """A local force law between a place of the tube and the ground, or two places; parameters as in
-    kernel.element_force.
+    """A local force law between a place of the tube and the ground, or between two places.
 
     component: (3,) direction of the displacement, or "rx" or "ry", the rotation of the place
     "left_root" or "right_root".
+    parameters: as in kernel.element_force.
     """
 
     law: str
@@ -71,8 +74,9 @@ class Element:
 
 @dataclass
 class LooseMass:
-    """A mass [kg] free within a round clearance [m] inside the tube at a place, wall stiffness N/m
-    and damping N s/m.
+    """A mass [kg] free within a round clearance [m] inside the tube at a place.
+
+    stiffness N/m and damping N s/m are those of the wall.
     """
 
     place: str
@@ -84,12 +88,15 @@ class LooseMass:
 
 @dataclass
 class Rig:
-    """The tube with its supports and all that is hidden in it.
+    """The tube with its supports and hidden effects.
 
-    springs: (place, direction, N/m) to ground; dashpots likewise in N s/m; masses: (place, kg);
-    root: (N/m, N m/rad) or None, clamped; fluid: (kg/m, N s/m²); drag N s²/m² per metre;
-    mode_factor: {mode number from 1: factor of its frequency}; drive_angle rad about the tube's
-    axis; unmeasured: (place, direction, RMS relative to the drive's) of a second force.
+    springs: (place, direction, N/m) to ground.
+    masses: (place, kg).
+    root: (N/m, N m/rad) of both roots, None for clamped.
+    fluid: (kg/m, N s/m²). drag: N s²/m² per metre.
+    mode_factor: {mode number from 1: factor of its frequency}.
+    drive_angle: rad, about the tube's axis.
+    unmeasured: (place, direction, RMS relative to the drive) of a second force.
     """
 
     tube: Tube
@@ -108,5 +115,5 @@ class Rig:
 
     @classmethod
     def bare(cls, tube):
-        """The rig with nothing hidden."""
+        """The rig without hidden effects."""
         return cls(tube, [Plate(side, tube.plate_stiffness) for side in ("left", "right")])

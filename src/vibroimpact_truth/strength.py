@@ -1,5 +1,6 @@
-"""How strong what is hidden is: excess of the misfit over its floor, against the same campaign with
-nothing hidden.
+"""The strength of hidden effects: excess of the misfit over its floor.
+
+The campaign is compared with the same campaign with nothing hidden.
 """
 
 import numpy as np
@@ -22,10 +23,11 @@ def band_powers(series, sampling):
 
 
 def distance(one, others, audible, either=False):
-    """RMS over bands and channels, in dB, of band powers one (…, band) against the mean of others
-    (twin, …, band), where `one` is audible.
+    """RMS in dB over bands and channels of band powers against the mean of others.
 
-    either: also where the mean alone is, as when an effect silences a channel.
+    one (…, band), others (twin, …, band), audible (…, band): powers below it do not count.
+    either: a band also counts where the mean of others is audible, as when an effect silences a
+    channel.
     """
     mean = np.mean(others, axis=0)
     counted = (one > audible) | (either & (mean > audible))
@@ -33,14 +35,17 @@ def distance(one, others, audible, either=False):
 
 
 def excess(seen, bare, again, noise, sampling):
-    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of seen (record, channel,
-    time), noise RMS (channel,).
+    """{lsd_dB, floor_dB, excess_dB, excess_over_floor, either_over_floor} of responses.
 
-    bare (twin, record, channel, time): the same with nothing hidden, from other starts; again, as
-    many: with the same hidden. lsd: seen against the mean of the bare; floor: each of seen and
-    again against the mean of the rest. Pairs alone scatter by a factor of 1.7 in 20 s records. The
-    last counts bands that either holds 6 dB above noise, the others those that `seen` does, as the
-    misfit is defined.
+    seen (record, channel, time): the responses.
+    bare (twin, record, channel, time): with nothing hidden, from other initial states.
+    again (twin, record, channel, time): with the same hidden, from other initial states.
+    noise (channel,): RMS.
+
+    lsd: distance of seen from the mean of bare. floor: RMS distance of each of seen and again from
+    the mean of the rest; single pairs would scatter by a factor of 1.7 in 20 s records. Bands count
+    where `seen` is 6 dB above noise, as in the definition of the misfit; in either_over_floor,
+    where `seen` or the mean is.
     """
     edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
     audible = ABOVE_NOISE * (noise**2)[:, None] * np.diff(edges) / (0.5 * sampling)

@@ -1,6 +1,4 @@
-"""The campaign file, written with netCDF4 to the letter of the campaign contract; nothing in it
-tells what is hidden.
-"""
+"""The campaign file, written with netCDF4 by the campaign contract, without the truth."""
 
 import os
 from pathlib import Path
@@ -10,11 +8,13 @@ import numpy as np
 
 
 def write_campaign(path, force, response, channels, drive, records, sampling, noise=None):
-    """Write a campaign file, under a temporary name first.
+    """Write a campaign file, under a temporary name until it is complete.
 
-    force (record, time) N; response (record, channel, time); channels: {name, units, kind, point
-    (3,) m, direction (3,)} each; drive: the same for the force; records: {name, gap m, repeat,
-    split} each; noise: (channel,) RMS, or None.
+    force (record, time): N.
+    response (record, channel, time): in the units of the channels.
+    channels: {name, units, kind, point (3,) m, direction (3,)} each; drive: the same.
+    records: {name, gap m, repeat, split} each.
+    noise: (channel,) RMS, or None.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)

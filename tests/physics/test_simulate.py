@@ -13,9 +13,9 @@ from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.study.record_variables import split_record
-from vibroimpact.study.series_files import series_files
+from vibroimpact.study.series_writer import series_writer
 from vibroimpact.study.simulation import simulate_cases
-from vibroimpact.study.spectra_files import spectra_files
+from vibroimpact.study.spectra_writer import spectra_writer
 from vibroimpact.validation.variant import changed
 
 GAP = 2.8886e-4
@@ -77,7 +77,7 @@ def test_files_written_on_the_way_hold_what_the_whole_record_does(
         short_config,
         study_model,
         batch,
-        series_files(short_config, study_model, paths, {"mark": "x"}),
+        series_writer(short_config, study_model, paths, {"mark": "x"}),
     ):
         series = read_record(paths[case])
         assert series.attrs["mark"] == "x" and series.attrs["case"] == case.id
@@ -88,8 +88,8 @@ def test_files_written_on_the_way_hold_what_the_whole_record_does(
         )
         assert record.equals(split_record(records[case])[0])
     stopwatch = Stopwatch()
-    keep = spectra_files(short_config, study_model, paths, {"mark": "y"}, stopwatch)
-    for case, _ in simulate_cases(short_config, study_model, batch, keep, stopwatch):
+    writer = spectra_writer(short_config, study_model, paths, {"mark": "y"}, stopwatch)
+    for case, _ in simulate_cases(short_config, study_model, batch, writer, stopwatch):
         assert read_record(paths[case]).equals(case_spectra(short_config, records[case]))
     assert set(stopwatch) == {"force", "kernel", "output filter", "spectra"}
 
@@ -100,7 +100,7 @@ def test_memory_does_not_grow_with_the_duration(short_config, study_model, tmp_p
         run = StageSettings(
             {**short_config, "record": {**short_config.record, "duration_s": duration}}
         )
-        keep = spectra_files(
+        writer = spectra_writer(
             run,
             study_model,
             {case: tmp_path / f"{case.seed}.nc" for case in batch},
@@ -108,7 +108,7 @@ def test_memory_does_not_grow_with_the_duration(short_config, study_model, tmp_p
             Stopwatch(),
         )
         tracemalloc.start()
-        list(simulate_cases(run, study_model, batch, keep))
+        list(simulate_cases(run, study_model, batch, writer))
         most.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     series = (

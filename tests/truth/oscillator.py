@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibroimpact_truth import kernel
-from vibroimpact_truth.reduction import turn_of
+from vibroimpact_truth.reduction import exact_propagator
 from vibroimpact_truth.rig import LAWS
 
 
@@ -79,7 +79,7 @@ def simulate(
     reaction = np.zeros((len(force) // stride + 1, 2 * len(stops)))
     failed = kernel.march(
         modes,
-        turn_of(omega2, rate, step),
+        exact_propagator(omega2, rate, step),
         contacts,
         plates,
         local,

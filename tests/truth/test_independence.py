@@ -10,7 +10,7 @@ import pytest
 import vibroimpact_truth
 from vibroimpact_truth.__main__ import main
 from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.draw import ARMS, arms, drawn
+from vibroimpact_truth.draw import ARMS, arms, draw_plans
 from vibroimpact_truth.hidden import EFFECTS, STRANGERS
 
 PACKAGE = Path(vibroimpact_truth.__file__).parent
@@ -58,9 +58,9 @@ def test_every_effect_has_its_amounts():
 
 
 def test_a_draw_depends_on_seed_and_number_alone():
-    long, short = drawn(4, 60), drawn(4, 20)
+    long, short = draw_plans(4, 60), draw_plans(4, 20)
     assert long[:20] == short
-    assert drawn(5, 20) != short
+    assert draw_plans(5, 20) != short
 
 
 def test_arms_keep_their_proportions():

@@ -8,7 +8,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from vibroimpact_truth.campaign import Plan, forces, records_of
+from vibroimpact_truth.campaign import Plan, forces, simulate_records
 from vibroimpact_truth.strength import ABOVE_NOISE, BANDS, HIGHEST_HZ, LOWEST_HZ, band_powers
 
 DEV_NULL = next(
@@ -24,7 +24,7 @@ SHORT = {"seed": (3,), "duration": 1.0, "levels": ((10.0, 1.3, "fit"),)}
 def run(force_factor=1.0, **plan):
     """(channel, time) of a short record."""
     plan = Plan(**{**SHORT, **plan})
-    return records_of(plan, force_factor * forces(plan))[0][0]
+    return simulate_records(plan, force_factor * forces(plan))[0][0]
 
 
 def test_force_and_gap_doubled_double_everything_bit_for_bit():
@@ -104,7 +104,7 @@ def test_nothing_hidden_agrees_with_the_development_campaign():
         frequency_scatter=0.0,
         damping_scatter=0.0,
     )
-    ours = records_of(plan, forces(plan)[list(there)])[0]
+    ours = simulate_records(plan, forces(plan)[list(there)])[0]
     noise = 0.01 * theirs[0].std(axis=-1).max()
     edges = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS + 1)
     for level, record in enumerate(there):

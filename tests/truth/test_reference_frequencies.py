@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from vibroimpact_truth.geometry import TUBES
-from vibroimpact_truth.reduction import Planes, reduce_rig
+from vibroimpact_truth.planes import Planes
+from vibroimpact_truth.reduction import reduce_rig
 from vibroimpact_truth.rig import Rig
 
 # k [N/m per plate] -> out-of-plane and in-plane frequencies in Hz, Timoshenko, five contact points

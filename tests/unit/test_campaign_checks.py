@@ -15,7 +15,7 @@ from vibroimpact.campaign.checks.file_checks import (
     refused,
     usable_signals,
 )
-from vibroimpact.campaign.checks.signal_faults import clipped
+from vibroimpact.campaign.checks.signal_faults import clipped_share
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, read_campaign
 from vibroimpact.completion.benchmark_records import silverbox_campaign
 from vibroimpact.records import write_record
@@ -136,9 +136,9 @@ def test_round_tops_are_not_clipping():
         np.round(20.0 * draw.standard_normal(count.size)),
         draw.standard_normal(count.size) ** 3,
     ):
-        assert clipped(signal) is None
+        assert clipped_share(signal) is None
         limit = 0.7 * np.abs(signal).max()
-        assert clipped(np.clip(signal, -limit, limit)) is not None
+        assert clipped_share(np.clip(signal, -limit, limit)) is not None
 
 
 def periodic(stated, clip=None):

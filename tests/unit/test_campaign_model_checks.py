@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from vibroimpact.campaign.checks.against_model import compare_with_model
+from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.signals import Transfer
 
 PLACES = np.array([0.13, 0.3, 0.42, 0.61, 0.8])

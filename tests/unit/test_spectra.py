@@ -23,7 +23,7 @@ from vibroimpact.spectra.window_leakage import (
     spectral_kernel,
     window_autocorrelation,
 )
-from vibroimpact.study.case_spectra import SpectraOfCase, case_spectra
+from vibroimpact.study.case_spectra import CaseSpectra, case_spectra
 
 RATE = 256.0
 
@@ -248,8 +248,8 @@ def test_spectra_of_a_record_in_pieces_are_those_of_the_whole():
         {"sensor": ["a.x", "a.y"]},
     )
     whole, parts = case_spectra(config, record), {}
-    made = SpectraOfCase(config, ["a.x", "a.y"], 3, 2500, np.float32)
-    made.keep = lambda name, place, values: parts.setdefault(
+    made = CaseSpectra(config, ["a.x", "a.y"], 3, 2500, np.float32)
+    made.write = lambda name, place, values: parts.setdefault(
         name, np.empty(whole[name].shape, "f4")
     ).__setitem__(place, values)
     edges = [0, 1, 5, 700, 701, 2040, 2500]
@@ -258,8 +258,8 @@ def test_spectra_of_a_record_in_pieces_are_those_of_the_whole():
     made.finish()
     assert set(parts) == set(whole.data_vars) - {"effective_averages"}
     assert all(np.array_equal(parts[name], whole[name].values) for name in parts)
-    short = SpectraOfCase(config, ["a.x", "a.y"], 3, 2500, np.float32)
-    short.keep = made.keep
+    short = CaseSpectra(config, ["a.x", "a.y"], 3, 2500, np.float32)
+    short.write = made.write
     short.put(*(values[:, :1000] for values in series))
     with pytest.raises(ValueError, match="the record ended after"):
         short.finish()

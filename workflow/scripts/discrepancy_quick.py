@@ -5,9 +5,8 @@ import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-os.environ |= {
-    f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")
-}  # before numpy: the processes are forked here, one per core
+# Before numpy is imported: this job forks one process per core.
+os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
 
 from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.whole import run_campaign

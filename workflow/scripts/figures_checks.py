@@ -13,11 +13,12 @@ redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 rows = read_table(snakemake.input.table)
 records = checks.records_shown(snakemake.input.records, read_record)
-sheets = equivalent.figure_13_equivalent_support(config, model, rows) + equivalent.collapse(
-    config, model, rows
-)
-for sheet in (
-    sheets + checks.energy_balance(config, records) + checks.contact_statistics(config, records)
-):
+sheets = [
+    *equivalent.figure_13_equivalent_support(config, model, rows),
+    *equivalent.collapse(config, model, rows),
+    *checks.energy_balance(config, records),
+    *checks.contact_statistics(config, records),
+]
+for sheet in sheets:
     sheet.save(Path(snakemake.output.figures[0]).parent)
 print(Stopwatch().line())

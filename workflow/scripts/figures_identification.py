@@ -13,16 +13,15 @@ from vibroimpact.stopwatch import Stopwatch
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 rows = [row for row in read_table(snakemake.input.table) if row["gap_m"] == shown_gap(config)]
-curves, spectra = (
-    cases_of_gap(paths, config, read_record)
-    for paths in (snakemake.input.curves, snakemake.input.spectra)
-)
-sheets = poles.figure_09_poles(
-    config, model, curves, spectra, rows
-) + poles.figure_09_stabilisation(config, curves, spectra, rows)
-sheets += shapes.figure_10_shapes(config, model, curves, rows) + shapes.figure_11_singular_values(
-    config, curves
-)
-for sheet in sheets + broadband.figure_12_broadband(config, model, curves, spectra, rows):
+curves = cases_of_gap(snakemake.input.curves, config, read_record)
+spectra = cases_of_gap(snakemake.input.spectra, config, read_record)
+sheets = [
+    *poles.figure_09_poles(config, model, curves, spectra, rows),
+    *poles.figure_09_stabilisation(config, curves, spectra, rows),
+    *shapes.figure_10_shapes(config, model, curves, rows),
+    *shapes.figure_11_singular_values(config, curves),
+    *broadband.figure_12_broadband(config, model, curves, spectra, rows),
+]
+for sheet in sheets:
     sheet.save(Path(snakemake.output.figures[0]).parent)
 print(Stopwatch().line())

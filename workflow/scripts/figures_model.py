@@ -12,11 +12,13 @@ from vibroimpact.structure.tube import build_structure
 redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
 structure = build_structure(config)
-sheets = [*tube.figure_01_layout(config, structure), *tube.figure_02_free_modes(config, structure)]
-sheets += [
+sheets = [
+    *tube.figure_01_layout(config, structure),
+    *tube.figure_02_free_modes(config, structure),
     *contact.figure_03_contact_law(config, structure),
     *contact.figure_04_first_frequency(config),
+    *basis.basis_quality(config, read_table(snakemake.input.quality)),
 ]
-for sheet in [*sheets, *basis.basis_quality(config, read_table(snakemake.input.quality))]:
+for sheet in sheets:
     sheet.save(Path(snakemake.output.figures[0]).parent)
 print(Stopwatch().line())

@@ -12,18 +12,16 @@ from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
-responses = psd_table.gather(
-    config, model, psd_table.spectra_shown(config, snakemake.input.spectra, read_record)
-)
-sheets = overlay.figure_05_overlay(
-    config, model, responses, read_campaign(snakemake.input.campaign)
-) + response.in_plane_share(config, responses)
-for draw in (
-    response.figure_06_levels,
-    response.figure_07_overlay_of_loads,
-    response.figure_08_load_and_stiffness,
-):
-    sheets += draw(config, model, responses)
+campaign = read_campaign(snakemake.input.campaign)
+spectra = psd_table.spectra_shown(config, snakemake.input.spectra, read_record)
+responses = psd_table.gather(config, model, spectra)
+sheets = [
+    *overlay.figure_05_overlay(config, model, responses, campaign),
+    *response.figure_06_levels(config, model, responses),
+    *response.figure_07_overlay_of_loads(config, model, responses),
+    *response.figure_08_load_and_stiffness(config, model, responses),
+    *response.in_plane_share(config, responses),
+]
 for sheet in sheets:
     sheet.save(Path(snakemake.output.figures[0]).parent)
 print(Stopwatch().line())

@@ -13,22 +13,21 @@ redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
 model = read_model(snakemake.input.model)
 stopwatch = Stopwatch()
-for record, spectra, table, curves in zip(
+source = origin(snakemake.params.config, snakemake.input.library)
+for record_path, spectra_path, table_path, curves_path in zip(
     snakemake.input.records,
     snakemake.input.spectra,
     snakemake.output.tables,
     snakemake.output.curves,
     strict=True,
 ):
-    record, spectra = read_record(record, RECORD_READ), read_record(spectra, SPECTRA_READ)
-    estimates, shown = stopwatch.time(
+    record = read_record(record_path, RECORD_READ)
+    spectra = read_record(spectra_path, SPECTRA_READ)
+    estimates, curves = stopwatch.time(
         "identification", identify_case, config, model, record, spectra
     )
-    write_table(table_rows(estimates, record.attrs), table)
-    write_record(
-        shown.assign_attrs(record.attrs | origin(snakemake.params.config, snakemake.input.library)),
-        curves,
-    )
+    write_table(table_rows(estimates, record.attrs), table_path)
+    write_record(curves.assign_attrs(record.attrs | source), curves_path)
     print(
         record.attrs["case"],
         *(f"{item.method}: {item.k:.3g} N/m {item.quality} {item.note}" for item in estimates),

@@ -1,6 +1,4 @@
-"""Simulate all cases of one load and write their records and spectra; their time series are never
-written.
-"""
+"""Simulate all cases of one load and write their records and spectra, without time series."""
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
@@ -10,7 +8,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.cases import cases_of_load
 from vibroimpact.study.simulation import simulate_cases
-from vibroimpact.study.spectra_files import spectra_files
+from vibroimpact.study.spectra_writer import spectra_writer
 
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
@@ -19,8 +17,7 @@ source = origin(snakemake.params.config, snakemake.input.library)
 stopwatch = Stopwatch()
 records = dict(zip(cases, snakemake.output.records, strict=True))
 spectra = dict(zip(cases, snakemake.output.spectra, strict=True))
-for case, record in simulate_cases(
-    config, model, cases, spectra_files(config, model, spectra, source, stopwatch), stopwatch
-):
+writer = spectra_writer(config, model, spectra, source, stopwatch)
+for case, record in simulate_cases(config, model, cases, writer, stopwatch):
     write_record(record.assign_attrs(record.attrs | source), records[case])
 print(stopwatch.line())

@@ -1,4 +1,4 @@
-"""One table of the statistics of all cases."""
+"""Gather the statistics of all cases into one table."""
 
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_record, write_table
@@ -8,8 +8,6 @@ from vibroimpact.study.statistics_table import statistics_rows
 redirect_output(snakemake.log[0])
 rows = [row for path in snakemake.input.records for row in statistics_rows(read_record(path))]
 write_table(rows, snakemake.output.table)
-print(
-    f"{snakemake.params.config['study']}: {len(rows)} rows from {len(snakemake.input.records)}"
-    " cases"
-)
+cases = len(snakemake.input.records)
+print(f"{snakemake.params.config['study']}: {len(rows)} rows from {cases} cases")
 print(Stopwatch().line())

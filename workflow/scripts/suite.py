@@ -1,4 +1,4 @@
-"""Hold the suite's verdicts against their truths: tables, figures and the page."""
+"""Compare the suite's verdicts with their truths: tables, figures and the page."""
 
 from pathlib import Path
 

@@ -1,6 +1,4 @@
-"""Simulate all candidates on a campaign with nothing hidden: the bank that the suite's campaigns
-share.
-"""
+"""Simulate all candidates on a campaign with nothing hidden; all campaigns share the results."""
 
 import pickle
 from pathlib import Path

@@ -1,6 +1,4 @@
-"""Hold the quick verdicts of the sealed campaigns against what they must say; fail with what they
-say instead.
-"""
+"""Compare the quick verdicts of the sealed campaigns with the expected ones; fail where wrong."""
 
 from vibroimpact.discrepancy.suite_check import table
 from vibroimpact.job_log import redirect_output

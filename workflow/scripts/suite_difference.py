@@ -1,4 +1,4 @@
-"""Hold the verdicts of a suite against those of the plain one of the same seed."""
+"""Compare the verdicts of a suite with those of the plain suite of the same seed."""
 
 from pathlib import Path
 

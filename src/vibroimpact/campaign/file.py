@@ -1,29 +1,49 @@
-"""The campaign file: measured forces and responses at several levels and gaps, one netCDF-4 file,
-read and written here.
+"""The campaign file: measured forces and responses at several levels and gaps, in netCDF-4.
 
-Contract. Dimensions record, channel, force_channel, time. force (record, force_channel, time) in N,
-or in force_channel_units (force_channel); response (record, channel, time) in channel_units
-(channel), any UDUNITS text; channel_kind (channel): acceleration, velocity, displacement,
-contact_force or generic; channel_name (channel); channel_point (channel, xyz) in m and
-channel_direction (channel, xyz), a unit vector, the positive sense; the same for forces. Per
-record: record_name, load_rms (N, of force channel 0 over the valid samples), gap (m, NaN where
-there is none), repeat, split (fit or holdout). Optional: support_gap (record, support) in m,
-voltage (record, time) in V, noise_floor_rms (channel) in the channel's unit, valid_samples
-(record): the rest is NaN. Attributes: sampling_frequency (Hz), antialias, start_up, period_samples,
-transient_periods (0 if not periodic), source. Between samples the force is band-limited, not held.
+Dimensions: record, channel, force_channel, time; xyz and support where used.
+
+Required variables:
+
+- force (record, force_channel, time): N, or force_channel_units (force_channel)
+- response (record, channel, time): channel_units (channel), any UDUNITS text
+- channel_kind (channel): acceleration, velocity, displacement, contact_force or generic
+- channel_name (channel), channel_point (channel, xyz) m
+- channel_direction (channel, xyz): unit vector of the positive sense
+- force_channel_name, force_channel_point, force_channel_direction: the same for forces
+- gap (record): m, NaN where there is none
+
+Variables filled in where they are missing (see fill_missing):
+
+- record_name (record), repeat (record), split (record): fit or holdout
+- load_rms (record): N, RMS of force channel 0 over the valid samples
+
+Optional variables:
+
+- support_gap (record, support): m
+- voltage (record, time): V
+- noise_floor_rms (channel): in the unit of the channel
+- valid_samples (record): number of samples that count; the rest is NaN
+
+Attributes: sampling_frequency (Hz), antialias, start_up, period_samples (0 if not periodic),
+transient_periods, source. Between samples the force is band-limited, not constant.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from vibroimpact.records import read_dataset, write_record
 from vibroimpact.units import UnitError, si_factor
 
-KINDS = ("acceleration", "velocity", "displacement", "contact_force", "generic")
+Kind = Literal["acceleration", "velocity", "displacement", "contact_force", "generic"]
+KINDS = get_args(Kind)
 NEEDED = {
     "force": ("record", "force_channel", "time"),
     "response": ("record", "channel", "time"),
@@ -37,12 +57,13 @@ NEEDED = {
     "force_channel_direction": ("force_channel", "xyz"),
     "gap": ("record",),
 }
+# Derived from the rest where they are missing.
 FILLED = {
     "record_name": ("record",),
     "load_rms": ("record",),
     "repeat": ("record",),
     "split": ("record",),
-}  # assumed, and told, where missing
+}
 OPTIONAL = {
     "support_gap": ("record", "support"),
     "voltage": ("record", "time"),
@@ -51,19 +72,24 @@ OPTIONAL = {
     "force_channel_units": ("force_channel",),
 }
 SPLITS = ("fit", "holdout")
-NEAR_M = 5.0e-3  # a channel farther from a point than this is not at the point
-ALONG = 0.99  # least |cosine| between a channel's direction and the wanted one
+SAME_POINT_M = 5.0e-3  # largest distance of a channel from the point it stands for
+PARALLEL = 0.99  # least |cosine| between the direction of a channel and the one asked for
 
 
 class CampaignError(Exception):
-    """A campaign file that can not be used; the message holds every problem, with the file's
-    name.
-    """
+    """A campaign file that can not be used; the message lists every problem."""
 
 
 @dataclass(frozen=True)
 class Channel:
-    """A measured channel: name, point (3,) m, direction (3,), units as UDUNITS text, kind."""
+    """A measured channel.
+
+    name: text.
+    point (3,): m.
+    direction (3,): unit vector of the positive sense.
+    units: UDUNITS text.
+    kind: one of KINDS.
+    """
 
     name: str
     point: tuple
@@ -74,7 +100,13 @@ class Channel:
 
 @dataclass(frozen=True)
 class Level:
-    """A record of a campaign: name, gap in m, repeat from 0, split "fit" or "holdout"."""
+    """A record of a campaign.
+
+    name: text.
+    gap_m: radial clearance, m.
+    repeat: index from 0 among records of the same load and gap.
+    split: "fit" or "holdout".
+    """
 
     name: str
     gap_m: float
@@ -83,18 +115,27 @@ class Level:
 
 
 def campaign_dataset(
-    force, response, channels, drives, levels, sampling_frequency, optional=None, **attributes
-):
-    """Return the Dataset of a campaign by the contract.
+    force: ArrayLike,
+    response: ArrayLike,
+    channels: Sequence[Channel],
+    drives: Sequence[Channel],
+    levels: Sequence[Level],
+    sampling_frequency: float,
+    optional: dict | None = None,
+    **attributes: str | int,
+) -> xr.Dataset:
+    """Return the Dataset of a campaign.
 
-    force (record, force_channel, time) in the drives' units; response (record, channel, time) in
-    the channels' units; channels, drives: lists of Channel; levels: list of Level;
-    sampling_frequency Hz; optional {name: values} of the contract's optional variables; attributes:
-    source, antialias, start_up, period_samples, transient_periods.
+    force (record, force_channel, time): in the units of the drives.
+    response (record, channel, time): in the units of the channels.
+    channels, drives: lists of Channel.
+    levels: list of Level, one per record.
+    sampling_frequency: Hz.
+    optional: {name: values} of optional variables.
+    attributes: source, antialias, start_up, period_samples, transient_periods.
     """
-    dims = {"units": "channel", "kind": "channel", "name": "channel"}
     factor = [_factor(f"force channel {drive.name}", drive.units, "excitation") for drive in drives]
-    data = {
+    data: dict[str, tuple] = {
         "force": (
             ("record", "force_channel", "time"),
             np.asarray(force, np.float32),
@@ -103,10 +144,10 @@ def campaign_dataset(
         "response": (("record", "channel", "time"), np.asarray(response, np.float32)),
         **{
             f"channel_{key}": (
-                dim,
+                "channel",
                 np.array([getattr(channel, key) for channel in channels], dtype=object),
             )
-            for key, dim in dims.items()
+            for key in ("units", "kind", "name")
         },
         "force_channel_name": (
             "force_channel",
@@ -141,7 +182,7 @@ def campaign_dataset(
             (dim, "xyz"),
             np.array([item.direction for item in group], float),
         )
-    known = {
+    defaults = {
         "antialias": "fir80",
         "start_up": "stationary",
         "period_samples": 0,
@@ -149,33 +190,30 @@ def campaign_dataset(
         "source": "",
     }
     return xr.Dataset(
-        data, attrs={"sampling_frequency": float(sampling_frequency), **known, **attributes}
+        data, attrs={"sampling_frequency": float(sampling_frequency), **defaults, **attributes}
     )
 
 
-def write_campaign(campaign, path):
+def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
     _require(campaign, path)
     write_record(campaign.assign_attrs(title="vibroimpact campaign"), path)
 
 
-def read_campaign(path):
-    """Return the campaign Dataset of a file, texts decoded, and what is missing but can be told
-    from the rest filled in.
+def read_campaign(path: str | Path) -> xr.Dataset:
+    """Return the campaign Dataset of a file, texts decoded and missing variables filled in.
 
-    The attribute `assumed` holds a sentence per line for whatever was filled in, or is empty.
+    The attribute `assumed` has a line for each variable that was filled in; see fill_missing.
     Raises RecordError when there is no such file or it is not netCDF, CampaignError with every
     breach of the contract.
     """
-    campaign = decoded(read_dataset(path))
+    campaign = decode_texts(read_dataset(path))
     _require(campaign, path)
-    return filled(campaign)
+    return fill_missing(campaign)
 
 
-def decoded(campaign):
-    """Return the Dataset with its texts as str, whichever way netCDF held them (bytes, character
-    arrays, padded).
-    """
+def decode_texts(campaign: xr.Dataset) -> xr.Dataset:
+    """Return the Dataset with its texts as str, however netCDF stored them (bytes, padded, ...)."""
     texts = {
         name: (
             variable.dims,
@@ -194,22 +232,25 @@ def decoded(campaign):
     return campaign.assign(texts).assign_attrs(attributes)
 
 
-def _text(value):
-    return (value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)).strip(
-        "\0 "
-    )
+def _text(value: object) -> str:
+    text = value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+    return text.strip("\0 ")
 
 
-def filled(campaign):
-    """Return the Dataset with valid_samples, record_name, load_rms, repeat and split where they are
-    missing; see read_campaign.
+def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
+    """Return the Dataset with valid_samples, record_name, load_rms, repeat and split.
+
+    Those that are missing are derived from the rest. The attribute `assumed` has a sentence per
+    line for each, or is empty.
     """
-    told, new, count = [], {}, campaign.sizes["record"]
+    assumed: list[str] = []
+    new: dict[str, tuple] = {}
+    count = campaign.sizes["record"]
     if "valid_samples" not in campaign:
         valid = _last_finite(campaign)
         if np.any(valid < campaign.sizes["time"]):
             new["valid_samples"] = ("record", valid)
-            told.append(
+            assumed.append(
                 "valid_samples is missing: the records end with NaN, their last finite samples"
                 f" were taken as the ends {valid.tolist()}"
             )
@@ -219,7 +260,7 @@ def filled(campaign):
             np.sqrt(np.nanmean(np.square(force_signal(whole, record)))) for record in range(count)
         ]
         new["load_rms"] = ("record", np.array(rms), {"units": "N"})
-        told.append("load_rms is missing: it was computed from force channel 0")
+        assumed.append("load_rms is missing: it was computed from force channel 0")
     loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
     if "repeat" not in campaign:
         keys = [
@@ -230,10 +271,10 @@ def filled(campaign):
             "record",
             np.array([keys[:index].count(key) for index, key in enumerate(keys)], np.int64),
         )
-        told.append("repeat is missing: records of the same load and gap were counted")
+        assumed.append("repeat is missing: records of the same load and gap were counted")
     if "split" not in campaign:
         new["split"] = ("record", np.array(["fit"] * count, dtype=object))
-        told.append(
+        assumed.append(
             "split is missing: all records are fitted, so that nothing is left to verify on: mark"
             " one as holdout"
         )
@@ -242,8 +283,8 @@ def filled(campaign):
             "record",
             np.array([f"record {index}" for index in range(count)], dtype=object),
         )
-        told.append("record_name is missing: records were numbered")
-    known = {
+        assumed.append("record_name is missing: records were numbered")
+    defaults = {
         "antialias": "",
         "start_up": "stationary",
         "period_samples": 0,
@@ -251,11 +292,11 @@ def filled(campaign):
         "source": "",
     }
     return campaign.assign(new).assign_attrs(
-        {**known, **campaign.attrs, "assumed": "\n".join(told)}
+        {**defaults, **campaign.attrs, "assumed": "\n".join(assumed)}
     )
 
 
-def _last_finite(campaign):
+def _last_finite(campaign: xr.Dataset) -> np.ndarray:
     """Return (record,) the number of samples up to the last one that is finite in any channel."""
     samples = campaign.sizes["time"]
     some = np.isfinite(campaign["force"].values).any(axis=1) | np.isfinite(
@@ -264,18 +305,18 @@ def _last_finite(campaign):
     return np.where(some.any(axis=1), samples - np.argmax(some[:, ::-1], axis=1), 0)
 
 
-def _require(campaign, path):
+def _require(campaign: xr.Dataset, path: str | Path) -> None:
     """Raise CampaignError unless the Dataset keeps the contract."""
     problems = [*contract_problems(campaign)]
     if problems:
         raise CampaignError("\n".join(f"{path}: {problem}" for problem in problems))
 
 
-def contract_problems(campaign):
+def contract_problems(campaign: xr.Dataset) -> Iterator[str]:
     """Yield a sentence for every breach of the contract."""
     for name, dims in (NEEDED | FILLED | OPTIONAL).items():
         if name in NEEDED and name not in campaign:
-            yield f"has no variable '{name}' {dims}: see the contract in campaign.py"
+            yield f"has no variable '{name}' {dims}: see docs/bring_your_own.md"
         elif name in campaign and campaign[name].dims != dims:
             yield f"'{name}' has dimensions {campaign[name].dims}, expected {dims}"
     if not _number_of(campaign.attrs.get("sampling_frequency", 0.0)) > 0.0:
@@ -293,25 +334,28 @@ def contract_problems(campaign):
             yield f"split '{split}' is unknown: use one of {', '.join(SPLITS)}"
 
 
-def _number_of(value):
+def _number_of(value: Any) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
         return 0.0
 
 
-def channel_at(campaign, position, direction, kind):
-    """Return the index of the channel of a kind at position (3,) m along direction (3,), of either
-    sense; the nearest one.
+def channel_at(campaign: xr.Dataset, position: ArrayLike, direction: ArrayLike, kind: str) -> int:
+    """Return the index of the nearest channel of a kind at a point along a direction.
 
-    Raises CampaignError when there is none within 5 mm; the message lists the channels there are.
+    position (3,): m.
+    direction (3,): of either sense; its length does not matter.
+    kind: one of KINDS.
+
+    Raises CampaignError when there is none within 5 mm; the message lists the channels.
     """
-    direction = np.asarray(direction, float) / np.linalg.norm(direction)
+    axis = np.asarray(direction, float) / np.linalg.norm(direction)
     distance = np.linalg.norm(
         campaign["channel_point"].values - np.asarray(position, float), axis=1
     )
-    along = np.abs(campaign["channel_direction"].values @ direction) > ALONG
-    usable = along & (campaign["channel_kind"].values == kind) & (distance < NEAR_M)
+    along = np.abs(campaign["channel_direction"].values @ axis) > PARALLEL
+    usable = along & (campaign["channel_kind"].values == kind) & (distance < SAME_POINT_M)
     if not usable.any():
         known = ", ".join(
             f"{name} ({kind})"
@@ -319,16 +363,16 @@ def channel_at(campaign, position, direction, kind):
                 campaign["channel_name"].values, campaign["channel_kind"].values, strict=True
             )
         )
+        point = np.round(np.asarray(position, float), 4).tolist()
         raise CampaignError(
-            f"the campaign has no channel of kind {kind} within {NEAR_M * 1e3:g} mm of"
-            f" {np.round(position, 4).tolist()} m along {np.round(direction, 3).tolist()}: it has"
-            f" {known}"
+            f"the campaign has no channel of kind {kind} within {SAME_POINT_M * 1e3:g} mm of"
+            f" {point} m along {np.round(axis, 3).tolist()}: it has {known}"
         )
     return int(np.argmin(np.where(usable, distance, np.inf)))
 
 
-def valid_count(campaign, record):
-    """Return how many samples of a record count, from its start."""
+def valid_count(campaign: xr.Dataset, record: int) -> int:
+    """Return the number of valid samples of a record, counted from its start."""
     samples = campaign.sizes["time"]
     stated = (
         float(campaign["valid_samples"].values[record]) if "valid_samples" in campaign else np.nan
@@ -336,18 +380,19 @@ def valid_count(campaign, record):
     return int(min(max(stated, 0), samples)) if np.isfinite(stated) else samples
 
 
-def channel_signal(campaign, record, channel):
-    """Return (time,) the valid samples of a channel of a record, in SI. Raises CampaignError for a
-    unit that is not known.
+def channel_signal(campaign: xr.Dataset, record: int, channel: int) -> np.ndarray:
+    """Return (time,) the valid samples of a channel of a record, in SI.
+
+    Raises CampaignError for an unknown unit.
     """
-    return campaign["response"].values[record, channel, : valid_count(campaign, record)].astype(
-        float
-    ) * channel_factor(campaign, channel)
+    values = campaign["response"].values[record, channel, : valid_count(campaign, record)]
+    return values.astype(float) * channel_factor(campaign, channel)
 
 
-def channel_factor(campaign, channel):
-    """Return SI units per stored unit of a channel. Raises CampaignError for a unit that is not
-    known or not of the channel's kind.
+def channel_factor(campaign: xr.Dataset, channel: int) -> float:
+    """Return SI units per stored unit of a channel.
+
+    Raises CampaignError for a unit that is unknown or not of the channel's kind.
     """
     name, units, kind = (
         str(campaign[f"channel_{key}"].values[channel]) for key in ("name", "units", "kind")
@@ -355,21 +400,19 @@ def channel_factor(campaign, channel):
     return _factor(f"channel {name}", units, kind)
 
 
-def force_signal(campaign, record, force_channel=0):
+def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> np.ndarray:
     """Return (time,) the valid samples of a force of a record, in N (V where volts were recorded).
-    Raises CampaignError as channel_signal.
+
+    Raises CampaignError for an unknown unit.
     """
-    values = (
-        campaign["force"]
-        .values[record, force_channel, : valid_count(campaign, record)]
-        .astype(float)
-    )
-    return values * force_factor(campaign, force_channel)
+    values = campaign["force"].values[record, force_channel, : valid_count(campaign, record)]
+    return values.astype(float) * force_factor(campaign, force_channel)
 
 
-def force_factor(campaign, force_channel):
-    """Return N per stored unit of a force channel (V per unit where volts were recorded). Raises
-    CampaignError.
+def force_factor(campaign: xr.Dataset, force_channel: int) -> float:
+    """Return N per stored unit of a force channel (V per unit where volts were recorded).
+
+    Raises CampaignError for an unknown unit.
     """
     return _factor(
         f"force channel {campaign['force_channel_name'].values[force_channel]}",
@@ -378,25 +421,25 @@ def force_factor(campaign, force_channel):
     )
 
 
-def force_units(campaign, force_channel):
+def force_units(campaign: xr.Dataset, force_channel: int) -> str:
     """Return the unit of a force channel as it is stored; N where the file does not say."""
     if "force_channel_units" in campaign:
         return str(campaign["force_channel_units"].values[force_channel])
     return str(campaign["force"].attrs.get("units", "N"))
 
 
-def _factor(place, units, kind):
+def _factor(place: str, units: str, kind: str) -> float:
     try:
         return si_factor(units, kind)
     except UnitError as error:
         raise CampaignError(f"{place} {error}") from error
 
 
-def support_ratios(campaign):
-    """Return (support,) the clearance of each support over the record's nominal one, None where
-    support_gap is not given.
+def support_ratios(campaign: xr.Dataset) -> np.ndarray | None:
+    """Return (support,) the clearance of each support over the gap of the record.
 
-    Raises CampaignError when the ratio is not the same in all records.
+    None where support_gap is not given. Raises CampaignError when the ratio differs between
+    records.
     """
     if "support_gap" not in campaign:
         return None

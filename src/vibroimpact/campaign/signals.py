@@ -1,5 +1,6 @@
-"""The signals of a campaign in SI units, and the spectra of one record: response per force,
-coherence, and the band of both.
+"""The signals of a campaign in SI units, and the spectra of one record.
+
+Spectra: response per force, coherence, and the band of both.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from .file import CampaignError, channel_factor, force_factor, valid_count
 
 SEGMENT_S = 8.0
 FEWEST_SEGMENTS = 12
-EXCITED_SHARE = 0.01  # of the typical PSD of the force: what lies below is not excited
+EXCITED_SHARE = 0.01  # of the typical PSD of the force: lines below it are not excited
 
 DEFAULT_BAND_HZ = (5.0, 200.0)
 EXCITED_PSD = 1.0e-3  # of the largest lines of the smoothed PSD of all forces
@@ -26,7 +27,7 @@ EXCITED_PSD = 1.0e-3  # of the largest lines of the smoothed PSD of all forces
 
 @dataclass(frozen=True)
 class Averaging:
-    """How spectra of one record are averaged, as spectra.segment_spectra takes it."""
+    """Parameters of averaged spectra, as welch.segment_spectra reads them."""
 
     segment_s: float
     overlap: float = 0.5
@@ -184,8 +185,9 @@ def common_period(forces: list[np.ndarray]) -> int:
 def _factors(
     campaign: xr.Dataset, count: int, factor_of: Callable[[xr.Dataset, int], float]
 ) -> tuple[np.ndarray, dict[int, str]]:
-    """Return (factors (count,), {index: sentence}); a factor of 1 where the unit can not be
-    used.
+    """Return (factors (count,), {index: sentence}).
+
+    The factor is 1 where the unit can not be used; the sentence says why.
     """
     factors, faults = np.ones(count), {}
     for index in range(count):
@@ -249,8 +251,9 @@ def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
 
 
 def _excited(psd: np.ndarray) -> np.ndarray:
-    """Return (line,) whether the force has power there: above a share of the PSD at which half of
-    its power lies.
+    """Return (line,) whether the force excites a line.
+
+    It does where its PSD is above EXCITED_SHARE of the PSD above which half of its power lies.
     """
     order = np.sort(psd[1:])[::-1]
     typical = (

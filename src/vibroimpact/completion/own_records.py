@@ -5,7 +5,7 @@ periods or the last stretch of a long record.
 import numpy as np
 
 from vibroimpact.campaign.checks.file_checks import check_file, usable_signals
-from vibroimpact.campaign.file import ALONG, NEAR_M, valid_count
+from vibroimpact.campaign.file import PARALLEL, SAME_POINT_M, valid_count
 from vibroimpact.campaign.signals import campaign_signals, transfer_band
 
 from .long_records import mean_coherences, quick_length
@@ -204,8 +204,8 @@ def drive_channel(campaign, measured, wanted=None):
     if wanted is not None:
         index = names.index(wanted)
     else:
-        index = int(np.argmin(distance + np.where(np.abs(along) > ALONG, 0.0, 1.0e6)))
-    here = np.abs(along[index]) > ALONG and distance[index] < NEAR_M
+        index = int(np.argmin(distance + np.where(np.abs(along) > PARALLEL, 0.0, 1.0e6)))
+    here = np.abs(along[index]) > PARALLEL and distance[index] < SAME_POINT_M
     away = (
         None
         if here
@@ -215,4 +215,4 @@ def drive_channel(campaign, measured, wanted=None):
             " then only right up to a factor; measure at the force."
         )
     )
-    return index, away, -1.0 if along[index] < -ALONG else 1.0
+    return index, away, -1.0 if along[index] < -PARALLEL else 1.0

@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
-from vibroimpact.campaign.file import ALONG, force_units
+from vibroimpact.campaign.file import PARALLEL, force_units
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.units import TIME_DERIVATIVES
 
@@ -67,7 +67,7 @@ def default_places(names, directions):
     places = {}
     for first, second in combinations(range(len(names)), 2):
         along = float(np.dot(directions[first], directions[second]))
-        if abs(along) > ALONG:
+        if abs(along) > PARALLEL:
             places[f"{slugs[first]}-{slugs[second]}"] = {
                 names[first]: -float(np.sign(along)),
                 names[second]: 1.0,

@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from vibroimpact.campaign.checks.against_model import compare_with_model
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
+from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.records import read_text, write_text

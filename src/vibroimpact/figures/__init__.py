@@ -1,3 +1,5 @@
-"""The only place that draws. One module per group of figures; each public function returns Sheets:
-pictures with the data they show.
+"""All figures; nothing else in the library draws.
+
+There is one module per group of figures. Each public function returns Sheets: pictures with the
+data they show.
 """

@@ -1,50 +1,69 @@
-"""A figure and its data: whatever is drawn through a Sheet is also a row of its CSV, in SI units
-under the column's name.
-"""
+"""A figure with its data: what is drawn through a Sheet is also written to its CSV, in SI units."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import repeat
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.collections import QuadMesh
+from matplotlib.colorbar import Colorbar
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
 from vibroimpact.records import write_cells
 
 from .style import label_of, shown, tidy_log_axis
 
+Column = tuple[str, ArrayLike]  # name of a column, values (point,) in SI
 DIGITS = 7  # significant digits in the CSV
 WIDTH_IN, PNG_DPI = 7.6, 160
 
 
 class Sheet:
-    """A figure with a title, a caption, and the table of what it shows.
+    """A figure with a title, a caption, and the table of the data it shows.
 
-    name: stem of its files. caption: what is seen and how to read it, without the paper at hand.
-    mosaic: rows of names of the axes, as matplotlib takes it; axes: {name: axes}; the name stands
-    in the table's column panel. size: (width, height) in inches. The table has the columns panel
-    and curve, then one per plotted quantity, named with its SI unit; cells that do not apply are
-    empty.
+    name: stem of its files.
+    title: text above the figure.
+    caption: what is shown and how to read it, without reference to the paper.
+    mosaic: rows of names of the axes, as matplotlib takes it; they are the table's column panel.
+    size: (width, height) in inches.
+
+    axes: {name: axes}. The table has the columns panel and curve, then one per plotted quantity,
+    named with its SI unit; cells that do not apply are empty.
     """
 
-    def __init__(self, name, title, caption, mosaic=(("main",),), size=None, **gridspec):
-        self.name, self.caption, self.tables = name, caption, []
+    def __init__(
+        self,
+        name: str,
+        title: str,
+        caption: str,
+        mosaic: Any = (("main",),),
+        size: tuple[float, float] | None = None,
+        **gridspec: Any,
+    ):
+        self.name, self.caption = name, caption
+        self.tables: list[tuple[str, str, dict[str, np.ndarray]]] = []
         self.figure = Figure(figsize=size or (WIDTH_IN, 4.2), layout="constrained")
-        self.axes = self.figure.subplot_mosaic(mosaic, **gridspec)
+        self.axes: dict[str, Axes] = self.figure.subplot_mosaic(mosaic, **gridspec)
         for key, axes in self.axes.items():
             axes.set_label(key)
         self.figure.suptitle(title, x=0.01, ha="left")
 
-    def record(self, axes, curve, **values):
-        """Add rows to the table: each value an array of equal length or a single value, in SI,
-        under the name of its column.
+    def record(self, axes: Axes, curve: str, **values: ArrayLike) -> str:
+        """Add rows to the table; return the text "rows FIRST:LAST" of their place in it.
 
-        Returns the text "rows FIRST:LAST", the place of these rows in the table, that artists carry
-        as their gid.
+        values: under the name of its column, an array of equal length or a single value, in SI.
+
+        Artists carry the text as their gid.
         """
         lengths = {np.size(value) for value in values.values() if np.ndim(value)}
         if len(lengths) > 1:
@@ -56,17 +75,27 @@ class Sheet:
             column: np.ravel(np.broadcast_to(value, length)) for column, value in values.items()
         }
         first = sum(length_of(other) for _, _, other in self.tables)
-        self.tables.append((axes.get_label(), curve, table))
+        self.tables.append((str(axes.get_label()), curve, table))
         return f"rows {first}:{first + length}"
 
-    def line(self, axes, x, y, curve, low=None, high=None, tags=None, **style):
-        """Draw y over x, and the band from low to high where given; return the line.
+    def line(
+        self,
+        axes: Axes,
+        x: Column,
+        y: Column,
+        curve: str,
+        low: ArrayLike | None = None,
+        high: ArrayLike | None = None,
+        tags: dict | None = None,
+        **style: Any,
+    ) -> Line2D:
+        """Draw y over x, and a band from low to high where given; return the line.
 
-        x, y: (column, values) with values (point,) in SI. tags: {column: value} that identify the
-        curve, recorded with each point.
+        x, y: (column, values) with values (point,) in SI.
+        tags: {column: value} that identify the curve, recorded with each point.
         """
         (x_column, x_values), (y_column, y_values) = x, y
-        if low is not None:
+        if low is not None and high is not None:
             axes.fill_between(
                 shown(x_column, x_values),
                 shown(y_column, low),
@@ -83,7 +112,17 @@ class Sheet:
         self._label(axes, x_column, y_column)
         return line
 
-    def bars(self, axes, x, y, curve, low, high, tags=None, **style):
+    def bars(
+        self,
+        axes: Axes,
+        x: Column,
+        y: Column,
+        curve: str,
+        low: ArrayLike,
+        high: ArrayLike,
+        tags: dict | None = None,
+        **style: Any,
+    ) -> ErrorbarContainer:
         """Draw points with bars from low to high, (point,) each, in SI; return the container."""
         (x_column, x_values), (y_column, y_values) = x, y
         place = self.record(
@@ -109,15 +148,26 @@ class Sheet:
         container.lines[0].set_gid(place)
         return container
 
-    def mark(self, axes, column, value, curve, vertical=True, **style):
+    def mark(
+        self,
+        axes: Axes,
+        column: str,
+        value: float,
+        curve: str,
+        vertical: bool = True,
+        **style: Any,
+    ) -> Line2D:
         """Draw a line across the axes at one value of a column (vertical: of the x axis)."""
         self.record(axes, curve, **{column: value})
         place = float(shown(column, value))
         return axes.axvline(place, **style) if vertical else axes.axhline(place, **style)
 
-    def map(self, axes, x, y, z, curve, **style):
-        """Draw z (y, x) as colours over x and y, logarithmic y in even steps of its own; return the
-        mesh. Rasterised in PDF.
+    def map(
+        self, axes: Axes, x: Column, y: Column, z: Column, curve: str, **style: Any
+    ) -> QuadMesh:
+        """Draw z (y, x) as colours over x and y; return the mesh.
+
+        A logarithmic y has even steps. The mesh is rasterised in PDF.
         """
         (x_column, x_values), (y_column, y_values), (z_column, z_values) = x, y, z
         grid = np.meshgrid(x_values, y_values)
@@ -139,25 +189,26 @@ class Sheet:
         self._label(axes, x_column, y_column)
         return mesh
 
-    def note(self, axes, text, x_column, y_column):
-        """Write into axes that have nothing to show why, and label them all the same."""
+    def note(self, axes: Axes, text: str, x_column: str, y_column: str) -> None:
+        """Write into empty axes why they are empty, and label them."""
         axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center")
         self._label(axes, x_column, y_column)
 
-    def legend(self, axes, **style):
-        """Add the legend of the axes, if anything in it has a name."""
+    def legend(self, axes: Axes, **style: Any) -> None:
+        """Add the legend of the axes, if any artist has a label."""
         if axes.get_legend_handles_labels()[1]:
             axes.legend(**style)
 
-    def colour_bar(self, mappable, axes, column, **style):
+    def colour_bar(self, mappable: Any, axes: Any, column: str, **style: Any) -> Colorbar:
         """Add a colour bar for a column beside axes (one or several)."""
         bar = self.figure.colorbar(mappable, ax=axes, pad=0.02, **style)
         bar.set_label(label_of(column))
         return bar
 
-    def save(self, folder):
-        """Write name.png, name.pdf and name.csv, and the caption as name.txt, into a folder (made
-        where missing).
+    def save(self, folder: str | Path) -> None:
+        """Write name.png, name.pdf, name.csv and the caption as name.txt into a folder.
+
+        The folder is created where it is missing.
         """
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
@@ -186,9 +237,7 @@ class Sheet:
         (folder / f"{self.name}.txt").write_text(self.caption + "\n", encoding="utf-8")
 
     def _write(self, folder, suffix, write, **options):
-        """Write one file under a temporary name, then rename it, so that no half-written file is
-        left.
-        """
+        """Write one file under a temporary name, then rename it: no partial file remains."""
         temporary = folder / f".{self.name}.{os.getpid()}.{suffix}"
         try:
             write(temporary, **options)
@@ -196,7 +245,7 @@ class Sheet:
         finally:
             temporary.unlink(missing_ok=True)
 
-    def columns(self):
+    def columns(self) -> list[str]:
         """Return the names of the table's columns."""
         return [
             "panel",
@@ -204,17 +253,18 @@ class Sheet:
             *dict.fromkeys(column for _, _, table in self.tables for column in table),
         ]
 
-    def cells(self, columns):
-        """Yield the rows of the table, tuples in the order of columns (as columns() gives); cells
-        that do not apply are empty texts.
+    def cells(self, columns: Sequence[str]) -> Iterator[tuple]:
+        """Yield the rows of the table as tuples; cells that do not apply are empty texts.
+
+        columns: as columns() returns them.
         """
         for panel, curve, table in self.tables:
-            values = [
+            values: list[Iterable] = [
                 rounded(table[column]) if column in table else repeat("") for column in columns[2:]
             ]
             yield from zip(repeat(panel, length_of(table)), repeat(curve), *values)
 
-    def rows(self):
+    def rows(self) -> list[dict]:
         """Return the table as a list of {column: value}."""
         columns = self.columns()
         return [dict(zip(columns, row, strict=True)) for row in self.cells(columns)]
@@ -226,36 +276,38 @@ class Sheet:
             axes.set_ylabel(label_of(y_column))
 
 
-def edges(centres):
-    """Return (n + 1,) cell edges half-way between (n,) ascending centres; the outer cells are
-    symmetric about theirs.
+def edges(centres: ArrayLike) -> np.ndarray:
+    """Return (n + 1,) cell edges half-way between (n,) ascending centres.
+
+    The outer cells are symmetric about their centres.
     """
-    centres = np.asarray(centres, dtype=float)
-    if centres.size == 1:
-        return centres[0] + np.array([-0.5, 0.5])
-    inner = 0.5 * (centres[1:] + centres[:-1])
-    return np.concatenate([[2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]]])
+    middle = np.asarray(centres, dtype=float)
+    if middle.size == 1:
+        return middle[0] + np.array([-0.5, 0.5])
+    inner = 0.5 * (middle[1:] + middle[:-1])
+    return np.concatenate([[2 * middle[0] - inner[0]], inner, [2 * middle[-1] - inner[-1]]])
 
 
-def length_of(table):
+def length_of(table: dict[str, np.ndarray]) -> int:
     """Return the number of rows of a table {column: (row,)}."""
     return len(next(iter(table.values())))
 
 
-def rounded(values):
-    """Return a list of the values, numbers to DIGITS significant digits: the noise of later digits
-    would triple the file.
+def rounded(values: ArrayLike) -> list:
+    """Return a list of the values, numbers rounded to DIGITS significant digits.
+
+    Further digits are noise and would triple the size of the file.
     """
-    values = np.asarray(values)
-    if values.dtype.kind not in "f":
-        return values.tolist()
-    values = values.astype(float)
-    usable = np.isfinite(values) & (values != 0.0)
-    size = np.floor(np.log10(np.abs(values[usable])))
+    array = np.asarray(values)
+    if array.dtype.kind not in "f":
+        return array.tolist()
+    array = array.astype(float)
+    usable = np.isfinite(array) & (array != 0.0)
+    size = np.floor(np.log10(np.abs(array[usable])))
     scale = 10.0 ** np.abs(DIGITS - 1 - size)
-    values[usable] = np.where(
+    array[usable] = np.where(
         size < DIGITS,
-        np.round(values[usable] * np.where(size < DIGITS, scale, 1.0)) / scale,
-        values[usable],
+        np.round(array[usable] * np.where(size < DIGITS, scale, 1.0)) / scale,
+        array[usable],
     )
-    return values.tolist()
+    return array.tolist()

@@ -1,5 +1,6 @@
-"""The report of one campaign as a page in a single file: verdict, effects, misfit, map, ranking,
-checks; figures are embedded.
+"""The report of one campaign as a single HTML file with embedded figures.
+
+It has the verdict, the effects, misfit, map, ranking and checks.
 """
 
 from __future__ import annotations
@@ -31,9 +32,11 @@ NOISE = "what the measurement itself scatters by, from period to period or from 
 def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
     """Return the HTML page.
 
-    name: of the campaign; verdict: its Verdict; figures: PNG files in their order, each
-    with its caption beside it as .txt; floor: what the floor of the misfit is, SEEDS or NOISE;
-    quick_s: what a quick look kept of every record, None for a whole run.
+    name: of the campaign.
+    verdict: its Verdict.
+    figures: PNG files in their order, each with its caption in a .txt file of the same name.
+    floor: meaning of the floor of the misfit, SEEDS or NOISE.
+    quick_s: s of each record that a quick run used, None for a full run.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
@@ -71,8 +74,9 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
 
 
 def embedded(figures):
-    """Return {name, caption, data} of PNG files, each with its caption beside it as .txt; data as
-    the text of a data: address.
+    """Return {name, caption, data} of PNG files; data is the text of a data: address.
+
+    The caption is in a .txt file of the same name.
     """
     return [
         {
@@ -85,7 +89,7 @@ def embedded(figures):
 
 
 def verdict_sentence(verdict):
-    """Return what the verdict says, in one or two sentences."""
+    """Return the verdict in one or two sentences."""
     held_out = verdict.misfit.holdout
     closed = None if held_out is None else held_out.closed_fraction
     shrinks = (
@@ -143,8 +147,9 @@ def sets_in_words(sets):
 
 
 def _with_parameters(effect):
-    """Return an effect in words with its parameters: dry friction at both plates (mu 0.149, between
-    0.128 and 0.171).
+    """Return an effect in words with its parameters.
+
+    Example: dry friction at both plates (mu 0.149, between 0.128 and 0.171).
     """
     values = ", ".join(
         f"{name.replace('_', ' ')} {digits(value['value'])}{_unit(value['unit'])}, between"
@@ -201,8 +206,9 @@ def _region_row(region):
 
 
 def _modes(frequencies):
-    """Return the modes of the model in or nearest to a band; those that a symmetric tube has twice,
-    to three digits, once.
+    """Return the modes of the model in or nearest to a band, to three digits, without duplicates.
+
+    A symmetric tube has some modes twice.
     """
     shown = list(dict.fromkeys(digits(frequency) for frequency in frequencies))
     return ", ".join(shown[:MOST_MODES]) + (" ..." if len(shown) > MOST_MODES else "")

@@ -1,6 +1,4 @@
-"""The hidden-effect suite as one page in a single file: rates against targets, detection limits,
-figures, every campaign.
-"""
+"""The hidden-effect suite as a single HTML file: rates, detection limits, figures, campaigns."""
 
 from __future__ import annotations
 
@@ -19,8 +17,10 @@ TEMPLATE = Path(__file__).with_suffix(".html")
 def suite_page(seed, rows, rates, limits, figures):
     """Return the HTML page.
 
-    seed: of the draw; rows: judged campaigns; rates: rows of rates.csv; limits: rows of
-    detection.csv; figures: PNG files in their order, each with its caption beside it as .txt.
+    seed: of the draw.
+    rows: judged campaigns.
+    rates, limits: rows of rates.csv and detection.csv.
+    figures: PNG files in their order, each with its caption in a .txt file of the same name.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
@@ -39,9 +39,7 @@ def suite_page(seed, rows, rates, limits, figures):
 
 
 def suite_sentence(seed, rows, rates):
-    """Return how many campaigns of which draw were judged, and which rows miss their target or
-    fail, in one or two sentences.
-    """
+    """Return how many campaigns were judged and which rates miss their target or fail."""
     met = sum(row["standing"] == "met" for row in rates)
     missed, failing = (
         "; ".join(_with_numbers(row) for row in rates if row["standing"] == standing)

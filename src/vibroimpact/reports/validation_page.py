@@ -1,6 +1,4 @@
-"""The validation as one page: what was checked, the tables, the figures with their captions; plain
-HTML beside its figures.
-"""
+"""The validation as one HTML page next to its figures: checks, tables, figures."""
 
 from collections import Counter
 from html import escape
@@ -14,9 +12,10 @@ def validation_page(
 ) -> str:
     """Return the HTML page.
 
-    checks: rows of validation.csv; tables: (heading, sentence, rows) in their order; figures: PNG
-    files, each with its caption beside it as .txt; folder: the page's own, which links are relative
-    to.
+    checks: rows of validation.csv.
+    tables: (heading, sentence, rows) in their order.
+    figures: PNG files, each with its caption in a .txt file of the same name.
+    folder: of the page; links are relative to it.
     """
     failed = [row for row in checks if row["pass"] not in (True, "True")]
     parts = [
@@ -51,9 +50,7 @@ def validation_page(
 
 
 def page_tables(claims, prediction):
-    """Return the tables of the page: the paper's claims, and when the equivalent linear model may
-    be used.
-    """
+    """Return the tables of the page: the claims, and the use of the equivalent linear model."""
     held = Counter(row["verdict"] for row in claims)
     verdicts = ", ".join(f"{count} {verdict}" for verdict, count in held.items())
     return [

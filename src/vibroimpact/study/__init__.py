@@ -1,3 +1,1 @@
-"""The study: cases over load, gap and seed, their simulation, and whether the methods agree on the
-equivalent support.
-"""
+"""The study: its cases, their simulation, and the agreement of the identification methods."""

@@ -1,10 +1,20 @@
-"""The spectra of a case, made while its record comes in: nothing longer than a segment is held.
+"""The spectra of a case, averaged while its record arrives; memory holds one segment.
 
-They are psd_{displacement,acceleration}_{mean,min,max} (sensor, frequency) in unit²/Hz, the segment
-spectra of the driven direction's sensors, sensor_spectra_{re,im} (driven_sensor, segment,
-low_frequency) m/sqrt(Hz), and those of the shape line, line_spectra_{re,im} (line_point, segment,
-line_frequency) m/sqrt(Hz). A cross-spectrum is the mean over segments of X conj(Y).
+Variables of the dataset, with X the segment spectra of a channel:
+
+- psd_{displacement,acceleration}_{mean,min,max} (sensor, frequency): one-sided, unit²/Hz; mean,
+  smallest and largest over segments
+- sensor_spectra_{re,im} (driven_sensor, segment, low_frequency): X of the sensors in the driven
+  direction, m/sqrt(Hz)
+- line_spectra_{re,im} (line_point, segment, line_frequency): X along the shape line, m/sqrt(Hz)
+
+A cross-spectrum is the mean over segments of X conj(Y).
 """
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,19 +31,27 @@ UNITS = {"displacement": "m2 Hz-1", "acceleration": "m2 s-4 Hz-1"}
 PARTS = {"re": "real part", "im": "imaginary part"}
 
 
-class SpectraOfCase:
-    """Takes pieces of the record of one case and hands each finished part of its spectra to
-    keep(name, place, values), to be set.
+class CaseSpectra:
+    """Averages the spectra of one case from pieces of its record.
 
-    config: with record, spectra, excitation and identification; sensors: names (sensor,);
-    line_points: how many; samples: of the whole record; dtype of its values. head: Dataset of
-    coordinates and small variables; parts {name: (dimensions, type, attributes)} and sizes
-    {dimension: length}: what `keep` is going to be given.
+    config: its sections record, spectra, excitation and identification are read.
+    sensors (sensor,): names, such as "apex.y".
+    line_points: number of points on the shape line.
+    samples: number of samples of the whole record.
+    dtype: of the record's values.
+
+    Attributes:
+    write: callback write(name, index, values) that stores a finished part; set it before `put`.
+    head: Dataset of the coordinates and scalar variables.
+    parts: {name: (dimensions, type, attributes)} of the variables that go to `write`.
+    sizes: {dimension: length}.
     """
 
-    def __init__(self, config, sensors, line_points, samples, dtype):
+    def __init__(
+        self, config: Any, sensors: Sequence[str], line_points: int, samples: int, dtype: Any
+    ):
         rate, spectra = config.record.sampling_frequency_Hz, config.spectra
-        self.keep = None
+        self.write: Callable[[str, Any, np.ndarray], Any] = _no_callback
         self._length, self._step, self._count = segment_layout(
             samples, rate, spectra.segment_s, spectra.overlap
         )
@@ -43,94 +61,67 @@ class SpectraOfCase:
             SegmentTransform(rate, spectra, dtype, highest),
         ]
         frequency, line_frequency = (transform.frequency for transform in self._transforms)
-        self._driven = [
-            index
-            for index, name in enumerate(sensors)
-            if name.endswith("." + driven_axis(config.excitation.direction))
-        ]
-        self._low, self._band = (
-            int(np.sum(frequency <= highest_kept_frequency_Hz(config))),
-            line_frequency >= lowest,
-        )
-        self._held = np.empty((2 * len(sensors) + line_points, self._length), dtype)
-        self._sensors, self._filled, self._segment, self._power = len(sensors), 0, 0, None
+        driven = "." + driven_axis(config.excitation.direction)
+        self._driven = [index for index, name in enumerate(sensors) if name.endswith(driven)]
+        self._low = int(np.sum(frequency <= highest_kept_frequency_Hz(config)))
+        self._band = line_frequency >= lowest
+        self._buffer = np.empty((2 * len(sensors) + line_points, self._length), dtype)
+        self._sensors = len(sensors)
+        self._filled = self._segment = 0
+        self._power: dict[str, np.ndarray] = {}
         coords = {
             "sensor": list(sensors),
             "driven_sensor": [sensors[index] for index in self._driven],
-            "frequency": ("frequency", frequency, _about("Hz", "frequency")),
-            "low_frequency": ("low_frequency", frequency[: self._low], _about("Hz", "frequency")),
-            "line_frequency": (
-                "line_frequency",
-                line_frequency[self._band],
-                _about("Hz", "frequency"),
-            ),
+            **{
+                name: (name, values, _attributes("Hz", "frequency"))
+                for name, values in (
+                    ("frequency", frequency),
+                    ("low_frequency", frequency[: self._low]),
+                    ("line_frequency", line_frequency[self._band]),
+                )
+            },
         }
         averages = effective_averages(samples / rate, rate, spectra)
-        attributes = {
-            "window": spectra.window,
-            "segment_s": spectra.segment_s,
-            "overlap": spectra.overlap,
-        }
+        about_averages = _attributes("1", "degrees of freedom of a PSD bin")
         self.head = xr.Dataset(
-            {"effective_averages": ((), averages, _about("1", "degrees of freedom of a PSD bin"))},
+            {"effective_averages": ((), averages, about_averages)},
             coords,
-            attributes,
+            {name: getattr(spectra, name) for name in ("window", "segment_s", "overlap")},
         )
         self.sizes = {**self.head.sizes, "segment": self._count, "line_point": line_points}
-        self.parts = {
-            f"psd_{quantity}_{name}": (
-                ("sensor", "frequency"),
-                "f4",
-                _about(
-                    unit,
-                    f"{name} over segments of the one-sided power spectral density of {quantity}",
-                ),
-            )
-            for quantity, unit in UNITS.items()
-            for name in ("mean", "min", "max")
-        }
-        for name, dims in (
-            ("sensor_spectra", ("driven_sensor", "segment", "low_frequency")),
-            ("line_spectra", ("line_point", "segment", "line_frequency")),
-        ):
-            self.parts.update(
-                {
-                    f"{name}_{suffix}": (
-                        dims,
-                        "f4",
-                        _about("m Hz-1/2", f"segment spectra of displacement, {part}"),
-                    )
-                    for suffix, part in PARTS.items()
-                }
-            )
+        self.parts = _declared_parts()
 
-    def put(self, displacement, acceleration, line):
-        """Take the next samples: displacement (sensor, time) m, acceleration (sensor, time) m/s²,
-        line (line_point, time) m.
+    def put(self, displacement: np.ndarray, acceleration: np.ndarray, line: np.ndarray) -> None:
+        """Add the next samples of the record.
+
+        displacement (sensor, time) m.
+        acceleration (sensor, time) m/s².
+        line (line_point, time) m: displacement along the shape line.
         """
-        taken, samples = 0, displacement.shape[-1]
-        while taken < samples and self._segment < self._count:
-            count = min(samples - taken, self._length - self._filled)
-            place, part = slice(self._filled, self._filled + count), slice(taken, taken + count)
+        read, samples = 0, displacement.shape[-1]
+        while read < samples and self._segment < self._count:
+            count = min(samples - read, self._length - self._filled)
+            place, part = slice(self._filled, self._filled + count), slice(read, read + count)
             row = 0
             for values in (displacement, acceleration, line):
-                self._held[row : row + len(values), place] = values[:, part]
+                self._buffer[row : row + len(values), place] = values[:, part]
                 row += len(values)
             self._filled += count
-            taken += count
+            read += count
             if self._filled == self._length:
                 self._finish_segment()
 
-    def _finish_segment(self):
-        """Transform the segment that is held, and keep of it what the next one shares."""
-        sensors, line = 2 * self._sensors, self._transforms[1](self._held[2 * self._sensors :])
-        values = self._transforms[0](self._held[:sensors])
+    def _finish_segment(self) -> None:
+        """Transform the full segment and leave in the buffer what the next one overlaps."""
+        sensors = 2 * self._sensors
+        line = self._transforms[1](self._buffer[sensors:])
+        values = self._transforms[0](self._buffer[:sensors])
         low = values[self._driven, : self._low]
-        for name, kept in (("sensor_spectra", low), ("line_spectra", line[:, self._band])):
-            self.keep(f"{name}_re", np.s_[:, self._segment], kept.real)
-            self.keep(f"{name}_im", np.s_[:, self._segment], kept.imag)
+        for name, stored in (("sensor_spectra", low), ("line_spectra", line[:, self._band])):
+            self.write(f"{name}_re", np.s_[:, self._segment], stored.real)
+            self.write(f"{name}_im", np.s_[:, self._segment], stored.imag)
         power = values.real**2 + values.imag**2
-        if self._power is None:
+        if not self._power:
             self._power = {"mean": power.copy(), "min": power.copy(), "max": power}
         else:
             self._power["mean"] += power
@@ -138,48 +129,68 @@ class SpectraOfCase:
             np.maximum(self._power["max"], power, out=self._power["max"])
         self._segment += 1
         self._filled = max(self._length - self._step, 0)
-        self._held[:, : self._filled] = self._held[:, self._step :].copy()
+        self._buffer[:, : self._filled] = self._buffer[:, self._step :].copy()
 
-    def finish(self):
-        """Hand over the PSDs. Raises ValueError when the record ended before its last segment."""
+    def finish(self) -> None:
+        """Write the PSDs. Raises ValueError when the record ended before its last segment."""
         if self._segment < self._count:
             raise ValueError(f"the record ended after {self._segment} of {self._count} segments")
         for name, power in self._power.items():
             values = power / self._count if name == "mean" else power
-            self.keep(f"psd_displacement_{name}", np.s_[:], values[: self._sensors])
-            self.keep(f"psd_acceleration_{name}", np.s_[:], values[self._sensors :])
+            self.write(f"psd_displacement_{name}", np.s_[:], values[: self._sensors])
+            self.write(f"psd_acceleration_{name}", np.s_[:], values[self._sensors :])
 
 
-def case_spectra(config, record):
-    """Return the spectra Dataset of one case, with the attributes of its record.
+def case_spectra(config: Any, record: xr.Dataset) -> xr.Dataset:
+    """Return the spectra of one case, with the attributes of its record.
 
     record: Dataset with displacement (sensor, time) m, acceleration (sensor, time) m/s² and
     line_displacement (line_point, time) m.
     """
-    arrays = {}
-    made = SpectraOfCase(
+    spectra = CaseSpectra(
         config,
         [str(name) for name in record["sensor"].values],
         record.sizes["line_point"],
         record.sizes["time"],
         record["displacement"].dtype,
     )
-    made.keep = lambda name, place, values: arrays[name].__setitem__(place, values)
-    arrays.update(
-        {
-            name: np.empty([made.sizes[dim] for dim in dims], dtype)
-            for name, (dims, dtype, _) in made.parts.items()
-        }
-    )
-    made.put(
+    arrays = {
+        name: np.empty([spectra.sizes[dim] for dim in dims], dtype)
+        for name, (dims, dtype, _) in spectra.parts.items()
+    }
+    spectra.write = lambda name, index, values: arrays[name].__setitem__(index, values)
+    spectra.put(
         *(record[name].values for name in ("displacement", "acceleration", "line_displacement"))
     )
-    made.finish()
+    spectra.finish()
     data = {
-        name: (dims, arrays[name], attributes) for name, (dims, _, attributes) in made.parts.items()
+        name: (dims, arrays[name], attributes)
+        for name, (dims, _, attributes) in spectra.parts.items()
     }
-    return made.head.assign(data).assign_attrs(record.attrs | made.head.attrs)
+    return spectra.head.assign(data).assign_attrs(record.attrs | spectra.head.attrs)
 
 
-def _about(unit, long_name):
+def _declared_parts() -> dict[str, tuple]:
+    """Return {name: (dimensions, type, attributes)} of the variables with a frequency axis."""
+    parts = {}
+    for quantity, unit in UNITS.items():
+        for name in ("mean", "min", "max"):
+            text = f"{name} over segments of the one-sided power spectral density of {quantity}"
+            dims: tuple = ("sensor", "frequency")
+            parts[f"psd_{quantity}_{name}"] = (dims, "f4", _attributes(unit, text))
+    for name, dims in (
+        ("sensor_spectra", ("driven_sensor", "segment", "low_frequency")),
+        ("line_spectra", ("line_point", "segment", "line_frequency")),
+    ):
+        for suffix, part in PARTS.items():
+            about = _attributes("m Hz-1/2", f"segment spectra of displacement, {part}")
+            parts[f"{name}_{suffix}"] = (dims, "f4", about)
+    return parts
+
+
+def _no_callback(name: str, index: Any, values: np.ndarray) -> None:
+    raise ValueError("set the attribute `write` before the first sample")
+
+
+def _attributes(unit: str, long_name: str) -> dict[str, str]:
     return {"units": unit, "long_name": long_name}

@@ -1,15 +1,17 @@
 """The cases of a study: grid <-> case id.
 
-An id is made of values, not of places in a list, so that an added load, gap or seed changes no
-other id. All loads and gaps of a seed have the same force, scaled.
+An id is made of values, not of positions in a list: adding a load, gap or seed changes no other id.
+All loads and gaps of a seed have the same force, scaled.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +21,11 @@ SIGNIFICANT_DIGITS = 6
 
 @dataclass(frozen=True, order=True)
 class Case:
-    """One simulation: load_rms_N in N RMS, gap_m the radial clearance in m, seed an index from
-    0.
+    """One simulation of the grid.
+
+    load_rms_N: RMS of the force, N.
+    gap_m: radial clearance, m.
+    seed: index from 0.
     """
 
     load_rms_N: float
@@ -39,17 +44,16 @@ def case_id(load_text: str, gap_m: float, seed: int) -> str:
 
 
 def value_text(value: float) -> str:
-    """Return the shortest text that reads back as exactly `value`: 20.0 -> '20', 5.1106e-5 ->
-    '5.1106e-05'.
+    """Return the shortest text that reads back as exactly `value`.
+
+    20.0 -> '20', 5.1106e-5 -> '5.1106e-05'.
     """
     text = repr(float(value))
     return text.removesuffix(".0")
 
 
 def case_from_id(case_id: str) -> Case:
-    """Return the Case of an id. Raises ValueError when the text is no id; the message shows the
-    form of one.
-    """
+    """Return the Case of an id. Raises ValueError for other texts; the message shows an example."""
     match = ID_PATTERN.fullmatch(case_id)
     if match is None:
         raise ValueError(
@@ -58,11 +62,11 @@ def case_from_id(case_id: str) -> Case:
     return Case(float(match["load"]), float(match["gap"]), int(match["seed"]))
 
 
-def load_values(grid) -> list[float]:
-    """Return the loads (load,) in N RMS of config.grid: as listed, or log-spaced and rounded to 6
-    significant digits.
+def load_values(grid: Any) -> list[float]:
+    """Return the loads (load,) in N RMS of config.grid.
 
-    The rounding keeps ids short and makes the id tell the load that was simulated.
+    They are listed, or spaced evenly in logarithm and rounded to 6 significant digits. The
+    rounding keeps ids short and exact.
     """
     loads = grid.load_rms_N
     if isinstance(loads, tuple):
@@ -71,12 +75,12 @@ def load_values(grid) -> list[float]:
     return [float(f"{load:.{SIGNIFICANT_DIGITS}g}") for load in spaced]
 
 
-def loads_by_half_decade(grid) -> dict[str, list[str]]:
-    """Return {name of a half decade: texts of the loads in it}, both ascending: batches of which an
-    added load changes one.
+def loads_by_half_decade(grid: Any) -> dict[str, list[str]]:
+    """Return {name of a half decade: texts of its loads}, both ascending.
 
-    A half decade holds loads from 10^(n/2) N on, below 10^((n+1)/2) N; its name, e.g. from_0.316,
-    is its lower end.
+    A half decade holds loads from 10^(n/2) N up to, not including, 10^((n+1)/2) N. It is named
+    after its lower end, e.g. from_0.316. Batches made of half decades change only where a load is
+    added.
     """
     batches: dict[int, list[float]] = {}
     for load in sorted(load_values(grid)):
@@ -87,27 +91,27 @@ def loads_by_half_decade(grid) -> dict[str, list[str]]:
     }
 
 
-def nearest_loads(grid, wanted) -> list[float]:
-    """Return the loads of config.grid nearest (in logarithm) to the wanted ones (load,) in N RMS,
-    ascending, each once.
+def nearest_loads(grid: Any, wanted: Sequence[float]) -> list[float]:
+    """Return the loads of config.grid nearest in logarithm to those wanted, ascending, each once.
+
+    wanted (load,): N RMS.
     """
     loads = np.array(load_values(grid))
     return sorted({float(loads[np.argmin(np.abs(np.log(loads / load)))]) for load in wanted})
 
 
-def all_cases(grid) -> list[Case]:
-    """Return every Case of config.grid, ordered by load, then gap, then seed as the configuration
-    lists them.
-    """
+def all_cases(grid: Any) -> list[Case]:
+    """Return every Case of config.grid, ordered by load, then gap, then seed."""
     return [
         Case(load, float(gap), seed)
         for load, gap, seed in product(load_values(grid), grid.gap_m, range(grid.seeds))
     ]
 
 
-def cases_of_load(grid, load_rms_N: float) -> list[Case]:
-    """Return the cases of one load: what one simulation job integrates together. Needs gap_m and
-    seeds of the grid only.
+def cases_of_load(grid: Any, load_rms_N: float) -> list[Case]:
+    """Return the cases of one load, which one simulation job integrates together.
+
+    grid: only its gap_m and seeds are read.
     """
     return [
         Case(float(load_rms_N), float(gap), seed)
@@ -115,9 +119,10 @@ def cases_of_load(grid, load_rms_N: float) -> list[Case]:
     ]
 
 
-def ids_of_load(grid, load_text: str) -> list[str]:
-    """Return the ids of the cases of one load, in the order of cases_of_load; `load_text` may be a
-    wildcard that stands for the load.
+def ids_of_load(grid: Any, load_text: str) -> list[str]:
+    """Return the ids of the cases of one load, in the order of cases_of_load.
+
+    load_text: of the load, or a wildcard that stands for it.
     """
     return [
         case_id(load_text, float(gap), seed) for gap, seed in product(grid.gap_m, range(grid.seeds))

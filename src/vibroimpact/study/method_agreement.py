@@ -1,10 +1,12 @@
-"""The consistency table: every method on every case, what the seeds scatter, and whether the
-independent methods agree.
+"""The consistency table: all methods on all cases, their scatter over seeds, their agreement.
 
 Rows are dicts with the columns of estimate.table_rows. k (N/m) and c (N s/m) are per support; NaN
 is unresolved.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
 from itertools import product
 
 import numpy as np
@@ -12,7 +14,7 @@ import xarray as xr
 
 from vibroimpact.identify.estimate import METHODS, QUALITIES
 
-COMPARED = ("lscf", "ods", "broadband")  # one of each of the three independent identifications
+COMPARED = ("lscf", "ods", "broadband")  # one of each of the three independent kinds of method
 AGREEMENT = 0.25  # largest relative distance from the median of the three
 VERDICTS = ("agree", "spread", "unresolved")
 SUMMARY_COLUMNS = (
@@ -32,10 +34,8 @@ SUMMARY_COLUMNS = (
 COLLAPSE_COLUMNS = ("method", "load_over_gap", "k_smallest", "k_largest", "gaps", "k_ratio")
 
 
-def consistency_rows(tables):
-    """Return all rows of the cases' tables (lists of rows), ordered by gap (largest first), load,
-    seed and method.
-    """
+def consistency_rows(tables: Iterable[list[dict]]) -> list[dict]:
+    """Return the rows of all cases, ordered by gap (largest first), load, seed and method."""
     rows = [row for table in tables for row in table]
     return sorted(
         rows,
@@ -48,20 +48,19 @@ def consistency_rows(tables):
     )
 
 
-def summary_rows(rows):
-    """Return the rows of consistency_summary.csv: per gap, load and method the median and the range
-    over seeds, ratio and verdict.
+def summary_rows(rows: list[dict]) -> list[dict]:
+    """Return the rows of consistency_summary.csv: statistics over seeds per gap, load and method.
 
-    A median needs a resolved value of at least half the seeds: otherwise chance picks the seeds
-    that speak. ratio: k_median over the median of the three compared methods' k_median; verdict:
-    agree when the three are resolved and all within 25 % of their median, spread when they are
-    resolved and are not, else unresolved. It is that of the gap and load, the same for all methods.
+    k and c: median, smallest and largest over seeds. A median needs a resolved value of at least
+    half the seeds; fewer would be a chance selection.
+    ratio: k_median over the median of the k_median of the three compared methods.
+    verdict: one for each gap and load. "agree" when the three methods are resolved and within 25 %
+    of their median, "spread" when they are resolved and not, else "unresolved".
     """
-    groups = {}
+    groups: dict[tuple[float, float], dict[str, list[dict]]] = {}
     for row in rows:
-        groups.setdefault((row["gap_m"], row["load_rms_N"]), {}).setdefault(
-            row["method"], []
-        ).append(row)
+        methods = groups.setdefault((row["gap_m"], row["load_rms_N"]), {})
+        methods.setdefault(row["method"], []).append(row)
     summary = []
     for (gap_m, load_rms_N), methods in groups.items():
         spans = {
@@ -86,38 +85,38 @@ def summary_rows(rows):
     return summary
 
 
-def _span(cases, column):
-    """Return (median, smallest, largest) of the resolved values, NaN where less than half the cases
-    have one.
+def _span(cases: list[dict], column: str) -> tuple[float, float, float]:
+    """Return (median, smallest, largest) of the resolved values.
+
+    NaN where less than half of the cases are resolved.
     """
     values = np.array([row[column] for row in cases], dtype=float)
     resolved = values[np.isfinite(values)]
     if 2 * resolved.size < values.size or resolved.size == 0:
-        return (np.nan,) * 3
+        return np.nan, np.nan, np.nan
     return float(np.median(resolved)), float(resolved.min()), float(resolved.max())
 
 
-def _verdict(medians):
+def _verdict(medians: list[float]) -> tuple[float, str]:
     """Return (median of the three, verdict) of the compared methods' medians of k."""
     if len(medians) < len(COMPARED) or not np.all(np.isfinite(medians)):
         return np.nan, "unresolved"
     centre = float(np.median(medians))
-    return centre, (
-        "agree" if np.all(np.abs(np.array(medians) - centre) <= AGREEMENT * centre) else "spread"
-    )
+    near = np.all(np.abs(np.array(medians) - centre) <= AGREEMENT * centre)
+    return centre, "agree" if near else "spread"
 
 
-def collapse_rows(summary, points_per_gap=2):
-    """Return how well the gaps fall on one curve: rows of method, load_over_gap (N/m), k_smallest,
-    k_largest (N/m), gaps, k_ratio.
+def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:
+    """Return how well the curves k(load / gap) of the gaps fall on one curve.
 
-    A structure with impacts is homogeneous of degree one, so k depends on load/gap only. Each gap's
-    k_median is interpolated (both axes logarithmic, between its own points alone) at the loads/gap
-    of all gaps; rows are those where at least points_per_gap gaps speak.
+    A structure with impacts is homogeneous of degree one, so that k depends on load / gap alone.
+    k_median of each gap is interpolated, linearly in both logarithms and within its own range, at
+    the load / gap of all gaps. Rows are those with values of at least points_per_gap gaps, with the
+    columns COLLAPSE_COLUMNS: k and load_over_gap in N/m.
     """
     rows = []
     for method in METHODS:
-        curves = {}
+        curves: dict[float, list[tuple[float, float]]] = {}
         for row in summary:
             if row["method"] == method and row["k_median"] > 0.0:
                 curves.setdefault(row["gap_m"], []).append((row["load_over_gap"], row["k_median"]))
@@ -143,9 +142,10 @@ def collapse_rows(summary, points_per_gap=2):
     return rows
 
 
-def consistency_dataset(rows, summary):
-    """Return the two tables as one Dataset over (gap, load, seed, method) and (gap, load, method);
-    qualities and verdicts as flags.
+def consistency_dataset(rows: list[dict], summary: list[dict]) -> xr.Dataset:
+    """Return both tables as one Dataset, qualities and verdicts as flags.
+
+    Estimates have dimensions (gap, load, seed, method), the summary (gap, load, method).
     """
     gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
     loads = sorted({row["load_rms_N"] for row in rows})
@@ -159,14 +159,12 @@ def consistency_dataset(rows, summary):
         "frequency_Hz": ("frequency", "Hz"),
         "damping_ratio": ("damping_ratio", "1"),
     }
-    data, dims = {}, ("gap", "load", "seed", "method")
+    data: dict[str, tuple] = {}
+    dims = ("gap", "load", "seed", "method")
     shape = (len(gaps), len(loads), len(seeds), len(METHODS))
     for column, (name, unit) in columns.items():
-        data[name] = (
-            dims,
-            np.full(shape, np.nan),
-            {"units": unit, "long_name": column.replace("_", " ")},
-        )
+        about = {"units": unit, "long_name": column.replace("_", " ")}
+        data[name] = (dims, np.full(shape, np.nan), about)
     data["quality"] = (
         dims,
         np.full(shape, len(QUALITIES) - 1, np.int8),
@@ -185,14 +183,10 @@ def consistency_dataset(rows, summary):
         unit = {"k": "N m-1", "c": "N s m-1"}.get(column[0], "1")
         values = np.full((len(gaps), len(loads), len(METHODS)), np.nan)
         for row in summary:
-            values[(*place[row["gap_m"], row["load_rms_N"]], METHODS.index(row["method"]))] = row[
-                column
-            ]
-        data[column] = (
-            ("gap", "load", "method"),
-            values,
-            {"units": unit, "long_name": column.replace("_", " ") + " over seeds"},
-        )
+            at = place[row["gap_m"], row["load_rms_N"]]
+            values[(*at, METHODS.index(row["method"]))] = row[column]
+        about = {"units": unit, "long_name": column.replace("_", " ") + " over seeds"}
+        data[column] = (("gap", "load", "method"), values, about)
     verdicts = np.full((len(gaps), len(loads)), len(VERDICTS) - 1, np.int8)
     for row in summary:
         verdicts[place[row["gap_m"], row["load_rms_N"]]] = VERDICTS.index(row["verdict"])
@@ -210,7 +204,7 @@ def consistency_dataset(rows, summary):
     return xr.Dataset(data, coords, {"title": "vibroimpact consistency of the identifications"})
 
 
-def _flags(meanings, long_name):
+def _flags(meanings: Sequence[str], long_name: str) -> dict:
     return {
         "units": "1",
         "long_name": long_name,

@@ -1,10 +1,10 @@
-"""The variables of a record, each declared once: dimensions, type, unit and name."""
+"""The variables of a record: dimensions, type, unit and name of each."""
 
 import numpy as np
 import xarray as xr
 
 # name: (dimensions, dtype, units, long name)
-VARIABLES = {
+VARIABLES: dict[str, tuple[tuple, str, str, str]] = {
     "displacement": (("sensor", "time"), "f4", "m", "displacement"),
     "acceleration": (("sensor", "time"), "f4", "m s-2", "acceleration"),
     "line_displacement": (("line_point", "time"), "f4", "m", "displacement along the shape line"),
@@ -121,7 +121,7 @@ VARIABLES = {
         "bound of the relative error of the implicit contact forces, worst step",
     ),
 }
-COORDINATES = {
+COORDINATES: dict[str, tuple[tuple, str | None]] = {
     "time": (("time",), "s"),
     "sensor": (("sensor",), None),
     "line_arc_length": (("line_point",), "m"),
@@ -136,8 +136,9 @@ COORDINATES = {
 
 
 def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
-    """A dataset of declared variables with their dimensions, units and names. Raises KeyError for
-    an undeclared one.
+    """Return a dataset of declared variables, with their dimensions, units and names.
+
+    Raises KeyError for a variable that is not declared.
     """
     data = {}
     for name, value in values.items():
@@ -155,7 +156,7 @@ def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
 
 
 def split_record(record: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
-    """(statistics and energies, time series) of a record; both keep the attributes."""
+    """Return (statistics and energies, time series) of a record; both have its attributes."""
     series = [
         name for name, variable in record.data_vars.items() if {"time", "step"} & set(variable.dims)
     ]

@@ -1,6 +1,10 @@
-"""Simulating the cases of a study: forces in, one record dataset per case out."""
+"""Simulation of the cases of a study: forces in, one record per case out."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,21 +17,30 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
 
 from .cases import Case
+from .every_step_records import trace_cases
 from .record_variables import describe
-from .step_records import trace_cases
 
 
 def simulate_cases(
-    config, model: ModalModel, cases: list[Case], keep=None, stopwatch: Stopwatch | None = None
-):
-    """Yield (case, record dataset) for every case, integrating LANES of them at a time.
+    config: Any,
+    model: ModalModel,
+    cases: list[Case],
+    writer: Callable | None = None,
+    stopwatch: Stopwatch | None = None,
+) -> Iterator[tuple[Case, xr.Dataset]]:
+    """Yield (case, record) for every case, integrating LANES of them at a time.
 
-    The record's variables, dimensions and units are those of variables.VARIABLES. A case's record
-    does not depend on the other cases of the list. keep: where given the records hold no time
-    series; those go piece by piece to keep(schedule, batch), which is entered for each batch of
-    cases and gives a function put(first sample, {variable: (case, ..., sample)}), see series_files.
-    stopwatch: is told the CPU seconds of kernel, output filter and force. With record.every_step:
-    see step_records; keep is not asked. Raises IntegrationError, ForceError.
+    A record does not depend on the other cases of the list. Its variables, dimensions and units
+    are those of record_variables.VARIABLES.
+
+    config: the stage's settings, with study, seed, record, excitation and integration.
+    writer: where given, the records hold no time series. writer(schedule, batch) is a context
+    manager, entered once per batch of cases; it yields put(first sample, {variable: (case, ...,
+    sample)}), which receives the series piece by piece. See series_writer and spectra_writer.
+    stopwatch: measures the CPU time of kernel, output filter and force.
+
+    With record.every_step the records are those of every_step_records; writer is not used.
+    Raises IntegrationError, ForceError.
     """
     stopwatch = Stopwatch() if stopwatch is None else stopwatch
     if config.record.every_step:
@@ -47,7 +60,7 @@ def simulate_cases(
         }
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
-        with nullcontext() if keep is None else keep(schedule, batch) as put:
+        with nullcontext() if writer is None else writer(schedule, batch) as put:
             lanes = march_lanes(
                 model,
                 schedule,
@@ -59,7 +72,7 @@ def simulate_cases(
                 receive=(
                     None
                     if put is None
-                    else lambda at, *pieces, put=put: put(at, series_of(model, *pieces))
+                    else lambda at, *pieces, put=put: put(at, time_series(model, *pieces))
                 ),
             )
         stopwatch.add(lanes.stopwatch)
@@ -67,11 +80,11 @@ def simulate_cases(
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
 
 
-def seed_force(config, schedule: Schedule, seed: int) -> ForceStream:
-    """The seed's force at every step of the run, of RMS 1 (exactly so over the recorded window).
+def seed_force(config: Any, schedule: Schedule, seed: int) -> ForceStream:
+    """Return the force of a seed at every step of the run, with RMS 1 over the recorded window.
 
-    Loads scale it, gaps share it, so scaling load and gap by a power of two scales a record bit for
-    bit.
+    All loads scale this force and all gaps share it. Scaling load and gap by a power of two
+    therefore scales a record bit for bit.
     """
     rate = schedule.steps_per_second
     first = round(schedule.start_up * rate) + 1
@@ -81,11 +94,11 @@ def seed_force(config, schedule: Schedule, seed: int) -> ForceStream:
     return ForceStream(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
 
 
-def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
-    """Offsets (contact_point, 2) m of the obstacles' centres, drawn once per seed as a fraction of
-    the gap.
+def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
+    """Return offsets (contact_point, 2) in m of the centres of the obstacles.
 
-    Without them a perfectly out-of-plane force leaves the in-plane motion to round-off.
+    They are drawn once per seed, as a fraction of the gap. Without them an exactly out-of-plane
+    force would leave the in-plane motion to round-off.
     """
     draw = random_generator(config.seed, case.seed, "imperfection").uniform(
         -1.0, 1.0, (model.support_of_point.size, 2)
@@ -93,8 +106,8 @@ def imperfection(config, model: ModalModel, case: Case) -> np.ndarray:
     return draw * (config.integration.imperfection * case.gap_m)
 
 
-def _drive(batch, forces, stopwatch):
-    def drive(first, count):
+def _drive(batch: list[Case], forces: dict[int, ForceStream], stopwatch: Stopwatch) -> Callable:
+    def drive(first: int, count: int) -> np.ndarray:
         with stopwatch("force"):
             unit = {
                 seed: forces[seed].values(first, count) for seed in {case.seed for case in batch}
@@ -107,31 +120,34 @@ def _drive(batch, forces, stopwatch):
     return drive
 
 
-def series_of(model: ModalModel, displacement, acceleration, force) -> dict[str, np.ndarray]:
-    """The time series of a record by variable, (..., sample) each, from those of integrate.Lanes,
-    (..., channel, sample).
+def time_series(
+    model: ModalModel, displacement: np.ndarray, acceleration: np.ndarray, force: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return the time series of a record by variable, (..., sample) each.
+
+    displacement, acceleration, force (..., channel, sample): as in batch.Lanes.
     """
     sensors, supports = model.sensor_shapes.shape[1], len(model.support_names)
+    on_structure = force[..., : 2 * supports, :]
     return {
         "displacement": displacement[..., :sensors, :],
         "acceleration": acceleration,
         "line_displacement": displacement[..., sensors:, :],
-        "support_force": (
-            -force[..., : 2 * supports, :].reshape(*force.shape[:-2], supports, 2, force.shape[-1])
-        ),
+        "support_force": -on_structure.reshape(*force.shape[:-2], supports, 2, force.shape[-1]),
         "force": force[..., 2 * supports, :],
     }
 
 
 def record_dataset(
-    config, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case
+    config: Any, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case
 ) -> xr.Dataset:
-    """The record of one lane of a batch; without time series where the lanes hold none."""
-    series = (
-        {}
-        if lanes.force is None
-        else series_of(model, lanes.displacement[lane], lanes.acceleration[lane], lanes.force[lane])
-    )
+    """Return the record of one lane of a batch, without time series where the lanes hold none."""
+    series: dict[str, np.ndarray] = {}
+    if lanes.displacement is not None:
+        assert lanes.acceleration is not None and lanes.force is not None
+        series = time_series(
+            model, lanes.displacement[lane], lanes.acceleration[lane], lanes.force[lane]
+        )
     coordinates = {
         **({"time": sample_times(schedule)} if series else {}),
         "sensor": list(model.sensor_names),
@@ -142,22 +158,20 @@ def record_dataset(
         "energy_term": list(ENERGY_TERMS),
         "energy_time": lanes.energy_time,
     }
-    values = (
-        series | statistics(lanes, lane, schedule) | energy_balance(lanes, lane, model.conservative)
-    )
-    values["stress_flag"] = np.int8(
-        values["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa
-    )
+    tallies = statistics(lanes, lane, schedule)
+    over_limit = tallies["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa
+    values = series | tallies | energy_balance(lanes, lane, model.conservative)
+    values["stress_flag"] = np.asarray(over_limit, np.int8)
     return describe(values, coordinates, case_attributes(config, schedule, case))
 
 
 def sample_times(schedule: Schedule) -> np.ndarray:
-    """Times (time,) s of the samples of a record."""
+    """Return the times (time,) in s of the samples of a record."""
     return np.arange(schedule.samples) / schedule.sampling_frequency
 
 
-def case_attributes(config, schedule: Schedule, case: Case) -> dict:
-    """What every file of a case says of it."""
+def case_attributes(config: Any, schedule: Schedule, case: Case) -> dict:
+    """Return the attributes that every file of a case carries."""
     return {
         "study": config.study,
         "case": case.id,
@@ -171,7 +185,7 @@ def case_attributes(config, schedule: Schedule, case: Case) -> dict:
 
 
 def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:
-    """Contact, wear and stress statistics of one lane over the recorded steps, by variable name."""
+    """Return contact, wear and stress statistics of one lane over the recorded steps, by name."""
     tally = {name: np.asarray(value[..., lane]) for name, value in lanes.tally.items()}
     steps, dt = lanes.steps, 1.0 / schedule.steps_per_second
     impacts = tally["impacts"]
@@ -199,13 +213,15 @@ def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndar
 
 
 def energy_balance(lanes: Lanes, lane: int, conservative: bool) -> dict[str, np.ndarray]:
-    """Energies of one lane and the two residuals, relative to the largest energy that came in, by
-    work or at the start.
+    """Return the energies of one lane and the residuals of its energy balance.
 
-    energy_residual: with the contact work as the trapezoidal sum of f du, the identity of the
-    scheme (round-off only); potential_energy_residual: with the potential energy of contacts and
-    elements in its place, which measures the step; NaN unless they are conservative.
-    contact_dissipation: what contacts and elements took beyond what their springs hold.
+    Residuals are relative to the largest energy supplied, by work or at the start.
+
+    energy_residual: the contact work is the trapezoidal sum of f du. This is an identity of the
+    scheme; it holds to round-off.
+    potential_energy_residual: the potential energy of contacts and elements takes the place of
+    their work. It measures the time step; NaN unless they are conservative.
+    contact_dissipation: J, work on contacts and elements less the energy stored in their springs.
     """
     energy = lanes.energy[lane]
     terms = dict(zip(ENERGY_TERMS, energy, strict=True))
@@ -214,13 +230,13 @@ def energy_balance(lanes: Lanes, lane: int, conservative: bool) -> dict[str, np.
     supplied = terms["input_work"] - terms["dissipated"] + start
     scale = max(abs(terms["input_work"][-1]), start)
     exact = mechanical - supplied - terms["contact_work"]
-    held = terms["contact_potential"] - terms["contact_potential"][0]
+    stored = terms["contact_potential"] - terms["contact_potential"][0]
     return {
         "energy": energy,
         "energy_residual": np.max(np.abs(exact)) / scale,
         "potential_energy_residual": (
-            np.max(np.abs(mechanical + held - supplied)) / scale if conservative else np.nan
+            np.max(np.abs(mechanical + stored - supplied)) / scale if conservative else np.nan
         ),
-        "contact_dissipation": (-terms["contact_work"] - held)[-1],
+        "contact_dissipation": (-terms["contact_work"] - stored)[-1],
         "fixed_point_residual": lanes.fixed_point_residual[lane] * lanes.contraction,
     }

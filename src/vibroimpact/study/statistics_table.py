@@ -1,4 +1,4 @@
-"""The scalar statistics of a record as rows of a table: what an engineer reads first."""
+"""The scalar statistics of a record as rows of a table."""
 
 import xarray as xr
 
@@ -7,35 +7,27 @@ CASE = ("load_rms_N", "gap_m", "seed")
 
 
 def statistics_rows(record: xr.Dataset) -> list[dict]:
-    """Return one row per quantity of a record with at most one named axis (support, section or
-    element).
+    """Return a row for every value of the scalar and one-dimensional statistics of a record.
 
-    Row keys: load_rms_N, gap_m, seed, quantity, of (name of the support, section or element; empty
-    for the whole case), value, unit.
+    Keys of a row: load_rms_N, gap_m, seed, quantity, of (name of the support, section or element;
+    empty for the whole case), value, unit.
     """
     case = {key: record.attrs[key] for key in CASE}
     rows = []
     for name, variable in record.data_vars.items():
         if variable.ndim == 0:
-            rows.append(
-                {
-                    **case,
-                    "quantity": name,
-                    "of": "",
-                    "value": float(variable),
-                    "unit": variable.attrs["units"],
-                }
-            )
+            values = [("", float(variable))]
         elif variable.dims[0] in AXES and variable.ndim == 1:
             places = record[variable.dims[0]].values
-            rows += [
-                {
-                    **case,
-                    "quantity": name,
-                    "of": str(place),
-                    "value": float(value),
-                    "unit": variable.attrs["units"],
-                }
+            values = [
+                (str(place), float(value))
                 for place, value in zip(places, variable.values, strict=True)
             ]
+        else:
+            continue
+        unit = variable.attrs["units"]
+        rows += [
+            {**case, "quantity": name, "of": place, "value": value, "unit": unit}
+            for place, value in values
+        ]
     return rows

@@ -1,34 +1,45 @@
-"""A stand-in for a measured campaign: the study's own tube with another force, a slightly different
-gap and measuring noise.
+"""A simulated campaign that stands in for a measured one.
+
+It is the study's tube with another force, a slightly different gap and measurement noise.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.random_streams import random_generator
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.stopwatch import Stopwatch
 
 from .cases import Case
 from .simulation import simulate_cases
 
 
-def synthetic_campaign(config, model, loads, stopwatch=None):
-    """Return the campaign Dataset: accelerations at all sensors of `model`, one record per load (N
-    RMS, ascending), at the largest gap times overlay.gap_ratio.
+def synthetic_campaign(
+    config: Any, model: ModalModel, loads: Sequence[float], stopwatch: Stopwatch | None = None
+) -> xr.Dataset:
+    """Return the campaign Dataset: accelerations at all sensors of the model, one record per load.
 
-    The force is that of seed overlay.seed, which no case of the study has. stopwatch: see
-    simulate_cases. Noise: white, Gaussian, overlay.noise times the largest channel RMS of the
-    lowest level, the same for all channels and records, as a measuring chain has it.
+    loads: N RMS, ascending.
+    stopwatch: see simulate_cases.
+
+    The gap is the largest of the grid times overlay.gap_ratio. The force is that of seed
+    overlay.seed, which no case of the study has. Noise is white and Gaussian, as of a measuring
+    chain the same for all channels and records: overlay.noise times the largest channel RMS of the
+    lowest level.
     """
     gap = max(config.grid.gap_m) * config.overlay.gap_ratio
     cases = [Case(load, gap, config.overlay.seed) for load in loads]
     records = [record for _, record in simulate_cases(config, model, cases, stopwatch=stopwatch)]
     response = np.array([record["acceleration"].values for record in records], dtype=float)
     level = config.overlay.noise * np.sqrt(np.mean(np.square(response[0]), axis=-1)).max()
-    response += level * random_generator(
-        config.seed, config.overlay.seed, "measuring noise"
-    ).standard_normal(response.shape)
+    noise = random_generator(config.seed, config.overlay.seed, "measuring noise")
+    response += level * noise.standard_normal(response.shape)
     sensors = zip(model.sensor_names, model.sensor_positions, model.sensor_directions, strict=True)
     channels = [
         Channel(f"{name}.acceleration", tuple(point), tuple(direction), "m s-2", "acceleration")

@@ -1,26 +1,27 @@
-"""Where the time of a study goes: the benchmark files of its jobs and the CPU seconds in their
-logs, summed by rule and part.
+"""CPU time of a study by rule and by part of the work.
+
+It is summed from the benchmark files of the jobs and the CPU seconds in their logs.
 """
 
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from vibroimpact.records import read_text
 from vibroimpact.stopwatch import seconds_in
 
-METHOD = (
-    "kernel",
-    "spectra",
-    "identification",
-)  # what the study is for; all else should be less than a third
+# The work a study is made for; everything else should take less than a third of the time.
+METHOD = ("kernel", "spectra", "identification")
 REST = "rest"
 
 
 def job_of(benchmark: str, log: str) -> dict:
-    """{wall_s, cpu_s, max_rss_MB, parts {name: CPU s}} of a job from the texts of its benchmark
-    file (Snakemake's columns) and its log.
+    """Return {wall_s, cpu_s, max_rss_MB, parts {name: CPU s}} of one job.
 
-    CPU seconds are those of the log where it tells them: the benchmark's are sampled, and miss the
-    end of short jobs.
+    benchmark: text of its benchmark file, with Snakemake's columns.
+    log: text of its log.
+
+    CPU seconds are taken from the log where it has them. Those of the benchmark file are sampled
+    and miss the end of short jobs.
     """
     header, values = (line.split("\t") for line in benchmark.splitlines()[:2])
     measured = {
@@ -37,17 +38,17 @@ def job_of(benchmark: str, log: str) -> dict:
     }
 
 
-def rule_of(path) -> str:
-    """The rule of a benchmark file: its name without the load."""
+def rule_of(path: str | Path) -> str:
+    """Return the rule of a benchmark file: its name without the load."""
     return Path(path).stem.split("_load_")[0].split("_from_")[0]
 
 
-def timing_rows(jobs) -> list[dict]:
-    """Rows {rule, part, jobs, wall_s, cpu_s, share, max_rss_MB} of (rule, job) pairs: each rule by
-    descending CPU time, its parts after it.
+def timing_rows(jobs: Iterable[tuple[str, dict]]) -> list[dict]:
+    """Return rows {rule, part, jobs, wall_s, cpu_s, share, max_rss_MB} of (rule, job) pairs.
 
-    part is empty for a rule as a whole; share is of the CPU time of all jobs; wall_s and max_rss_MB
-    are of whole jobs. The last rows are those of all rules together.
+    Rules are in descending order of CPU time, each followed by its parts; the last rows are those
+    of all rules together. part is empty for a rule as a whole. share is of the CPU time of all
+    jobs. wall_s and max_rss_MB are those of whole jobs.
     """
     by_rule: dict[str, list[dict]] = {}
     for rule, job in jobs:
@@ -60,7 +61,7 @@ def timing_rows(jobs) -> list[dict]:
     ]
 
 
-def _rows(rule, jobs, total):
+def _rows(rule: str, jobs: list[dict], total: float) -> Iterator[dict]:
     parts: dict[str, float] = {}
     for job in jobs:
         for name, seconds in job["parts"].items():
@@ -89,9 +90,10 @@ def _rows(rule, jobs, total):
         }
 
 
-def study_timing(benchmarks, logs) -> list[dict]:
-    """The timing_rows of jobs given by the paths of their benchmark files and logs. Raises
-    RecordError when one can not be read.
+def study_timing(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -> list[dict]:
+    """Return the timing_rows of jobs, from the paths of their benchmark files and logs.
+
+    Raises RecordError when a file can not be read.
     """
     return timing_rows(
         [

@@ -1,3 +1,4 @@
-"""Verification and validation: our results beside closed forms, published numbers, other codes and
-the paper's claims.
+"""Verification and validation against closed forms, published numbers and other codes.
+
+The claims of the paper are judged here too.
 """

@@ -1,4 +1,4 @@
-"""One comparison of ours with a reference, and the table that collects them."""
+"""A comparison of one computed quantity with its reference."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,14 @@ COLUMNS = ("case", "quantity", "unit", "reference", "source", "ours", "error", "
 
 @dataclass(frozen=True)
 class Check:
-    """A quantity computed by the project beside its reference value.
+    """A quantity computed by the project and its reference value.
 
-    case: name of the reference case, such as "R3"; unit: of reference and ours, "1" for a pure
-    number; source: where the reference comes from; scale: what the difference is divided by to give
-    the error, in the same unit (default: the reference itself; 1.0 makes the error absolute);
+    case: name of the reference case, such as "R3".
+    unit: of reference and ours, "1" for a pure number.
+    source: of the reference.
     tolerance: the largest error that passes.
+    scale: divides the difference to give the error, in the same unit; the reference where it is not
+    given. A scale of 1.0 makes the error absolute.
     """
 
     case: str

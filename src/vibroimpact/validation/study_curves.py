@@ -1,4 +1,4 @@
-"""What the claims read: the default study's results against load, at one gap, as plain arrays."""
+"""Results of the default study against load, at one gap, as plain arrays."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,15 +14,20 @@ STIFFNESS = ("lscf", "ods", "broadband")
 
 @dataclass(frozen=True)
 class StudyCurves:
-    """Results at one gap. gap_m; load (load,) N RMS; NaN where a method resolves nothing.
+    """Results at one gap; NaN where a method resolves nothing.
 
-    pole_frequency, pole_damping {method: (load, seed)} Hz, fraction; stiffness, support_damping
-    {method: (load, seed)} N/m, N s/m; frequency (frequency,) Hz and psd {sensor: (load, seed,
-    frequency)} displacement m²/Hz; shape (load, seed, line_point) complex, the operational
-    deflection shape at arc_length (line_point,) m; singular (load, seed, value); contact (load,)
-    mean fraction of time; band_width_Hz of the drive, whose PSD is flat; top_frequency {gap m: Hz}
-    of the lscf pole at the largest load; collapse: rows of consistency_collapse.csv; summary: rows
-    of consistency_summary.csv.
+    gap_m: m. load (load,): N RMS.
+    pole_frequency, pole_damping: {method: (load, seed)}, Hz and damping ratio.
+    stiffness, support_damping: {method: (load, seed)}, N/m and N s/m.
+    frequency (frequency,): Hz.
+    psd: {sensor: (load, seed, frequency)}, displacement, m²/Hz.
+    shape (load, seed, line_point): complex operational deflection shape.
+    arc_length (line_point,): m.
+    singular (load, seed, value): singular values of the response.
+    contact (load,): mean fraction of time in contact.
+    band_width_Hz: of the drive, whose PSD is flat.
+    top_frequency: {gap m: Hz} of the lscf pole at the largest load.
+    collapse, summary: rows of consistency_collapse.csv and consistency_summary.csv.
     """
 
     gap_m: float
@@ -44,13 +49,18 @@ class StudyCurves:
 
     @property
     def touching(self):
-        """Return (load,) True where the tube touches its supports at all."""
+        """Return (load,) whether the tube touches its supports at all."""
         return self.contact > 0.0
 
 
 def read_curves(config, model, results: Path, gap: float) -> StudyCurves:
-    """Return the StudyCurves at one gap in m of a finished study (config, its ModalModel, the
-    folder of its results). Raises RecordError.
+    """Return the StudyCurves at one gap of a finished study.
+
+    config, model: of the study, with model its ModalModel.
+    results: folder of its results.
+    gap: m.
+
+    Raises RecordError.
     """
     loads, seeds = load_values(config.grid), range(config.grid.seeds)
     every = read_table(results / "consistency.csv")
@@ -126,8 +136,9 @@ def _table(rows, loads, seeds, method, column):
 
 
 def median(values):
-    """Return (load,) medians over seeds of (load, seed), NaN where fewer than half the seeds have a
-    value.
+    """Return (load,) medians over seeds of values (load, seed).
+
+    NaN where fewer than half of the seeds have a value.
     """
     values = np.asarray(values, dtype=float)
     enough = 2 * np.isfinite(values).sum(axis=1) >= values.shape[1]
@@ -137,8 +148,9 @@ def median(values):
 
 
 def standard_error(values):
-    """Return (load,) standard errors of the mean over seeds of (load, seed), NaN where there are
-    fewer than two.
+    """Return (load,) standard errors of the mean over seeds of values (load, seed).
+
+    NaN where fewer than two seeds have a value.
     """
     values = np.asarray(values, dtype=float)
     count = np.isfinite(values).sum(axis=1)

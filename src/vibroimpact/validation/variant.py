@@ -4,11 +4,12 @@ from vibroimpact.config.reading import check_config
 
 
 def changed(config, values):
-    """Return the checked Config with the dotted keys of `values` changed: changed(config,
-    {"record.duration_s": 24.0}).
+    """Return the checked Config with the dotted keys of `values` changed.
 
-    "supports.points" changes the key in every support. Raises ConfigError as check_config does,
-    KeyError for a section that is not there.
+    values: {key: value}, such as {"record.duration_s": 24.0}. "supports.points" changes the key in
+    every support.
+
+    Raises ConfigError as check_config does, KeyError for a section that does not exist.
     """
     data = config.model_dump(mode="json")
     for key, value in values.items():

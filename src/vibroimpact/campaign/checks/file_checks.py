@@ -1,21 +1,30 @@
-"""The validator of campaigns: every check a row {check, level, record, channel, message}, the
-message a sentence.
+"""All checks of a campaign file: rows {check, level, record, channel, message}.
 
-level: pass; warn, a signal or a record is left out or to be read with care; refuse, no verdict is
-possible. record and channel are names, None where a row speaks of all. A file is refused only where
-what remains holds no measured force, no response or no two levels.
+level is "pass"; "warn", where a signal or record is left out or to be read with care; or "refuse",
+where no verdict is possible. record and channel are names, None where a row is about all of them.
+A file is refused only where what remains holds no measured force, no response, or no two levels.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from pathlib import Path
 
-from vibroimpact.campaign.file import CampaignError, contract_problems, decoded, filled
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.file import CampaignError, contract_problems, decode_texts, fill_missing
 from vibroimpact.campaign.signals import campaign_signals, transfer, transfer_band
 from vibroimpact.records import RecordError, read_dataset
 
-from .linear_record import NO_CAUSE, alignment, delays, mean_coherence, reversed_hint, swap_hints
-from .signal_faults import clipped, drifting, dropped_out, level_trend, missing
+from .linear_record import (
+    NO_CAUSE,
+    alignment,
+    channel_delays,
+    mean_coherence,
+    reversed_hint,
+    swap_hints,
+)
+from .signal_faults import clipped_share, drop_out, is_drifting, level_trend, missing_samples
 
 COLUMNS = ("check", "level", "record", "channel", "message")
 CHECKS = (
@@ -34,41 +43,39 @@ CHECKS = (
     "record length",
     "content",
 )
-LEAVING_OUT = (
-    "units",
-    "gaps in time",
-    "clipping",
-    "drop-outs",
-)  # a warning of these leaves its signal out of every comparison
+# A warning of these excludes its signal from every comparison.
+EXCLUDING_CHECKS = ("units", "gaps in time", "clipping", "drop-outs")
 LOAD_TOLERANCE, LEVELS_APART = 0.01, 1.05
 BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
 
 
-def check_file(path):
-    """Return (campaign Dataset or None, rows) of a campaign file of any state; a file that can not
-    be read is one refusing row.
+def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
+    """Return (campaign Dataset or None, rows of all checks) of a campaign file of any state.
+
+    A file that can not be read gives a single row, which refuses it.
     """
     try:
-        campaign = decoded(read_dataset(path))
+        campaign = decode_texts(read_dataset(path))
     except (RecordError, ValueError) as error:
         return None, [_row("contract", "refuse", f"The file can not be read: {error}.")]
     rows = check_campaign(campaign)
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
-    return filled(campaign), rows
+    return fill_missing(campaign), rows
 
 
-def check_campaign(campaign):
-    """Return the rows of all checks of a campaign Dataset, in the order of CHECKS; a check without
-    complaint is one passing row.
+def check_campaign(campaign: xr.Dataset) -> list[dict]:
+    """Return the rows of all checks of a campaign Dataset, in the order of CHECKS.
+
+    A check without complaint gives one row of level "pass".
     """
-    campaign = decoded(campaign)
+    campaign = decode_texts(campaign)
     problems = [*contract_problems(campaign)]
     if problems:
         return [_row("contract", "refuse", f"The file {problem}.") for problem in problems]
     try:
-        campaign = filled(campaign)
+        campaign = fill_missing(campaign)
     except CampaignError as error:  # the load can not be computed from a force of unknown unit
         return [_row("units", "refuse", f"The {error}.")]
     measured = campaign_signals(campaign)
@@ -111,14 +118,16 @@ PASSED = {
 }
 
 
-def refused(rows):
-    """Whether the rows of a campaign refuse it."""
+def refused(rows: list[dict]) -> bool:
+    """Whether a row refuses the campaign."""
     return any(row["level"] == "refuse" for row in rows)
 
 
-def usable_signals(campaign, rows):
-    """Return (force (record,), response (record, channel)): whether the warnings leave the first
-    force and each response usable.
+def usable_signals(campaign: xr.Dataset, rows: list[dict]) -> tuple[np.ndarray, np.ndarray]:
+    """Return (force (record,), response (record, channel)), whether each can be used.
+
+    rows: of check_campaign; warnings of EXCLUDING_CHECKS exclude a signal. force is the first
+    force channel.
     """
     names = {
         key: [str(name) for name in campaign[key].values]
@@ -127,7 +136,7 @@ def usable_signals(campaign, rows):
     force = np.ones(len(names["record_name"]), bool)
     response = np.ones((force.size, len(names["channel_name"])), bool)
     for row in rows:
-        if row["check"] not in LEAVING_OUT or row["level"] == "pass" or row["channel"] is None:
+        if row["check"] not in EXCLUDING_CHECKS or row["level"] == "pass" or row["channel"] is None:
             continue
         which = slice(None) if row["record"] is None else names["record_name"].index(row["record"])
         if row["channel"] in names["channel_name"]:
@@ -194,7 +203,7 @@ def _time(campaign, measured):
 
 
 def _signal_faults(measured):
-    """Yield rows of what single signals suffer from, record by record."""
+    """Yield rows of faults of single signals, record by record."""
     for record, name in enumerate(measured.records):
         forces = [
             (measured.forces[index], signal) for index, signal in enumerate(measured.force[record])
@@ -209,7 +218,7 @@ def _signal_faults(measured):
 
 
 def _faults_of(signal, measured, record, channel, what):
-    holes = missing(signal)
+    holes = missing_samples(signal)
     if signal.size == 0 or holes:
         count, first = holes or (0, 0)
         message = (
@@ -230,8 +239,8 @@ def _faults_of(signal, measured, record, channel, what):
             channel,
         )
         return
-    # Of a periodic signal the last period: every peak comes back in all of them.
-    share = clipped(
+    # Only the last period of a periodic signal: every peak recurs in each period.
+    share = clipped_share(
         signal[-measured.period_samples :] if 0 < measured.period_samples < signal.size else signal
     )
     if share is not None:
@@ -244,7 +253,7 @@ def _faults_of(signal, measured, record, channel, what):
             record,
             channel,
         )
-    lost = dropped_out(signal, measured.rate, measured.starts_at_rest)
+    lost = drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
         yield _row(
             "drop-outs",
@@ -282,9 +291,7 @@ def _lowest_spectra(measured):
 
 
 def _linear(measured, spectra, record):
-    """Yield rows of what the lowest level tells: coherence, delays, hints of swapped or reversed
-    channels.
-    """
+    """Yield rows of the lowest level: coherence, delays, hints of swapped or reversed channels."""
     if spectra is None:
         yield _row(
             "coherence",
@@ -314,7 +321,7 @@ def _linear(measured, spectra, record):
             " well.",
             name,
         )
-    apart, common = delays(spectra, measured.kinds, measured.rate, finite)
+    apart, common = channel_delays(spectra, measured.kinds, measured.rate, finite)
     for index, samples in apart.items():
         yield _row(
             "delay",
@@ -410,7 +417,7 @@ def _stationarity(measured, usable):
             trend = (
                 level_trend(signal, measured.rate, band, measured.starts_at_rest) if kept else None
             )
-            if drifting(trend):
+            if is_drifting(trend):
                 yield _row(
                     "stationarity",
                     "warn",
@@ -449,7 +456,7 @@ def _length(measured):
 
 
 def _content(measured, usable):
-    """Yield rows of what any verdict needs, on what the other checks have left."""
+    """Yield rows of what a verdict needs at least, after the other checks have excluded signals."""
     force, response = usable
     whole = force & response.any(axis=1)
     if not force.any() or measured.force_unit_faults.get(0):

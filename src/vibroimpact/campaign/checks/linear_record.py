@@ -1,44 +1,53 @@
-"""Checks that a linear record allows without a model: coherence, delays between channels, hints of
-swapped or reversed channels.
+"""Checks of a linear record without a model: coherence, delays, swapped and reversed channels.
 
-A structure of real modes moves in phase or in opposite phase with the force away from its
-resonances, so that twice the phase of the response per force is zero on most lines; a delay turns
-it in proportion to frequency, in its own channel alone.
+A structure with real modes moves in phase or in opposite phase with the force away from its
+resonances. Twice the phase of the response per force is then zero on most lines. A delay adds a
+phase in proportion to frequency, in its own channel alone.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from vibroimpact.campaign.file import NEAR_M
+from vibroimpact.campaign.file import SAME_POINT_M
+from vibroimpact.campaign.signals import CampaignSignals, Transfer
 
 ALIGNED, ACROSS = 0.7, 0.3  # |cosine| with the force
 COHERENT, INCOHERENT, NO_CAUSE = 0.8, 0.35, 0.1
 LONGEST_DELAY_SAMPLES, DELAY_STEP = 40.0, 0.05
-# least agreement of twice the phase after the delay is taken out: below, modes are not real or
-# nothing is linear
+# Least score of a channel after its delay is removed. Below it the modes are not real, or the
+# response is not linear.
 REAL_ENOUGH = 0.6
-SEEN_RAD = 0.15  # phase of a delay at the highest line below which it is not told
-SEEN_SAMPLES = 0.3
+SEEN_RAD, SEEN_SAMPLES = 0.15, 0.3  # least reported delay: its phase at the highest line; samples
 OUTSHINES = 10.0  # power of a channel across the force over one along it that makes a swap likely
 SAME_SIGN = 0.7
 
 
-def mean_coherence(spectra):
-    """Return (channel,) the mean coherence over the lines, less what averages alone give to
-    unrelated signals.
+def mean_coherence(spectra: Transfer) -> np.ndarray:
+    """Return (channel,) the mean coherence over the lines, less its bias.
+
+    The bias is the coherence that the finite number of averages gives to unrelated signals.
     """
     bias = 1.0 / spectra.averages
     return np.clip((spectra.coherence.mean(axis=-1) - bias) / (1.0 - bias), 0.0, 1.0)
 
 
-def delays(spectra, kinds, rate, finite):
-    """Return ({channel: samples} by which channels lag the others, samples by which all lag the
-    force or None).
+def channel_delays(
+    spectra: Transfer, kinds: Sequence[str], rate: float, finite: np.ndarray
+) -> tuple[dict[int, float], float | None]:
+    """Return ({channel: lag in samples}, common lag in samples or None).
 
-    The lag tau of a channel makes sum coherence * Re((h/|h|)² exp(2i omega tau)) largest, 1 for
-    real modes without noise; a velocity is turned by a quarter first. It is told where it explains
-    half of what is missing to 1, and where its phase can be seen. finite (channel,): judged.
+    kinds (channel,): texts.
+    rate: Hz.
+    finite (channel,): whether a channel is judged.
+
+    The lags of the channels are relative to the others; the common lag is that of all channels
+    behind the force. The lag tau of a channel maximises sum coherence * Re((h/|h|)² exp(2i omega
+    tau)), which is 1 for real modes without noise; a velocity is first turned by a quarter period.
+    A lag is reported where it explains half of what is missing to 1, and where its phase is large
+    enough to be seen.
     """
     unit = spectra.h1 / np.maximum(np.abs(spectra.h1), np.finfo(float).tiny)
     squared = unit**2 * np.where(np.array(kinds) == "velocity", -1.0, 1.0)[:, None]
@@ -68,67 +77,68 @@ def delays(spectra, kinds, rate, finite):
     )
 
 
-def _explains(without, with_it):
-    """Whether a lag raises the score by half of what is missing to 1."""
+def _explains(without: float, with_it: float) -> bool:
+    """Whether a lag raises the score by more than half of what is missing to 1."""
     return with_it - without > 0.5 * (1.0 - with_it)
 
 
-def alignment(measured):
-    """Return (channel,) |cosine| between each channel's direction and that of force channel 0; NaN
-    for a direction of zeros.
+def alignment(signals: CampaignSignals) -> np.ndarray:
+    """Return (channel,) |cosine| between the direction of a channel and that of force channel 0.
+
+    NaN where either direction is zero.
     """
-    force = measured.force_directions[0]
-    lengths = np.linalg.norm(measured.directions, axis=1) * np.linalg.norm(force)
-    return np.abs(measured.directions @ force) / np.where(lengths > 0.0, lengths, np.nan)
+    force = signals.force_directions[0]
+    lengths = np.linalg.norm(signals.directions, axis=1) * np.linalg.norm(force)
+    return np.abs(signals.directions @ force) / np.where(lengths > 0.0, lengths, np.nan)
 
 
-def swap_hints(measured, spectra):
-    """Return (channel along the force, channel across it or None) pairs whose names seem swapped,
-    from coherence and power.
+def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, int | None]]:
+    """Return pairs (channel along the force, channel across it or None) whose names seem swapped.
 
-    Where most channels along the force follow it, one that does not, beside or while one across it
-    does, looks like the other one.
+    A channel along the force is suspect where it is incoherent although most others along the force
+    are coherent. Its partner is a coherent channel across the force, the one at the same point if
+    there is one.
     """
-    coherence, along = mean_coherence(spectra), alignment(measured)
+    coherence, along = mean_coherence(spectra), alignment(signals)
     following = (along > ALIGNED) & (coherence > COHERENT)
     silent = np.flatnonzero((along > ALIGNED) & (coherence < INCOHERENT))
     loud = np.flatnonzero((along < ACROSS) & (coherence > COHERENT))
     if following.sum() < max(2, silent.size):
         return []
-    hints = []
+    hints: list[tuple[int, int | None]] = []
     for index in silent:
         rivals = [
             other
             for other in loud
-            if measured.kinds[other] == measured.kinds[index]
+            if signals.kinds[other] == signals.kinds[index]
             and spectra.power[other] > OUTSHINES * spectra.power[index]
         ]
         beside = [
             other
             for other in rivals
-            if np.linalg.norm(measured.points[other] - measured.points[index]) < NEAR_M
+            if np.linalg.norm(signals.points[other] - signals.points[index]) < SAME_POINT_M
         ]
-        partner = (beside or rivals or [None])[0]
-        hints.append((int(index), None if partner is None else int(partner)))
+        partners = beside or rivals
+        hints.append((int(index), int(partners[0]) if partners else None))
     return hints
 
 
-def reversed_hint(measured, spectra):
+def reversed_hint(signals: CampaignSignals, spectra: Transfer) -> int | None:
     """Return the channel that moves against all others below the first resonance, or None.
 
-    Only told of four or more channels along the force, displacements and accelerations, all
-    coherent, all others in phase with one another.
+    It is reported only of four or more displacement and acceleration channels along the force, when
+    all are coherent and all others are in phase with one another.
     """
     signs = np.array(
-        [{"acceleration": -1.0, "displacement": 1.0}.get(kind, np.nan) for kind in measured.kinds]
+        [{"acceleration": -1.0, "displacement": 1.0}.get(kind, np.nan) for kind in signals.kinds]
     )
-    force = measured.force_directions[0]
-    along = measured.directions @ force / max(np.linalg.norm(force), 1e-12)
+    force = signals.force_directions[0]
+    along = signals.directions @ force / max(np.linalg.norm(force), 1e-12)
     usable = np.flatnonzero((np.abs(along) > ALIGNED) & np.isfinite(signs))
     if usable.size < 4 or mean_coherence(spectra)[usable].min() < COHERENT:
         return None
-    # Up to just past the first clear peak of the summed receptance all moves as the first mode
-    # does.
+    # Up to just past the first clear peak of the summed receptance, all channels move as the first
+    # mode does.
     omega = 2.0 * np.pi * spectra.frequency
     to_displacement = (
         np.where(signs[usable] < 0.0, 1.0, 0.0)[:, None] * (1.0 / omega**2 - 1.0) + 1.0

@@ -1,6 +1,4 @@
-"""Faults of single signals of a record: numbers that are missing, clipped tops, drop-outs, drifting
-levels.
-"""
+"""Faults of a single signal: missing samples, clipping, drop-outs, drifting levels."""
 
 from __future__ import annotations
 
@@ -8,71 +6,61 @@ import numpy as np
 
 TOP_SHARES = (0.01, 0.02, 0.04)  # widths of the bins at the extreme, as shares of it
 FEWEST_AT_TOP = 8  # samples in the outermost bin
-PILE_UP = (
-    8.0  # times as many samples as in the bin beneath: 3 for a sine, below 1 for random vibration
-)
-SAME_VALUE, NEIGHBOURS = (
-    3,
-    20,
-)  # times that the extreme value is met, for each time that one of the next values is
-DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a value that is held for longer than both
-QUIET_S, QUIET_SHARE = (
-    0.1,
-    0.01,
-)  # a stretch whose RMS and whose differences' RMS fall to this share of the median
-LIVELY_SHARE = 0.1  # of the median RMS, just before a drop-out
+# Samples in the outermost bin over those in the next one: 3 for a sine, below 1 for random
+# vibration, more than this for a clipped signal.
+PILE_UP = 8.0
+# The extreme value occurs SAME_VALUE times as often as any of its NEIGHBOURS next values.
+SAME_VALUE, NEIGHBOURS = 3, 20
+DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a constant value for longer than both is a drop-out
+# So is a stretch of QUIET_S in which the RMS of the signal and of its differences falls to
+# QUIET_SHARE of the median.
+QUIET_S, QUIET_SHARE = 0.1, 0.01
+LIVELY_SHARE = 0.1  # least RMS just before a drop-out, over the median RMS
 TREND_SEGMENT_S, TREND_SEGMENTS, TREND_BANDS = 2.0, 8, 6
-TREND_T, TREND_DB = (
-    5.0,
-    1.5,
-)  # 3.2 is the largest |t| of the 140 signals of the development campaigns
-START_UP_SHARE = 0.1  # of the record, 5 s at most, that a start from rest takes
-START_UP_S = 5.0
+TREND_T, TREND_DB = 5.0, 1.5  # least |t| and change; |t| of 140 stationary signals is below 3.2
+START_UP_SHARE, START_UP_S = 0.1, 5.0  # start from rest: share of the record, at most so many s
 
 
-def missing(signal):
-    """Return (number of samples that are no number, index of the first) of a signal (time,), or
-    None.
+def missing_samples(signal: np.ndarray) -> tuple[int, int] | None:
+    """Return (number of samples that are not finite, index of the first) of a signal (time,).
+
+    None where all are finite.
     """
     holes = np.flatnonzero(~np.isfinite(signal))
     return (holes.size, int(holes[0])) if holes.size else None
 
 
-def clipped(signal):
-    """Return the share of samples (0 to 1) at a flat top of a signal (time,) without holes, or None
-    where the tops are round.
+def clipped_share(signal: np.ndarray) -> float | None:
+    """Return the share of samples (0 to 1) at a flat top of a signal (time,), or None.
 
-    Flat: the same extreme value three times, when the values next to it are hardly repeated; or far
-    more samples within 1, 2 or 4 % of it than in the next 1, 2 or 4 %.
+    A top is flat where the extreme value occurs three times although the values next to it are
+    hardly repeated, or where far more samples lie within 1, 2 or 4 % of the extreme than in the
+    next 1, 2 or 4 %. The signal has no missing samples.
     """
-    found = 0
+    flat = 0
     for side in (signal - np.median(signal), np.median(signal) - signal):
-        top = side.max()
+        top = float(side.max())
         if top <= 0.0:
             continue
         near = side[side > (1.0 - 2.0 * TOP_SHARES[-1]) * top]
-        counts = [
-            (
-                np.count_nonzero(near > (1.0 - share) * top),
-                np.count_nonzero(near > (1.0 - 2.0 * share) * top),
-            )
-            for share in TOP_SHARES
-        ]
-        piles = [
-            inner
-            for inner, both in counts
-            if inner >= FEWEST_AT_TOP and inner > PILE_UP * max(both - inner, 1)
-        ]
-        same = _repeated_top(near, top)
-        if piles or same:
-            found += max([*piles, same])
-    return found / signal.size if found else None
+        most = _repeated_top(near, top)
+        for share in TOP_SHARES:
+            inner = int(np.count_nonzero(near > (1.0 - share) * top))
+            both = int(np.count_nonzero(near > (1.0 - 2.0 * share) * top))
+            if inner >= FEWEST_AT_TOP and inner > PILE_UP * max(both - inner, 1):
+                most = max(most, inner)
+        flat += most
+    return flat / signal.size if flat else None
 
 
-def _repeated_top(near, top):
-    """Return how often the extreme value of a side (its samples near the top) is repeated, 0 where
-    that may be the converter's step or the round top of a slow wave, which holds ten times as many
-    samples within 1e-5 as within 1e-7.
+def _repeated_top(near: np.ndarray, top: float) -> int:
+    """Return how often the extreme value of one side of a signal is repeated; 0 without clipping.
+
+    near: samples near the top.
+    top: the extreme value.
+
+    Repetition may also be due to the resolution of the converter, or to the round top of a slow
+    wave, which holds ten times as many samples within 1e-5 of the extreme as within 1e-7.
     """
     values, counts = np.unique(near, return_counts=True)
     same = np.count_nonzero(near >= top * (1.0 - 1e-7))
@@ -81,20 +69,22 @@ def _repeated_top(near, top):
     return int(same) if flat and same >= SAME_VALUE * max(int(beneath.max(initial=0)), 1) else 0
 
 
-def _longest(flags):
+def _longest(flags: np.ndarray) -> int:
     """Return the length of the longest run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
     return int(np.max(edges[1::2] - edges[::2], initial=0))
 
 
-def dropped_out(signal, rate, starts_at_rest):
-    """Return (start, duration) in s of the longest drop-out of a signal (time,) without holes, or
-    None.
+def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[float, float] | None:
+    """Return (start, duration) in s of the longest drop-out of a signal (time,), or None.
 
-    A drop-out is a value that is held, or a stretch in which motion and its differences nearly
-    vanish. A record from rest may begin with one.
+    rate: Hz.
+    starts_at_rest: the record may begin with a constant value.
+
+    A drop-out is a stretch of one constant value, or one in which the motion and its differences
+    nearly vanish. The signal has no missing samples.
     """
-    starts, lengths = _held_runs(signal)
+    starts, lengths = _constant_runs(signal)
     counted = ~((starts == 0) & starts_at_rest)
     if counted.any():
         longest = int(np.argmax(np.where(counted, lengths, 0)))
@@ -110,7 +100,7 @@ def dropped_out(signal, rate, starts_at_rest):
     quiet = (moving < QUIET_SHARE * np.median(moving)) & (
         changing < QUIET_SHARE * np.median(changing)
     )
-    # It sets in at once: motion that has not begun, or dies away, is none.
+    # A drop-out begins abruptly: motion that has not begun, or that decays, is not one.
     lively = moving > LIVELY_SHARE * np.median(moving)
     for first in _firsts(quiet):
         if not lively[max(first - 2, 0) : first].any():
@@ -120,12 +110,12 @@ def dropped_out(signal, rate, starts_at_rest):
     return int(np.argmax(quiet)) * size / rate, _longest(quiet) * size / rate
 
 
-def _firsts(flags):
+def _firsts(flags: np.ndarray) -> np.ndarray:
     """Return the indices at which runs of True begin."""
     return np.flatnonzero(np.diff(flags.astype(int), prepend=0) == 1)
 
 
-def _held_runs(signal):
+def _constant_runs(signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (starts, lengths) in samples of all runs of two and more equal values."""
     edges = np.flatnonzero(
         np.diff(np.concatenate([[0], (np.diff(signal) == 0.0).astype(np.int8), [0]]))
@@ -133,20 +123,28 @@ def _held_runs(signal):
     return edges[::2], edges[1::2] - edges[::2] + 1
 
 
-def _usual(lengths, longest):
-    """Whether runs of equal values are usual: the longest one then is no drop-out but the
-    converter's step.
+def _usual(lengths: np.ndarray, longest: int) -> bool:
+    """Whether runs of equal values are usual in the signal.
+
+    The longest one then is due to the resolution of the converter, not a drop-out.
     """
     others = np.sort(np.delete(lengths, longest))
     return others.size > 10 and lengths[longest] < 5 * others[int(0.99 * others.size)]
 
 
-def level_trend(signal, rate, band_Hz, starts_at_rest):
-    """Return (change in dB over the record, its t statistic) of the mean band level of a signal
-    (time,), or None if too short.
+def level_trend(
+    signal: np.ndarray, rate: float, band_Hz: tuple[float, float], starts_at_rest: bool
+) -> tuple[float, float] | None:
+    """Return (change in dB over the record, its t statistic) of the level of a signal, or None.
 
-    The levels of 6 bands over band_Hz in segments of 2 s, averaged in dB; a straight line through
-    them, its error widened for the correlation of neighbours.
+    signal (time,).
+    rate: Hz.
+    band_Hz: lowest and highest frequency.
+    starts_at_rest: the start-up is left out.
+
+    The level is the mean in dB over 6 bands within band_Hz, in segments of 2 s. A straight line is
+    fitted; its standard error allows for the correlation of neighbouring segments. None where the
+    record is too short.
     """
     begin = int(min(START_UP_SHARE * signal.size, START_UP_S * rate)) if starts_at_rest else 0
     kept = signal[begin:]
@@ -184,6 +182,6 @@ def level_trend(signal, rate, band_Hz, starts_at_rest):
     return float(change), float(change / max(error, 1e-300))
 
 
-def drifting(trend):
-    """Whether a level_trend is more than chance and matters."""
+def is_drifting(trend: tuple[float, float] | None) -> bool:
+    """Whether the change of a level_trend is significant and large enough to matter."""
     return trend is not None and abs(trend[1]) > TREND_T and abs(trend[0]) > TREND_DB

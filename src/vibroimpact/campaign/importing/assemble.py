@@ -1,5 +1,6 @@
-"""A folder of measurements into a campaign: signals found, units and directions settled, records
-put side by side.
+"""A folder of measurements as a campaign.
+
+The signals are found, their units and directions resolved, and the records aligned.
 """
 
 from __future__ import annotations
@@ -8,11 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.units import UnitError, si_factor, si_unit
 
-from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar, draft, read_sidecar
+from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar, draft_sidecar, read_sidecar
 from .signals import ImportProblem
 from .tables import read_csv, read_matlab, read_netcdf
 from .uff import read_uff
@@ -29,9 +31,13 @@ READERS = {
 
 
 @dataclass(frozen=True)
-class Settled:
-    """A sensor with nothing left open: Channel, its unit's origin, and the Signal of each
-    record.
+class ResolvedSensor:
+    """A sensor whose place, direction, kind and unit are known.
+
+    channel: Channel.
+    unit_from: where its unit stands.
+    signals: its Signal in each record.
+    role: "force" or "response".
     """
 
     channel: Channel
@@ -40,11 +46,11 @@ class Settled:
     role: str
 
 
-def import_folder(folder):
+def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:
     """Return (campaign Dataset, rows) of a folder with or without campaign.yaml.
 
-    rows: what was found, one per record and sensor: {record, sensor, role, kind, file, variable,
-    unit_read, unit_from, unit_SI, factor, sampling_Hz, samples, duration_s, rms_SI, peak_SI, note}.
+    Each row is a sensor in a record: {record, sensor, role, kind, file, variable, unit_read,
+    unit_from, unit_SI, factor, sampling_Hz, samples, duration_s, rms_SI, peak_SI, note}.
     Raises ImportProblem with every problem and its remedy.
     """
     folder = Path(folder)
@@ -53,22 +59,20 @@ def import_folder(folder):
             f"{folder}: no such folder: give the folder that holds the measurements, --config"
             " import=FOLDER"
         )
-    described = read_sidecar(folder / NAME) if (folder / NAME).is_file() else None
-    found = _read_files(
-        folder,
-        (
-            {name for record in described.records for name in record.all_files()}
-            if described
-            else None
-        ),
-    )
-    sidecar = described or _told_by_files(folder, found)
-    problems = []
-    asked = [("force", sensor) for sensor in sidecar.forces] + [
-        ("response", sensor) for sensor in sidecar.channels
+    if (folder / NAME).is_file():
+        sidecar = read_sidecar(folder / NAME)
+        wanted = {name for record in sidecar.records for name in record.all_files()}
+        found = _read_files(folder, wanted)
+    else:
+        found = _read_files(folder, None)
+        sidecar = _sidecar_from_files(folder, found)
+    problems: list[str] = []
+    resolved = [
+        _resolve_sensor(sensor, role, sidecar, folder, found, problems)
+        for role, group in (("force", sidecar.forces), ("response", sidecar.channels))
+        for sensor in group
     ]
-    sensors = [_settled(sensor, role, sidecar, folder, found, problems) for role, sensor in asked]
-    sensors = [sensor for sensor in sensors if sensor is not None]
+    sensors = [sensor for sensor in resolved if sensor is not None]
     rate = _one_rate(sidecar, sensors, problems)
     voltage = _voltage(sidecar, folder, found, problems)
     if problems:
@@ -77,8 +81,9 @@ def import_folder(folder):
 
 
 def _read_files(folder, wanted):
-    """Return {file name: [Signal]} of the wanted measurements in the folder, of all where wanted is
-    None.
+    """Return {file name: [Signal]} of the measurements in the folder.
+
+    wanted: names of the files to read; None for all.
     """
     files = sorted(
         file
@@ -107,9 +112,10 @@ def _read_files(folder, wanted):
     return found
 
 
-def _told_by_files(folder, found):
-    """Return the Sidecar that universal files tell by themselves: a record per file. Raises
-    ImportProblem, with a draft, for others.
+def _sidecar_from_files(folder, found):
+    """Return the Sidecar that universal files define by themselves: one record per file.
+
+    Raises ImportProblem, with a draft of campaign.yaml, for other files.
     """
     signals = [signal for group in found.values() for signal in group]
     first = next(iter(found.values()))
@@ -121,7 +127,7 @@ def _told_by_files(folder, found):
         missing = "force (ordinate type 13)" if not forces else "response"
         raise ImportProblem(
             f"{folder}: there is no {NAME} and the files do not say which signal is the {missing}:"
-            f" put a {NAME} into the folder, such as\n\n{draft(folder, signals)}"
+            f" put a {NAME} into the folder, such as\n\n{draft_sidecar(folder, signals)}"
         )
     return Sidecar(
         source=folder.name,
@@ -131,15 +137,16 @@ def _told_by_files(folder, found):
     )
 
 
-def _settled(sensor, role, sidecar, folder, found, problems):
-    """Return the Settled sensor, or None after adding to problems."""
+def _resolve_sensor(sensor, role, sidecar, folder, found, problems):
+    """Return the ResolvedSensor, or None after adding to problems."""
     signals = [
         _signal_of(sensor.name, sensor.variable or sensor.name, record, folder, found, problems)
         for record in sidecar.records
     ]
     if any(signal is None for signal in signals):
         return None
-    first, place = signals[0], f"{folder / NAME}, {sensor.name}"
+    first = signals[0]
+    place = f"{folder / NAME}, {sensor.name}"
     kind = sensor.kind or first.kind or ("generic" if role == "force" else "")
     if not kind:
         problems.append(
@@ -153,7 +160,7 @@ def _settled(sensor, role, sidecar, folder, found, problems):
     if direction is None:
         problems.append(
             f"{place}: its direction is not known: add direction: +x, -y, ... or [x, y, z], the"
-            " sense in which it counts positive"
+            " positive sense"
         )
     units = {sensor.unit or signal.unit for signal in signals}
     unit = sensor.unit or first.unit
@@ -173,22 +180,15 @@ def _settled(sensor, role, sidecar, folder, found, problems):
         return None
     if not kind or point is None or direction is None:
         return None
-    unit_from = (
-        (
-            f"{NAME}; {first.unit_from} says {first.unit}"
-            if first.unit and first.unit != unit
-            else NAME
-        )
-        if sensor.unit
-        else first.unit_from
-    )
-    return Settled(
-        Channel(sensor.name, tuple(point), tuple(direction), unit, kind), unit_from, signals, role
-    )
+    unit_from = NAME if sensor.unit else first.unit_from
+    if sensor.unit and first.unit and first.unit != unit:
+        unit_from = f"{NAME}; {first.unit_from} says {first.unit}"
+    channel = Channel(sensor.name, tuple(point), tuple(direction), unit, kind)
+    return ResolvedSensor(channel, unit_from, signals, role)
 
 
 def _unit_vector(direction, place, problems):
-    """Return (3,) a direction of the sidecar as a unit vector, None where it gives none."""
+    """Return (3,) a direction of the sidecar as a unit vector, None where none is given."""
     if direction is None:
         return None
     vector = np.array(DIRECTIONS[direction] if isinstance(direction, str) else direction, float)
@@ -200,9 +200,7 @@ def _unit_vector(direction, place, problems):
 
 
 def _signal_of(sensor, variable, record, folder, found, problems):
-    """Return the Signal of a sensor in a record, cut to from_s to to_s; None after adding to
-    problems.
-    """
+    """Return the Signal of a sensor in a record; None after adding to problems."""
     wanted = record.variables.get(sensor, variable)
     known = []
     for name in record.all_files():
@@ -235,8 +233,9 @@ def _cut(signal, record, rate):
 
 
 def _one_rate(sidecar, sensors, problems):
-    """Return the one sampling frequency in Hz of all signals; adds to problems where there is none
-    or several.
+    """Return the sampling frequency in Hz of all signals.
+
+    Adds to problems where there is none or more than one.
     """
     rates = {signal.rate: signal for sensor in sensors for signal in sensor.signals if signal.rate}
     given = sidecar.sampling_frequency_Hz
@@ -249,14 +248,14 @@ def _one_rate(sidecar, sensors, problems):
         ]
         return given
     if len(rates) > 1:
-        told = ", ".join(
+        listed = ", ".join(
             f"{rate:g} Hz ({Path(signal.file).name})" for rate, signal in sorted(rates.items())
         )
         problems.append(
-            f"{NAME}: the signals are sampled at {told}: resample them to one rate first"
+            f"{NAME}: the signals are sampled at {listed}: resample them to one rate first"
         )
     if not rates and sensors:
-        problems.append(f"{NAME}: no file says its sampling: add sampling_frequency_Hz")
+        problems.append(f"{NAME}: no file states its sampling frequency: add sampling_frequency_Hz")
     return next(iter(rates), 1.0)
 
 
@@ -273,16 +272,15 @@ def _voltage(sidecar, folder, found, problems):
         _signal_of("voltage", sidecar.voltage.variable, record, folder, found, problems)
         for record in sidecar.records
     ]
-    return (
-        None
-        if any(signal is None for signal in signals)
-        else [replace(signal, values=factor * signal.values) for signal in signals]
-    )
+    if any(signal is None for signal in signals):
+        return None
+    return [replace(signal, values=factor * signal.values) for signal in signals]
 
 
 def _campaign(sidecar, sensors, rate, voltage):
-    """Return the campaign Dataset of settled sensors; records of different lengths end with NaN,
-    and valid_samples says where.
+    """Return the campaign Dataset of the sensors.
+
+    Shorter records are padded with NaN, and valid_samples gives their lengths.
     """
     groups = {
         role: [sensor for sensor in sensors if sensor.role == role]
@@ -354,20 +352,14 @@ def _levels(sidecar, loads):
         gap = record.gap_m if record.gap_m is not None else np.nan
         key = (f"{load:.2g}", f"{gap:.4g}")
         name = record.name or Path(record.all_files()[0]).stem
-        levels.append(
-            Level(
-                name,
-                gap,
-                record.repeat if record.repeat is not None else keys.count(key),
-                record.split,
-            )
-        )
+        repeat = record.repeat if record.repeat is not None else keys.count(key)
+        levels.append(Level(name, gap, repeat, record.split))
         keys.append(key)
     return levels
 
 
 def _rows(sidecar, sensors, rate):
-    """Return the rows of what was found; see import_folder."""
+    """Return the rows of import_folder."""
     rows = []
     for index, record in enumerate(sidecar.records):
         for sensor in sensors:

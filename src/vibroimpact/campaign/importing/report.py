@@ -1,8 +1,11 @@
-"""What an import or a check found, as plain text."""
+"""The report of an import, and the checks of a campaign, as plain text."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+import xarray as xr
 
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_campaign
 from vibroimpact.records import write_table, write_text
@@ -14,16 +17,16 @@ SHOWN = {
     "file": "file",
     "variable": "signal",
     "unit_read": "unit read",
-    "unit_from": "which stands in",
+    "unit_from": "unit stated in",
     "unit_SI": "SI unit",
-    "factor": "times",
+    "factor": "factor to SI",
     "rms_SI": "RMS (SI)",
     "peak_SI": "peak (SI)",
 }
 SIGNS = {"pass": "ok    ", "warn": "WARN  ", "refuse": "REFUSE"}
 
 
-def write_report(folder, campaign, rows, paths):
+def write_report(folder: str | Path, campaign: xr.Dataset, rows: list[dict], paths: Any) -> None:
     """Check the campaign of a folder and write paths.table, paths.checks (CSV) and paths.text."""
     checks = check_campaign(campaign)
     write_table(rows, paths.table)
@@ -31,40 +34,42 @@ def write_report(folder, campaign, rows, paths):
     write_text(import_text(folder, campaign, rows, checks), paths.text)
 
 
-def import_text(folder, campaign, rows, checks):
-    """Return the report of an import: folder, rows of assemble.import_folder, checks of
-    campaign_checks.
+def import_text(
+    folder: str | Path, campaign: xr.Dataset, rows: list[dict], checks: list[dict]
+) -> str:
+    """Return the report of an import.
+
+    folder: of the measurements.
+    campaign: Dataset.
+    rows: of assemble.import_folder.
+    checks: rows of check_campaign.
     """
     loads, gaps = campaign["load_rms"].values, campaign["gap"].values
     lines = [
-        (
-            f"Imported from {Path(folder).name}: {campaign.sizes['record']} records at"
-            f" {campaign.attrs['sampling_frequency']:g} Hz."
-        ),
+        f"Imported from {Path(folder).name}: {campaign.sizes['record']} records at"
+        f" {campaign.attrs['sampling_frequency']:g} Hz.",
         "",
-        (
-            "Values are stored as they were read; every comparison is made in SI units, after"
-            " multiplication by the factor shown."
-        ),
+        "Values are stored as they were read. Every comparison is made in SI units, after"
+        " multiplication by the factor shown.",
         "",
     ]
     for record, name in enumerate(str(value) for value in campaign["record_name"].values):
-        own = [row for row in rows if row["record"] == name]
+        sensors = [row for row in rows if row["record"] == name]
         gap = f"gap {gaps[record] * 1e3:.4g} mm" if gaps[record] == gaps[record] else "no gap"
         lines += [
-            f"Record {name}: {own[0]['samples']} samples, {own[0]['duration_s']:.4g} s, load"
-            f" {loads[record]:.4g} {own[0]['unit_SI']} RMS, {gap},"
+            f"Record {name}: {sensors[0]['samples']} samples, {sensors[0]['duration_s']:.4g} s,"
+            f" load {loads[record]:.4g} {sensors[0]['unit_SI']} RMS, {gap},"
             f" {campaign['split'].values[record]}"
         ]
         lines += [
-            *_table(own),
-            *(f"  {row['sensor']}: {row['note']}" for row in own if row["note"]),
+            *_table(sensors),
+            *(f"  {row['sensor']}: {row['note']}" for row in sensors if row["note"]),
             "",
         ]
     return "\n".join([*lines, checks_text(checks)])
 
 
-def _table(rows):
+def _table(rows: list[dict]) -> list[str]:
     """Return the lines of a table of rows, columns aligned."""
     cells = [list(SHOWN.values())] + [
         [f"{row[key]:.4g}" if isinstance(row[key], float) else str(row[key]) for key in SHOWN]
@@ -78,28 +83,18 @@ def _table(rows):
     ]
 
 
-def checks_text(checks):
-    """Return the rows of campaign_checks as lines, what refuses first."""
+def checks_text(checks: list[dict]) -> str:
+    """Return the rows of check_campaign as lines, refusals first, then warnings."""
     order = {"refuse": 0, "warn": 1, "pass": 2}
     counts = {level: sum(row["level"] == level for row in checks) for level in order}
-    verdict = (
-        "can not be used"
-        if counts["refuse"]
-        else "can be used, with care"
-        if counts["warn"]
-        else "can be used"
-    )
+    usability = "can be used, with care" if counts["warn"] else "can be used"
+    if counts["refuse"]:
+        usability = "can not be used"
     lines = [
-        (
-            f"Checks: the campaign {verdict}; {counts['pass']} checks passed, {counts['warn']}"
-            f" warnings, {counts['refuse']} refusals."
-        ),
+        f"Checks: the campaign {usability}; {counts['pass']} checks passed, {counts['warn']}"
+        f" warnings, {counts['refuse']} refusals.",
         "",
     ]
-    ordered = sorted(checks, key=lambda row: order[row["level"]])
-    return (
-        "\n".join(
-            lines + [f"{SIGNS[row['level']]} {row['check']}: {row['message']}" for row in ordered]
-        )
-        + "\n"
-    )
+    for row in sorted(checks, key=lambda row: order[row["level"]]):
+        lines.append(f"{SIGNS[row['level']]} {row['check']}: {row['message']}")
+    return "\n".join(lines) + "\n"

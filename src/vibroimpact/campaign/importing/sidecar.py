@@ -1,45 +1,63 @@
-"""The sidecar campaign.yaml: which signals of which files are which channels and records, and what
-no file says.
+"""The sidecar campaign.yaml: which signals are the channels and records of a campaign.
+
+It also gives what the files do not state.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field, ValidationError
 
-from vibroimpact.campaign.file import KINDS
+from vibroimpact.campaign.file import Kind
 from vibroimpact.config.problems import PLAIN_WORDS, ConfigError
 from vibroimpact.config.quantities import Frequency_Hz, Number, Range, Section, Vector, Whole
 from vibroimpact.config.yaml_file import read_yaml
 
-from .signals import ImportProblem
+from .signals import ImportProblem, Signal
 
 NAME = "campaign.yaml"
+Direction = Literal["x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z"]
 DIRECTIONS = {
-    f"{sign}{axis}": tuple((-1.0 if sign == "-" else 1.0) * float(axis == other) for other in "xyz")
-    for sign in ("", "+", "-")
-    for axis in "xyz"
+    name: tuple((-1.0 if name[0] == "-" else 1.0) * float(name[-1] == axis) for axis in "xyz")
+    for name in get_args(Direction)
 }
+Repeat = Annotated[
+    Whole, Range("0 for the first record of its load and gap", at_least=0, at_most=10**6)
+]
+PeriodSamples = Annotated[
+    Whole,
+    Range("samples of a period, 0 where the force is not periodic", at_least=0, at_most=10**9),
+]
+TransientPeriods = Annotated[
+    Whole, Range("periods before the steady state", at_least=0, at_most=10**6)
+]
 
 
 class Sensor(Section):
-    """A channel or a force: its name, the signal's name in the files (default: the same), and what
-    the files do not say.
+    """A response channel or a force.
+
+    name: of the channel.
+    variable: name of the signal in the files; the same where it is not given.
+
+    Other keys give what the files do not state.
     """
 
     name: str
     variable: str | None = None
     unit: str | None = None
-    kind: Literal[KINDS] | None = None
+    kind: Kind | None = None
     point_m: Vector | None = None
-    direction: Literal[tuple(DIRECTIONS)] | Vector | None = None
+    direction: Direction | Vector | None = None
 
 
 class Record(Section):
-    """A record: its file or files, and what was set when it was taken. variables: {sensor: signal}
-    where the names differ from record to record.
+    """A record: its files and the conditions of the measurement.
+
+    variables: {sensor: signal} where the names of signals differ between records.
+    from_s, to_s: part of the record that is used.
     """
 
     name: str | None = None
@@ -48,18 +66,12 @@ class Record(Section):
     gap_m: Number | None = None
     support_gap_m: tuple[Number, ...] | None = None
     split: Literal["fit", "holdout"] = "fit"
-    repeat: (
-        Annotated[
-            Whole,
-            Range("0 for the first record of its load and gap", at_least=0, at_most=10**6),
-        ]
-        | None
-    ) = None
+    repeat: Repeat | None = None
     from_s: Number | None = None
     to_s: Number | None = None
     variables: dict[str, str] = {}
 
-    def all_files(self):
+    def all_files(self) -> tuple[str, ...]:
         """Return the names of the record's files."""
         return (*([self.file] if self.file else []), *self.files)
 
@@ -72,28 +84,24 @@ class Voltage(Section):
 
 
 class Sidecar(Section):
-    """A whole campaign.yaml."""
+    """The content of a campaign.yaml."""
 
     source: str = ""
     sampling_frequency_Hz: Frequency_Hz | None = None
     antialias: str = "unknown"
     start_up: Literal["rest", "stationary"] = "stationary"
-    period_samples: Annotated[
-        Whole,
-        Range("samples of a period, 0 where the force is not periodic", at_least=0, at_most=10**9),
-    ] = 0
-    transient_periods: Annotated[
-        Whole, Range("periods before the steady state", at_least=0, at_most=10**6)
-    ] = 0
+    period_samples: PeriodSamples = 0
+    transient_periods: TransientPeriods = 0
     forces: tuple[Sensor, ...] = Field(min_length=1)
     channels: tuple[Sensor, ...] = Field(min_length=1)
     records: tuple[Record, ...] = Field(min_length=1)
     voltage: Voltage | None = None
 
 
-def read_sidecar(path):
-    """Return the Sidecar of a YAML file. Raises ImportProblem with every problem, its place and
-    what is expected.
+def read_sidecar(path: str | Path) -> Sidecar:
+    """Return the Sidecar of a YAML file.
+
+    Raises ImportProblem with every problem, its place and what is expected.
     """
     try:
         data = read_yaml(path)
@@ -123,7 +131,7 @@ def read_sidecar(path):
     return sidecar
 
 
-def _sentence(path, line):
+def _sentence(path: str | Path, line: Mapping) -> str:
     place = "".join(
         f"[{part}]" if isinstance(part, int) else f".{part}" for part in line["loc"]
     ).removeprefix(".")
@@ -135,14 +143,15 @@ def _sentence(path, line):
     return f"{path}: {place} = {line['input']!r} {text}"
 
 
-def draft(folder, signals):
-    """Return the text of a campaign.yaml to fill in for a folder: every signal found in its first
-    file, and every file as a record.
+def draft_sidecar(folder: str | Path, signals: list[Signal]) -> str:
+    """Return the text of a campaign.yaml to be completed by the user.
+
+    It has every signal of the first file, and every file as a record.
     """
     lines = [
         (
-            "# Fill in every ???, delete the signals that are no channels, then move the forces to"
-            " 'forces'."
+            "# Fill in every ???, delete the signals that are not channels, then move the forces"
+            " to 'forces'."
         ),
         f"source: {Path(folder).name}",
         "forces:",
@@ -165,13 +174,5 @@ def draft(folder, signals):
             f" kind: {signal.kind or '???'}, point_m: {place}, direction: {direction}}}"
         )
     files = dict.fromkeys(Path(signal.file).name for signal in signals)
-    return (
-        "\n".join(
-            [
-                *lines,
-                "records:",
-                *(f"  - {{file: {name!r}, gap_m: ???, split: fit}}" for name in files),
-            ]
-        )
-        + "\n"
-    )
+    records = [f"  - {{file: {name!r}, gap_m: ???, split: fit}}" for name in files]
+    return "\n".join([*lines, "records:", *records]) + "\n"

@@ -1,4 +1,4 @@
-"""A recorded signal as a file gives it, and the even sampling that a campaign needs."""
+"""A recorded signal as a file gives it, and its resampling to even time steps."""
 
 from __future__ import annotations
 
@@ -9,24 +9,30 @@ from scipy.interpolate import CubicSpline
 
 TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]")
 RATE_NAMES = ("Fs", "fs", "sampling_frequency", "sampling_frequency_Hz", "sample_rate")
-EVEN_WITHIN = 0.05  # of a step: what time stamps may scatter about an even grid
-LOST_SAMPLE = 1.5  # steps: a longer one is a hole, not scatter
-WHOLE_WITHIN = 5.0e-6  # relative: rates printed with six digits are whole numbers of Hz again
+EVEN_WITHIN = 0.05  # steps: scatter of time stamps about an even grid
+LOST_SAMPLE = 1.5  # steps: a longer interval means that samples are missing
+WHOLE_WITHIN = 5.0e-6  # relative: a rate printed with six digits stands for a whole number of Hz
 
 
 class ImportProblem(Exception):
-    """Files that can not be made into a campaign; the message holds every problem and its remedy,
-    one per line.
+    """Files that can not be made into a campaign.
+
+    The message holds every problem and its remedy, one per line.
     """
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One signal of one file: name as the sidecar calls it; values (time,) in `unit`; rate Hz or
-    None where the file does not say.
+    """One signal of one file.
 
-    unit, kind, direction (3,), point (3,) m, force: what the file itself says, "" or None where it
-    does not; unit_from: where in the file; aliases: other names for it; note: what was done to it.
+    name: as the sidecar refers to it.
+    file: path.
+    values (time,): in `unit`.
+    rate: Hz, None where the file does not state it.
+    unit, kind, point (3,) m, direction (3,), force: as the file states them, else "" or None.
+    unit_from: where in the file the unit stands.
+    aliases: other names of the signal.
+    note: how its values were changed.
     """
 
     name: str
@@ -43,12 +49,16 @@ class Signal:
     note: str = ""
 
 
-def even_samples(time, values, place):
-    """Return (values (..., time), rate in Hz, note) on an even grid, from time stamps (time,) in s.
+def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.ndarray, float, str]:
+    """Return (values (..., time), rate in Hz, note) on an even grid.
 
-    Stamps that scatter by less than a twentieth of a step, or than their own six printed digits,
-    are taken as even; others are interpolated by a cubic spline at the mean step, and the note says
-    so. Raises ImportProblem for a hole or for stamps that do not rise.
+    time (time,): time stamps, s.
+    values (..., time).
+    place: file and signal, for messages.
+
+    Stamps count as even where they scatter by less than a twentieth of a step, or by less than
+    their six printed digits. Others are interpolated by a cubic spline at the mean step, and the
+    note says so. Raises ImportProblem for lost samples or stamps that do not increase.
     """
     time = np.asarray(time, float)
     steps = np.diff(time)
@@ -68,18 +78,13 @@ def even_samples(time, values, place):
         )
     step = (time[-1] - time[0]) / (time.size - 1)
     grid = time[0] + step * np.arange(time.size)
-    if np.max(np.abs(time - grid)) <= max(EVEN_WITHIN * step, printed):
-        return values, whole_rate(1.0 / step), ""
     rate = whole_rate(1.0 / step)
-    return (
-        CubicSpline(time, values, axis=-1)(grid),
-        rate,
-        f"unevenly sampled: interpolated to {rate:g} Hz",
-    )
+    if np.max(np.abs(time - grid)) <= max(EVEN_WITHIN * step, printed):
+        return values, rate, ""
+    even = CubicSpline(time, values, axis=-1)(grid)
+    return even, rate, f"unevenly sampled: interpolated to {rate:g} Hz"
 
 
-def whole_rate(rate):
-    """Return a sampling frequency in Hz, rounded to the whole number that its printed digits stand
-    for.
-    """
+def whole_rate(rate: float) -> float:
+    """Return a sampling frequency in Hz, whole where it is so to six digits."""
     return float(round(rate)) if abs(rate - round(rate)) < WHOLE_WITHIN * rate else float(rate)

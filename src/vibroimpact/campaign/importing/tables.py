@@ -16,11 +16,11 @@ HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 HDF5_PLACES = (0, 512, 1024, 2048)
 
 
-def read_csv(path):
-    """Return the Signals of a CSV file with one header line: name, or name [unit]; a column "time"
-    gives the sampling.
+def read_csv(path: str | Path) -> list[Signal]:
+    """Return the Signals of a CSV file.
 
-    Separator: comma, semicolon or tab. Raises ImportProblem when a line does not fit.
+    It has one header line with names, "name" or "name [unit]"; a column "time" gives the sampling.
+    The separator is a comma, semicolon or tab. Raises ImportProblem where a line does not fit.
     """
     lines = [
         line
@@ -51,9 +51,10 @@ def read_csv(path):
     return _signals(path, columns, units, "header of the file", {})
 
 
-def read_netcdf(path):
-    """Return the Signals of a netCDF file of any layout: variables whose last dimension is time;
-    units from their attribute `units`.
+def read_netcdf(path: str | Path) -> list[Signal]:
+    """Return the Signals of a netCDF file of any layout.
+
+    They are the variables whose last dimension is time; their attribute `units` gives the unit.
     """
     try:
         dataset = read_dataset(path)
@@ -72,9 +73,10 @@ def read_netcdf(path):
     return _signals(path, columns, units, "attribute units", dict(dataset.attrs))
 
 
-def read_matlab(path):
-    """Return the Signals of a MAT file, v5 or v7.3; fields of structures as structure.field; a rate
-    from Fs, or a time vector.
+def read_matlab(path: str | Path) -> list[Signal]:
+    """Return the Signals of a MAT file, v5 or v7.3.
+
+    Fields of structures are named structure.field. The rate is Fs, or follows from a time vector.
     """
     with open(path, "rb") as file:
         head = file.read(HDF5_PLACES[-1] + 8)
@@ -113,8 +115,9 @@ def _flat(content, prefix=""):
 
 
 def _signals(path, columns, units, unit_from, attributes):
-    """Return a Signal per row of every array of the file's sampling; name[index], counted from 0,
-    where an array holds several.
+    """Return a Signal for every row of the arrays that have the sampling of the file.
+
+    Rows of an array are named name[index], from 0, where it has several.
     """
     rate = next(
         (
@@ -144,24 +147,15 @@ def _signals(path, columns, units, unit_from, attributes):
             rows, rate, note = even_samples(time, rows, f"{path}, {name}")
         for index, row in enumerate(rows):
             label = name if len(rows) == 1 else f"{name}[{index}]"
+            stated_in = unit_from if name in units else ""
             found.append(
-                Signal(
-                    label,
-                    str(path),
-                    row,
-                    rate,
-                    units.get(name, ""),
-                    unit_from if name in units else "",
-                    note=note,
-                )
+                Signal(label, str(path), row, rate, units.get(name, ""), stated_in, note=note)
             )
     return found
 
 
 def _rows(values):
-    """Return (signal, time) of an array: squeezed, its longest side last, other sides counted
-    through.
-    """
+    """Return (signal, time) of an array: its longest axis last, all others flattened."""
     values = np.squeeze(np.asarray(values, float))
     if values.ndim == 0:
         return values.reshape(1, 1)

@@ -1,8 +1,11 @@
-"""Time records of Universal File Format dataset 58, ASCII and binary, through pyuff; nodes of 15
-and 2411, units of 164.
+"""Time records of Universal File Format dataset 58, ASCII and binary, read with pyuff.
+
+Nodes are taken from datasets 15 and 2411, units from 164.
 """
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 
@@ -24,11 +27,11 @@ NOTHING = ("", "NONE", "None", "none")
 TIME_TYPES = (0, 17)
 
 
-def read_uff(path):
+def read_uff(path: str | Path) -> list[Signal]:
     """Return the Signals of the time records of a file.
 
-    A signal is called node:axis, as 12:+y; its other names are the entity's name and the first
-    identification line. Raises ImportProblem when the file can not be read or holds no time record.
+    A signal is named node:axis, as 12:+y. Its aliases are the entity's name and the first
+    identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
     import pyuff  # imported here: other files do not need it
 
@@ -114,8 +117,9 @@ def _text(value):
 
 
 def _unit(data, type_, units):
-    """Return (unit as UDUNITS text, where it stands): the axis label, else dataset 164 with the
-    ordinate's type; "" where neither tells.
+    """Return (unit as UDUNITS text, where it is stated); "" where the file does not state it.
+
+    It is the axis label, else dataset 164 with the type of the ordinate.
     """
     label = _text(data.get("ordinate_axis_units_lab"))
     if label not in NOTHING and "\ufffd" not in label:
@@ -126,14 +130,14 @@ def _unit(data, type_, units):
     factor = 1.0 / (
         units["length"] ** LENGTH_POWER[type_] if type_ in LENGTH_POWER else units["force"]
     )
-    return (
-        SI_OF_TYPE[type_] if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {SI_OF_TYPE[type_]}"
-    ), "dataset 164"
+    unit = SI_OF_TYPE[type_]
+    return unit if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {unit}", "dataset 164"
 
 
 def _nodes(tables, units):
-    """Return {node: (x, y, z) in m} of datasets 15 and 2411; none without dataset 164, which says
-    their unit.
+    """Return {node: (x, y, z) in m} of datasets 15 and 2411.
+
+    Empty without dataset 164, which gives their unit.
     """
     if units is None:
         return {}

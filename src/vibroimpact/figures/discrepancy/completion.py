@@ -1,5 +1,7 @@
-"""The figures of a completed measured structure: responses per force, prediction errors, equivalent
-support, where, restoring force.
+"""The figures of a completed measured structure.
+
+They show responses per force, prediction errors, equivalent support, where the model disagrees, and
+the restoring force.
 """
 
 from pathlib import Path
@@ -21,9 +23,8 @@ KINDS = (
     ("error_completed", "completed", GREEN),
 )
 LOOP_PERIODS = 4
-LOOPS = {
-    ELSEWHERE: ("own_displacement", "own_force")
-}  # the participation of a hidden place has no scale of its own
+# The participation of an unmeasured place has an arbitrary scale.
+LOOPS = {ELSEWHERE: ("own_displacement", "own_force")}
 RESPONSES = {
     "acceleration": "(m/s²)/N",
     "velocity": "(m/s)/N",
@@ -37,8 +38,9 @@ COLUMNS = {
 
 
 def sheets(campaign, study, linear, completed, verdict, mounting, prediction):
-    """Return the sheets of a completion; arguments as the workflow's files hold them. Sheets that
-    would be empty are left out.
+    """Return the sheets of a completion, without those that would be empty.
+
+    The arguments are the contents of the workflow's files.
     """
     levels, names, kinds = levels_of(campaign)
     trial = trial_of(completed["trial"])
@@ -56,8 +58,9 @@ def sheets(campaign, study, linear, completed, verdict, mounting, prediction):
 
 
 def saved_sheets(folder, campaign, study, linear, completed, verdict, mounting, prediction):
-    """Return the PNG files of the sheets of a user's completion, saved in a folder that is made;
-    none where no linear model stands.
+    """Return the PNG files of the sheets of a user's completion, saved in a folder.
+
+    The folder is created. The list is empty where no linear model was accepted.
     """
     Path(folder).mkdir(parents=True, exist_ok=True)
     drawn = (
@@ -69,8 +72,9 @@ def saved_sheets(folder, campaign, study, linear, completed, verdict, mounting, 
 
 
 def frf_overlay(study, levels, names, kinds, linear, records, predicted):
-    """Responses per force of every level: measured, linear and, where predicted is no None,
-    completed.
+    """Return the Sheet of responses per force of every level: measured, linear and completed.
+
+    predicted: None without a completed model.
     """
     columns = min(2, len(levels))
     shown = sorted({0, len(levels) - 1, *np.linspace(0, len(levels) - 1, 4).round().astype(int)})
@@ -141,12 +145,12 @@ def frf_overlay(study, levels, names, kinds, linear, records, predicted):
 
 
 def _shown_channels(names):
-    """The first and the last channel: all of them would not fit on a page."""
+    """Return the first and the last channel, for lack of room for all."""
     return sorted({0, len(names) - 1})
 
 
 def prediction_errors(study, rows):
-    """Relative error of every level and channel, three models side by side."""
+    """Return the Sheet of the relative error of every level and channel, for three models."""
     channels = list(dict.fromkeys(row["channel"] for row in rows))
     sheet = Sheet(
         "prediction",
@@ -183,7 +187,7 @@ def prediction_errors(study, rows):
 
 
 def equivalent_support(study, rows):
-    """Equivalent stiffness and damping of the mounting against level, by each method."""
+    """Return the Sheet of stiffness and damping of the mounting against level, by method."""
     unit = study.unit("N")
     sheet = Sheet(
         "mounting",
@@ -236,8 +240,9 @@ def equivalent_support(study, rows):
 
 
 def where(study, levels, names, linear, verdict):
-    """Squared error of the linear model by frequency, one panel per channel, with the regions of
-    the verdict.
+    """Return the Sheet of the squared error of the linear model by frequency, a panel per channel.
+
+    Regions of the verdict are shaded.
     """
     sheet = Sheet(
         "where",
@@ -290,8 +295,9 @@ def where(study, levels, names, linear, verdict):
 
 
 def restoring_force(study, trial, records):
-    """Force of the added law against its displacement in the steady state, lowest and highest
-    level.
+    """Return the Sheet of the force of the added law against displacement, in the steady state.
+
+    It shows the lowest and the highest level.
     """
     places = list(dict.fromkeys(term.place for term in trial.terms))
     sheet = Sheet(

@@ -1,5 +1,6 @@
-"""Where model and measurement disagree: heat maps of D and z, record and channel against band,
-before and after the model is completed.
+"""Where model and measurement disagree: maps of D and z over record, channel and band.
+
+They are drawn before and after the model is completed.
 """
 
 from __future__ import annotations
@@ -11,17 +12,18 @@ from vibroimpact.figures.style import BLACK, PALE, label_of
 
 QUANTITIES = (("D", "discrepancy_dB", "Discrepancy D"), ("z", "z", "Significance z"))
 STAGES = ("before", "after")
-LARGEST = {"D": 20.0, "z": 10.0}  # the colours end there at the latest
-SMALLEST = {"D": 3.0, "z": 4.0}  # and not before
+LARGEST = {"D": 20.0, "z": 10.0}  # largest end of the colour scale
+SMALLEST = {"D": 3.0, "z": 4.0}  # smallest end of the colour scale
 ROW_IN = 0.155
-COLOURS = "RdBu_r"  # red and blue are told apart with any colour vision, and no sign is white
+COLOURS = "RdBu_r"  # red and blue are distinct with any colour vision; zero is white
 
 
 def map_figure(before, after):
-    """Return [Sheet] of the maps, Datasets with D, z, counted, band_Hz, record_name and
-    channel_name, or None where there is none.
+    """Return [Sheet] of the maps.
 
-    Cells that do not count (the measurement is not 6 dB above its noise) are grey.
+    before, after: Datasets with D, z, counted, band_Hz, record_name and channel_name, or None.
+
+    Cells where the measurement is not 6 dB above its noise are grey.
     """
     rows = before.sizes["record"] * before.sizes["channel"] if before is not None else 4
     height = min(max(1.6 + 2.0 * (0.5 + ROW_IN * rows), 5.0), 22.0)
@@ -65,7 +67,7 @@ def map_figure(before, after):
 
 
 def _limit(name, before):
-    """Return where the colours of D or z end."""
+    """Return the end of the colour scale of D or z."""
     if before is None:
         return SMALLEST[name]
     seen = np.abs(before[name].values[counted_cells(before)])
@@ -75,9 +77,7 @@ def _limit(name, before):
 
 
 def counted_cells(data):
-    """Return (record, channel, band) whether a cell of a map counts: above the noise, and a
-    number.
-    """
+    """Return (record, channel, band) whether a cell is above the noise and finite."""
     return data["counted"].values.astype(bool) & np.isfinite(data["D"].values)
 
 

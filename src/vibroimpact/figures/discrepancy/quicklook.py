@@ -1,6 +1,4 @@
-"""A campaign at a glance: PSD of every force and response at every level, and how their RMS grow
-with the load.
-"""
+"""A first look at a campaign: PSD of all signals at every level, and RMS against load."""
 
 from __future__ import annotations
 
@@ -28,7 +26,7 @@ MOST_PANELS = 12
 ACROSS = 3
 BINS_PER_OCTAVE = 48
 SEGMENTS = 12
-FORCE_FLOOR, LOWEST = 1e-6, 1e-12  # of the highest value: what is drawn of it
+FORCE_FLOOR, LOWEST = 1e-6, 1e-12  # lowest drawn value, over the highest
 PSD_COLUMNS = {
     "m s-2": "psd_m2_per_s4_per_Hz",
     "m s-1": "psd_m2_per_s2_per_Hz",
@@ -41,8 +39,9 @@ MARKERS = "os^Dv<>PX"
 
 
 def quicklook(campaign):
-    """Return [Sheet] of a campaign Dataset: panels in SI units, one per force and response, 12 at
-    most, and the levels.
+    """Return [Sheet] of a campaign Dataset, in SI units.
+
+    There is a panel for each of the first 12 forces and responses, and one of the levels.
     """
     measured = campaign_signals(campaign)
     panels = [
@@ -118,7 +117,7 @@ def _caption(campaign, measured, panels, left_out):
 
 
 def _shown_unit(units, kind):
-    """Return the SI unit of a channel, or its own where that can not be converted."""
+    """Return the SI unit of a channel, or its stored unit where that can not be converted."""
     try:
         return si_unit(units, kind)
     except UnitError:
@@ -162,8 +161,9 @@ def _spectra(sheet, axes, measured, signal, unit, colours, band):
 
 
 def _binned(values, rate, band):
-    """Return (frequency, PSD) in logarithmic bins from a third of the lowest excited frequency to
-    the highest one there is.
+    """Return (frequency, PSD) in logarithmic bins.
+
+    They begin at a third of the lowest excited frequency.
     """
     segment_s = values.size / rate / (0.5 * SEGMENTS + 0.5)
     spectra = segment_spectra(values, rate, Averaging(segment_s))

@@ -1,5 +1,6 @@
-"""The candidates by their score on held-out records, the profiles of the named parameters, and
-those parameters level by level.
+"""Scores of the candidates on held-out records, and the parameters of the named effects.
+
+Parameters are shown as profiles of the score, and level by level.
 """
 
 from __future__ import annotations
@@ -24,18 +25,20 @@ from vibroimpact.figures.style import (
 
 MOST_BARS = 16
 MOST_PROFILES = 6
-# of log likelihood: scores beyond it are drawn on a logarithmic scale, or what decides near zero is
-# lost
+# Log likelihood beyond which scores are drawn on a logarithmic scale; a linear one would hide the
+# range near zero, which decides.
 WIDE = 3000.0
 NO_UNIT = ("", "1", "-")
 
 
 def ranking_figure(ranking, named=()):
-    """Return [Sheet] of the ranking: bars of the held-out score, the fitted score as rings, the
-    null threshold as a line.
+    """Return [Sheet] of the ranking.
+
+    Bars are the held-out score, rings the fitted score, a line the null threshold.
 
     ranking: rows {ids, fit_score, heldout_score, closed_fraction, threshold, tested}, ids joined by
-    +; named: ids of the verdict.
+    +.
+    named: ids of the verdict.
     """
     rows = best_places(sorted(ranking, key=lambda row: -_value(row["heldout_score"])))[:MOST_BARS]
     caption = (
@@ -124,9 +127,7 @@ def ranking_figure(ranking, named=()):
 
 
 def _label(row, names):
-    """Return the effects of a row in words, with their place where the same effects stand at
-    several, or one beside itself.
-    """
+    """Return the effects of a row in words, with their place where it distinguishes them."""
     ids = str(row["ids"]).split("+")
     told_by_place = names.count("+".join(sorted(ids))) > 1 or len(set(ids)) < len(ids)
     place = f" ({row['location']})" if told_by_place and row.get("location") else ""
@@ -134,9 +135,7 @@ def _label(row, names):
 
 
 def _thresholds(axes, rows, places):
-    """Draw the null threshold: one line where all candidates share it, a mark per bar where each
-    has its own.
-    """
+    """Draw the null threshold: one line where all candidates share it, else a mark per bar."""
     values = np.array([_value(row.get("threshold")) for row in rows])
     known = np.isfinite(values)
     if not known.any():
@@ -164,7 +163,7 @@ def _thresholds(axes, rows, places):
 
 
 def _value(value):
-    """Return a cell of a table as a number, NaN where it holds none."""
+    """Return a cell of a table as a number, NaN where it has none."""
     try:
         return float(value)
     except (TypeError, ValueError):
@@ -176,11 +175,14 @@ def _true(value):
 
 
 def profiles_figure(candidates, effects):
-    """Return [Sheet] of score against parameter value for the named effects, for the best candidate
-    where none is named; effects that the lowest record told have none.
+    """Return [Sheet] of score against parameter value for the named effects.
 
-    candidates: contents of candidates/*.json, {ids, parameters: {name: {value}}, profile:
-    [{parameter, unit, values, score, simulated}]}, best first; effects: those of verdict.json.
+    Where none is named, those of the best candidate are shown. Effects identified on the lowest
+    record have no profile.
+
+    candidates: contents of candidates/*.json, best first: {ids, parameters: {name: {value}},
+    profile: [{parameter, unit, values, score, simulated}]}.
+    effects: those of verdict.json.
     """
     shown = named_of(candidates, effects)
     curves = [curve for candidate in shown for curve in candidate.get("profile", [])][
@@ -216,8 +218,10 @@ def profiles_figure(candidates, effects):
 
 
 def named_of(candidates, effects):
-    """Return [candidate] that the effects of a verdict are, by their estimates, since a catalogue
-    may hold two laws of one effect: those of most effects; the best candidate where none is named.
+    """Return [candidate] of the effects of a verdict; the best candidate where none is named.
+
+    Estimates are compared too, since a catalogue may hold two laws of one effect. The candidate
+    with most effects is taken.
     """
     if not effects:
         return candidates[:1]
@@ -235,8 +239,9 @@ def named_of(candidates, effects):
 
 
 def found_of(effects, name):
-    """Return the Estimate of a parameter, by its name alone or, of one effect of several, as
-    effect.parameter; None where the effects have none.
+    """Return the Estimate of a parameter, None where the effects do not have it.
+
+    name: of the parameter, or effect.parameter.
     """
     effect_id, _, parameter = name.rpartition(".")
     rows = [effect.parameters for effect in effects if not effect_id or effect.id == effect_id]
@@ -292,10 +297,9 @@ def _profile(sheet, axes, curve, effects):
 
 
 def levels_figure(candidates, effects):
-    """Return [Sheet] of each named parameter fitted level by level: constant where the law is
-    right.
+    """Return [Sheet] of each named parameter fitted level by level; a correct law is constant.
 
-    candidates as in profiles_figure, with by_level: [{parameter, unit, load_rms_N, gap_m, value,
+    candidates: as in profiles_figure, with by_level: [{parameter, unit, load_rms_N, gap_m, value,
     low, high}], lists of equal length.
     """
     curves = next(

@@ -8,8 +8,9 @@ from .spectra import spectra_figure
 
 
 def discrepancy_figures(results):
-    """Return the Sheets of Results, in the order of the page; those that have nothing to show say
-    so and hold no table.
+    """Return the Sheets of Results, in the order of the page.
+
+    A sheet without content says so and has no table.
     """
     effects = results.verdict.shown_effects()
     named = [effect.id for effect in effects]

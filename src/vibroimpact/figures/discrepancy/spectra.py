@@ -1,6 +1,4 @@
-"""Measured against simulated spectra before and after the model is completed, with the scatter of
-the seeds.
-"""
+"""Measured and simulated spectra before and after the model is completed, with seed scatter."""
 
 from __future__ import annotations
 
@@ -14,17 +12,17 @@ from .quicklook import PSD_COLUMNS
 
 MOST_RECORDS, CHANNELS_SHOWN = 3, 2
 MOVED = 0.5  # of the bands of a channel above noise
-BELOW = 1e-3  # of the smallest measured PSD in the bands: what is drawn beneath
+BELOW = 1e-3  # lowest drawn value, over the smallest measured PSD in the bands
 STAGES = (("before", "model as given", ORANGE), ("after", "completed model", BLUE))
 
 
 def spectra_figure(before, after, regions=()):
-    """Return [Sheet]: a row per channel, a column per record, for the records and channels that say
-    most.
+    """Return [Sheet] with a row per channel and a column per record, for those that matter most.
 
-    before, after: Datasets of the maps with psd_frequency, psd_measured and psd_simulated_mean,
-    _low, _high (record, channel, frequency), and optionally channel_unit (channel), m s-2 where it
-    is missing; or None; regions: those of verdict.json, shaded in their panels.
+    before, after: Datasets of the maps, or None, with psd_frequency, psd_measured and
+    psd_simulated_mean, _low, _high (record, channel, frequency), and optionally channel_unit
+    (channel), m s-2 where it is missing.
+    regions: those of verdict.json, shaded in their panels.
     """
     caption = (
         "PSD, measured (black) and simulated: with the model as given (orange) and with the"
@@ -67,8 +65,10 @@ def spectra_figure(before, after, regions=()):
 
 
 def chosen_records(data):
-    """Return up to three record indices: lowest load, highest fitted load, and the held-out record
-    of the largest discrepancy.
+    """Return up to three record indices.
+
+    They are the lowest load, the highest fitted load, and the held-out record of the largest
+    discrepancy.
     """
     load = data["load_rms"].values
     held = np.array([str(value) == "holdout" for value in data["split"].values])
@@ -84,8 +84,9 @@ def chosen_records(data):
 
 
 def chosen_channels(data):
-    """Return up to two channel indices: that of the largest discrepancy over all records, and that
-    of the next one, among those that the lowest load moves.
+    """Return up to two channel indices, those of the largest discrepancy over all records.
+
+    The second is among the channels that respond at the lowest load.
     """
     counted = counted_cells(data)
     size = np.array(

@@ -1,4 +1,4 @@
-"""How good the reduced model is, and what each family of its vectors brings."""
+"""Accuracy of the reduced model, and the contribution of each family of basis vectors."""
 
 from __future__ import annotations
 
@@ -26,8 +26,7 @@ FLOOR = 1.0e-9  # round-off of the full model's eigenvalues
 
 
 def basis_quality(config, rows):
-    """Return the Sheet of the worst relative error of the reduced frequencies against the bilateral
-    stiffness.
+    """Return the Sheet of the worst error of the reduced frequencies against bilateral stiffness.
 
     rows: table of reduction.basis_accuracy.basis_frequency_errors, list of {column: value}.
     """
@@ -76,8 +75,9 @@ def basis_quality(config, rows):
 
 
 def _errors(sheet, axes, rows, vectors, style):
-    """Draw the worst error of one basis, if the report has it (a tube without supports has no
-    constrained modes).
+    """Draw the worst error of one basis, if the report has it.
+
+    A tube without supports has no constrained modes.
     """
     chosen = [
         row for row in rows if row["vectors"] == vectors and np.isfinite(row["relative_error"])

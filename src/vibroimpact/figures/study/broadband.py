@@ -1,6 +1,4 @@
-"""Broadband PSD: target, best linear equivalent and the range of linear responses (paper figure
-12).
-"""
+"""Broadband PSD: target, best linear equivalent and range of linear responses (figure 12)."""
 
 from __future__ import annotations
 
@@ -27,10 +25,9 @@ RANGE_MEMBERS = 9
 
 
 def figure_12_broadband(config, model, curves, spectra, rows):
-    """Return the Sheet of the broadband correlation at the load of the widest peak and at the
-    largest one.
+    """Return the Sheet of the broadband fit at the load of the widest peak and at the largest one.
 
-    curves, spectra: {Case: Dataset} of one gap; rows: table rows of that gap.
+    curves, spectra: {Case: Dataset} of one gap. rows: table rows of that gap.
     """
     sensor = driven_sensor(config, config.identification.broadband.point)
     caption = (

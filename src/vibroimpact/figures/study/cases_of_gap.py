@@ -1,4 +1,4 @@
-"""Which cases a figure of one gap shows: those of the largest gap, and a few loads among all."""
+"""The cases that a figure of one gap shows: those of the largest gap, and a few of the loads."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ def paths_of_gap(paths, gap_m):
 
 
 class CasesOnDemand(Mapping):
-    """{Case: read(path)} of paths named after cases, ordered by case; a file is read when its case
-    is asked for first, then kept.
+    """{Case: read(path)} of paths named after cases, ordered by case.
+
+    A file is read when its case is first used; its content is then cached.
     """
 
     def __init__(self, paths, read):
@@ -49,11 +50,10 @@ def cases_of_gap(paths, config, read):
 
 
 def spread_loads(rows, count):
-    """Return up to `count` loads in N RMS, ascending, whose main peaks are spread evenly in
-    frequency (LSCF, median over seeds).
+    """Return up to `count` loads in N RMS, ascending, with main peaks spread evenly in frequency.
 
-    rows: table rows of one gap. The lowest and the highest load are among them; loads without a
-    pole are not.
+    The frequency is that of LSCF, median over seeds. The lowest and the highest load are included;
+    loads without a pole are not. rows: table rows of one gap.
     """
     load, frequency = medians(
         [row for row in rows if row["method"] == "lscf"], "load_rms_N", "frequency_Hz"
@@ -72,10 +72,10 @@ def first_seed(by_case):
 
 
 def transition_load(rows):
-    """Return the load in N RMS at which the main peak is widest: the largest median damping ratio
-    of the LSCF pole among table rows.
+    """Return the load in N RMS at which the main peak is widest.
 
-    The largest load where no pole was found at all.
+    It has the largest median damping ratio of the LSCF pole among table rows; the largest load
+    where no pole was found.
     """
     load, ratio = medians(
         [row for row in rows if row["method"] == "lscf"], "load_rms_N", "damping_ratio"

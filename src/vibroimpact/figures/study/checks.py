@@ -1,6 +1,4 @@
-"""What a user wants to see before believing the rest: energy balance of every case, contact
-statistics and stress against load.
-"""
+"""Checks of the simulation: energy balance, contact statistics and stress against load."""
 
 from __future__ import annotations
 
@@ -32,14 +30,10 @@ RESIDUALS = {
     "energy_residual": ("with the work of the contact forces", BLUE, "o"),
     "fixed_point_residual": ("contact iteration (bound)", GREY, "x"),
 }
-PAPER_RATE, PAPER_LOSS = (
-    51200,
-    3.0e-3,
-)  # accepted where the potential energy is counted, at the paper's step; of order 2 in the step
-ROUND_OFF, SUMS = (
-    1.0e-9,
-    3.0e-4,
-)  # accepted of the work: an identity with Newmark; trapezoidal sums with the exact step
+# Largest accepted residual with the potential energy, at the paper's step; of order 2 in the step.
+PAPER_RATE, PAPER_LOSS = 51200, 3.0e-3
+# With the work: an identity of Newmark's scheme; trapezoidal sums with the exact step.
+ROUND_OFF, SUMS = 1.0e-9, 3.0e-4
 TERMS = {
     "input_work": ("work of the drive", BLACK, "-"),
     "dissipated": ("dissipated by damping", RED, "--"),
@@ -51,13 +45,14 @@ FLOOR = 1.0e-18  # exact zeros (no contact) are drawn here: a logarithmic axis h
 
 
 def case_of_energies(cases):
-    """Return the Case whose energies are drawn: of the largest load and gap, the first seed."""
+    """Return the Case whose energies are drawn: largest load and gap, first seed."""
     return max(cases, key=lambda case: (case.load_rms_N, case.gap_m, -case.seed))
 
 
 def limits(integration):
-    """Return {variable of RESIDUALS: accepted at most} for a scheme and step; the bound of the
-    contact iteration needs none.
+    """Return {variable of RESIDUALS: largest accepted value} for a scheme and step.
+
+    The bound of the contact iteration has no limit.
     """
     steps = integration.steps_per_second
     work = ROUND_OFF if integration.scheme == "newmark" else SUMS
@@ -163,16 +158,14 @@ STATISTICS = (
     ("wear", "wear_work_rate", "wear_work_rate_W", "wear work rate"),
     ("stress", "stress_peak", "stress_Pa", "largest bending stress"),
 )
-VARIABLES = (
-    *RESIDUALS,
-    *(variable for _, variable, _, _ in STATISTICS),
-    "peak_force",
-)  # of every record
+# Variables that are read of every record.
+VARIABLES = (*RESIDUALS, *(variable for _, variable, _, _ in STATISTICS), "peak_force")
 
 
 def records_shown(paths, read):
-    """Return {Case: Dataset} of record files, read by read(path, names) when asked for, with what
-    the figures here draw of each.
+    """Return {Case: Dataset} of record files with the variables drawn here.
+
+    A file is read by read(path, names) when its case is used.
     """
     drawn = case_of_energies(CasesOnDemand(paths, None))
     return CasesOnDemand(
@@ -264,8 +257,9 @@ def contact_statistics(config, records):
 
 
 def _rows(records, gap, variable, column):
-    """Return one row per case and support (or per case for the stress); zeros (no contact) are left
-    out of logarithmic panels.
+    """Return one row per case and support, or per case for the stress.
+
+    Zeros (no contact) are left out of logarithmic panels.
     """
     rows = []
     for case, dataset in records.items():

@@ -1,6 +1,4 @@
-"""The contact: its law and discretisation (paper figure 3), and what the number of contact points
-does to the first frequency (figure 4).
-"""
+"""The contact law and its discretisation (figure 3), and the number of points (figure 4)."""
 
 from __future__ import annotations
 
@@ -28,13 +26,14 @@ from .linear_limits import HELD, driven_frequencies
 POINTS = {1: PINK, 2: ORANGE, 3: GREEN, 5: BLUE, 9: BLACK}  # contact points per support -> colour
 LINES = {1: (0, (1, 1)), 2: (0, (4, 1)), 3: (0, (4, 1, 1, 1)), 5: "-", 9: (0, (6, 2))}
 STIFFNESS = np.logspace(0.0, 11.0, 89)  # N/m per support
-# a range belongs to a limit where the frequency is within this share of the step to the next limit
+# A range belongs to a limit where the frequency is within this share of the distance to the next.
 NEAR = 0.05
 
 
 def figure_03_contact_law(config, structure):
-    """Return the Sheet of the discretised layer of stiffness and of the force law with its tangent
-    and secant stiffness.
+    """Return the Sheet of the discretised layer of stiffness and of the force law.
+
+    The law is drawn with its tangent and secant stiffness.
     """
     gap, support = max(config.grid.gap_m), config.supports[0]
     stiffness = float(np.sum(structure.contact.stiffness[structure.contact.support == 0]))
@@ -172,9 +171,7 @@ def _law(sheet, axes, gap, stiffness):
 
 
 def model_with_points(config, points):
-    """Return the ModalModel of a configuration whose supports each have `points` contact points of
-    equal stiffness.
-    """
+    """Return the ModalModel of a configuration with `points` equal contact points per support."""
     plain = {"points": points, "gap_factor": 1.0, "centre_offset_m": (0.0, 0.0)}
     supports = tuple(
         {**support, **plain, "stiffness_N_per_m": float(np.sum(support.stiffness_N_per_m))}
@@ -184,9 +181,7 @@ def model_with_points(config, points):
 
 
 def figure_04_first_frequency(config):
-    """Return the Sheet of the first frequency against the bilateral stiffness, by number of contact
-    points.
-    """
+    """Return the Sheet of first frequency against bilateral stiffness, by number of points."""
     caption = (
         "First frequency of the driven plane against a bilateral stiffness k per support, shared"
         " by 1, 2, 3, 5 or 9 contact points over its height. Dotted: the frequencies of the free"

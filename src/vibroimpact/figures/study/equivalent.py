@@ -1,6 +1,4 @@
-"""The equivalent support: k and c against load by every method (paper figure 13), and the collapse
-of all gaps on load over gap.
-"""
+"""The equivalent support: k and c against load (figure 13) and against load over gap."""
 
 from __future__ import annotations
 
@@ -80,9 +78,7 @@ def figure_13_equivalent_support(config, model, rows):
 
 
 def _methods(sheet, axes, rows, column, methods):
-    """Draw one quantity by every method: predicted ones as lines, the others with the scatter over
-    seeds.
-    """
+    """Draw one quantity by every method: predictions as lines, others with their seed scatter."""
     for method in methods:
         label, colour, marker = METHODS[method]
         chosen = [

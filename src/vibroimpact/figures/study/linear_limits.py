@@ -1,6 +1,4 @@
-"""The linear tube at both ends of the study: frequencies without contact, in full contact and held,
-and the band that figures show.
-"""
+"""The linear limits of the tube: without contact, in full contact and held; and the shown band."""
 
 from __future__ import annotations
 
@@ -9,12 +7,13 @@ from scipy import linalg
 
 from vibroimpact.linear.modes import contact_matrix, driven_block
 
-HELD = 1.0e14  # N/m: as good as held at the contact points; beyond it round-off shows
+HELD = 1.0e14  # N/m: practically fixed contact points; larger values show round-off
 
 
 def driven_frequencies(model, stiffness, count=1):
-    """Return (k, count) lowest frequencies in Hz of the block that the drive excites, for support
-    stiffness (k,) in N/m.
+    """Return (k, count) lowest frequencies in Hz of the plane that the drive excites.
+
+    stiffness (k,): N/m per support.
     """
     modes = driven_block(model)
     contact = contact_matrix(model)[modes]
@@ -26,8 +25,9 @@ def driven_frequencies(model, stiffness, count=1):
 
 
 def linear_modes(model, k, count):
-    """Return (count,) lowest frequencies in Hz of the driven plane with bilateral support stiffness
-    k in N/m.
+    """Return (count,) lowest frequencies in Hz of the driven plane with bilateral stiffness k.
+
+    k: N/m per support.
     """
     return driven_frequencies(model, k, count)[0]
 
@@ -38,8 +38,10 @@ def contact_stiffness(model):
 
 
 def shown_band(model, highest_Hz=np.inf):
-    """Return (low, high) in Hz: from well below the first free mode to just above the third mode of
-    the driven plane in full contact.
+    """Return (low, high) in Hz of the band that figures show.
+
+    It reaches from well below the first free mode to just above the third mode of the driven plane
+    in full contact.
     """
     third = linear_modes(model, contact_stiffness(model), 3)[-1]
     return 0.35 * linear_modes(model, 0.0, 1)[0], min(1.1 * third, highest_Hz)

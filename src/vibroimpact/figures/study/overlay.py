@@ -1,6 +1,4 @@
-"""A campaign laid over the simulation: PSD of acceleration at the response point for several loads
-(paper figure 5).
-"""
+"""A campaign and the simulation: PSD of acceleration at the response point (figure 5)."""
 
 from __future__ import annotations
 
@@ -15,9 +13,7 @@ from .linear_limits import HELD, linear_modes, shown_band
 from .psd_table import driven_sensor
 
 LEVELS = 4
-ENVELOPE_HZ = (
-    0.5  # width of the blocks whose extremes are drawn: bin by bin they hide everything else
-)
+ENVELOPE_HZ = 0.5  # width of the blocks whose extremes are drawn; those of bins would hide the rest
 
 
 def figure_05_overlay(config, model, responses, campaign):
@@ -113,8 +109,9 @@ def _panel(sheet, axes, config, model, responses, measured):
 
 
 def _shown_records(campaign, gap_m):
-    """Return up to LEVELS record indices of ascending load, at the campaign's gap nearest to gap_m;
-    one per load.
+    """Return up to LEVELS record indices of ascending load, one per load.
+
+    They are at the gap of the campaign nearest to gap_m.
     """
     gaps, loads = campaign["gap"].values, campaign["load_rms"].values
     distance = np.where(np.isfinite(gaps), np.abs(gaps - gap_m), 0.0)

@@ -1,6 +1,4 @@
-"""Pole of the main peak: its width (paper figure 9, left), poles by LSCF and by width (right), and
-the stabilisation chart behind them.
-"""
+"""The pole of the main peak: its width and the poles (figure 9), and the stabilisation chart."""
 
 from __future__ import annotations
 
@@ -188,8 +186,9 @@ def _peaks(sheet, axes, config, curves, spectra, rows):
 
 
 def figure_09_stabilisation(config, curves, spectra, rows):
-    """Return the Sheet of the stabilisation charts at the load of the widest peak and at the
-    largest load.
+    """Return the Sheet of the stabilisation charts at two loads.
+
+    They are the load of the widest peak and the largest load.
     """
     cases = first_seed(curves)
     loads = sorted({transition_load(rows), max(cases)})
@@ -284,9 +283,7 @@ def _chart(sheet, axes, config, fitted, spectrum, sensor):
 
 
 def _circle_taken(sheet, axes, fitted, place, order, physical):
-    """Circle the poles that were taken: at each order taken, the pole nearest to the main peak's
-    fitted one.
-    """
+    """Circle the poles that were used: at each order, the one nearest to the fitted peak."""
     curve = fitted["peak_curve"].values[0]
     peak = (
         fitted["low_frequency"].values[np.nanargmax(curve)] if np.isfinite(curve).any() else np.nan

@@ -1,6 +1,4 @@
-"""What the figures need of the spectra of a study, gathered file by file so that no more than one
-file is held at a time.
-"""
+"""The spectra that figures need, gathered file by file with one file in memory at a time."""
 
 from __future__ import annotations
 
@@ -26,9 +24,10 @@ STATISTICS = {
 class Responses:
     """PSDs of one gap by load, and the in-plane share of all cases.
 
-    load (load,) N RMS ascending; frequency (frequency,) Hz; psd: {(quantity, sensor, statistic):
-    (load, frequency)}, statistic mean (over segments and seeds), min or max (over both); share:
-    rows {gap_m, load_rms_N, seed, point, in_plane_share_dB}.
+    load (load,): N RMS, ascending. frequency (frequency,): Hz.
+    psd: {(quantity, sensor, statistic): (load, frequency)}; statistic is mean (over segments and
+    seeds), min or max (over both).
+    share: rows {gap_m, load_rms_N, seed, point, in_plane_share_dB}.
     """
 
     gap_m: float
@@ -39,8 +38,9 @@ class Responses:
 
 
 def spectra_shown(config, paths, read):
-    """Yield the spectra of files named after cases, by read(path, names) with what gather needs:
-    little, for gaps that are not shown.
+    """Yield the spectra of files named after cases, with the variables that gather needs.
+
+    read: function (path, names). Of gaps that are not shown, few variables are read.
     """
     names = [f"psd_{quantity}_{statistic}" for quantity in QUANTITIES for statistic in STATISTICS]
     shown = set(paths_of_gap(paths, shown_gap(config)))
@@ -49,10 +49,10 @@ def spectra_shown(config, paths, read):
 
 
 def gather(config, model, spectra):
-    """Return the Responses of an iterable of spectra datasets: PSDs of the largest gap in the shown
-    band, in the driven direction.
+    """Return the Responses of an iterable of spectra datasets.
 
-    Raises ValueError when no dataset has that gap.
+    PSDs are those of the largest gap in the shown band, in the driven direction. Raises ValueError
+    when no dataset has that gap.
     """
     gap_m = shown_gap(config)
     driven = driven_axis(config.excitation.direction)
@@ -90,9 +90,7 @@ def gather(config, model, spectra):
 
 
 def _in_plane_share(dataset, driven):
-    """Return one row per point: mean square of the other directions over that of the driven one, in
-    dB.
-    """
+    """Return one row per point: mean square of the other directions over the driven one, in dB."""
     names = [str(name) for name in dataset["sensor"].values]
     power = dict(
         zip(names, dataset["psd_displacement_mean"].values.sum(axis=-1, dtype=float), strict=True)
@@ -119,8 +117,9 @@ def _in_plane_share(dataset, driven):
 
 
 def unit_force_psd(config, frequency):
-    """Return the one-sided PSD (frequency,) in N²/Hz of the drive at 1 N RMS: flat in its band, or
-    that of the measured record.
+    """Return the one-sided PSD (frequency,) in N²/Hz of the drive at 1 N RMS.
+
+    It is flat in its band, or that of the measured record.
     """
     excitation = config.excitation
     if excitation.kind == "band_limited":

@@ -1,6 +1,4 @@
-"""Responses against load: maps (paper figures 6 and 8), overlaid PSDs with the linear bounds
-(figure 7), and the in-plane share.
-"""
+"""Responses against load: maps (figures 6 and 8), PSDs (figure 7), and the in-plane share."""
 
 from __future__ import annotations
 
@@ -28,13 +26,14 @@ from .seed_scatter import over_seeds
 
 FREE_K = 1.0  # N/m, the paper's lower bound
 DYNAMIC_RANGE_DB = 75.0  # of the colour maps
-LOWEST_SHARE_DB = -100.0  # what lies below is the seeded imperfection, not motion
+LOWEST_SHARE_DB = -100.0  # below it is the effect of the seeded imperfection alone
 LINEAR_STIFFNESS_STEPS = 90
 
 
 def figure_06_levels(config, model, responses):
-    """Return the Sheet of PSD / load² over frequency and load at the response point and at the
-    broadband point.
+    """Return the Sheet of PSD / load² over frequency and load, at two points.
+
+    They are the response point and the broadband point.
     """
     points = list(
         dict.fromkeys((config.identification.response_point, config.identification.broadband.point))
@@ -84,8 +83,9 @@ def figure_06_levels(config, model, responses):
 
 
 def figure_07_overlay_of_loads(config, model, responses):
-    """Return the Sheet of PSD / load² at the broadband point for all loads, with the linear
-    responses at both ends.
+    """Return the Sheet of PSD / load² at the broadband point for all loads.
+
+    The linear responses at both ends are drawn with them.
     """
     sensor = driven_sensor(config, config.identification.broadband.point)
     stiff = contact_stiffness(model)
@@ -148,9 +148,7 @@ def figure_07_overlay_of_loads(config, model, responses):
 
 
 def figure_08_load_and_stiffness(config, model, responses):
-    """Return the Sheet with the non-linear PSD against load beside the linear PSD against bilateral
-    stiffness.
-    """
+    """Return the Sheet of the non-linear PSD against load and the linear PSD against stiffness."""
     sensor = driven_sensor(config, config.identification.broadband.point)
     caption = (
         f"PSD of displacement at {sensor} divided by the square of the load. Left: simulated with"
@@ -281,9 +279,7 @@ def _decibels(values):
 
 
 def _mark_modes(sheet, axes, model, band):
-    """Mark the modes of the driven plane: of the free tube at the bottom of a map, in full contact
-    at its top.
-    """
+    """Mark the modes of the driven plane: free below a map, in full contact above it."""
     for name, k, height, style in (
         ("free modes", 0.0, 0.012, {"marker": "^", "color": "white"}),
         (

@@ -1,6 +1,4 @@
-"""Values of many cases against one quantity: the median over seeds (and supports), with the range
-as a bar.
-"""
+"""Values of many cases against one quantity: median over seeds (and supports), range as a bar."""
 
 from __future__ import annotations
 
@@ -8,12 +6,12 @@ import numpy as np
 
 
 def over_seeds(sheet, axes, rows, x_column, y_column, curve, tags=(), **style):
-    """Draw, for each value of x_column among rows, the median of y_column with a bar from the
-    smallest to the largest value.
+    """Draw the median of y_column for each value of x_column, with a bar over the range.
 
-    rows: list of {column: value}, SI; values that are not finite are left out (unresolved). tags:
-    columns recorded beside, constant at each x. Returns the errorbar container, or None where
-    nothing is left.
+    rows: list of {column: value}, SI; values that are not finite are left out (unresolved).
+    tags: further recorded columns, constant at each x.
+
+    Returns the errorbar container, or None without any value.
     """
     usable = [row for row in rows if np.isfinite(row[y_column])]
     if not usable:
@@ -39,9 +37,7 @@ def over_seeds(sheet, axes, rows, x_column, y_column, curve, tags=(), **style):
 
 
 def medians(rows, x_column, y_column):
-    """Return (x (place,) ascending, median of y_column (place,)) of the finite values among
-    rows.
-    """
+    """Return (x (place,) ascending, median of y_column (place,)) of the finite values."""
     usable = [row for row in rows if np.isfinite(row[y_column])]
     places = sorted({row[x_column] for row in usable})
     return np.array(places), np.array(

@@ -1,6 +1,4 @@
-"""Deflection shapes: along the tube for several loads (paper figure 10), and the singular values
-behind them (figure 11).
-"""
+"""Deflection shapes along the tube (figure 10), and the singular values behind them (figure 11)."""
 
 from __future__ import annotations
 
@@ -28,10 +26,9 @@ LOWEST_VALUE = 1.0e-6  # of the first: below is the rounding of the stored spect
 
 
 def figure_10_shapes(config, model, curves, rows):
-    """Return the Sheet of the deflection shapes of one gap, their likeness to the linear tube's,
-    and their part in quadrature.
+    """Return the Sheet of the deflection shapes of one gap, their MAC and their quadrature part.
 
-    curves: {Case: Dataset}; rows: table rows of that gap.
+    The MAC is with the linear tube. curves: {Case: Dataset}; rows: table rows of that gap.
     """
     axis = config.record.shape_line.direction
     caption = (

@@ -1,6 +1,4 @@
-"""The tube itself: its layout with supports, points and sensors (paper figure 1) and its free mode
-shapes (paper figure 2).
-"""
+"""The tube: layout with supports, points and sensors (figure 1), and free modes (figure 2)."""
 
 from __future__ import annotations
 
@@ -30,8 +28,9 @@ OBLIQUE = (0.75, 0.45)  # how a unit out of plane is seen: right and up
 
 
 def view_axes(positions):
-    """Return the indices (horizontal, vertical, depth) of the global axes for a front view of
-    positions (point, 3): the plane that holds the largest extents.
+    """Return the indices (horizontal, vertical, depth) of the global axes for a front view.
+
+    positions (point, 3): m; the view is on the plane of their largest extents.
     """
     extent = np.ptp(positions, axis=0)
     depth = int(np.argmin(extent))
@@ -40,9 +39,7 @@ def view_axes(positions):
 
 
 def figure_01_layout(config, structure):
-    """Return the Sheet of the layout: front view, and a support seen from the side and from
-    above.
-    """
+    """Return the Sheet of the layout: front view, and a support from the side and from above."""
     section = config.structure.section
     gap = max(config.grid.gap_m)
     caption = (
@@ -70,7 +67,7 @@ def figure_01_layout(config, structure):
 
 
 def _front_view(sheet, axes, config, structure):
-    """Draw the tube seen along the depth axis, with everything that stands on it."""
+    """Draw the tube seen along the depth axis, with supports, points and sensors."""
     places = np.linspace(0.0, structure.centreline.length, 300)
     line = np.array([structure.centreline.position(place) for place in places])
     view = view_axes(line)
@@ -160,9 +157,7 @@ def _draw_plate(axes, structure, points, view, name):
 
 
 def _beside(direction):
-    """Return (offset (2,), {ha, va}) of a text that stands beside a point, horizontally or
-    vertically, on the side of direction (2,).
-    """
+    """Return (offset (2,), {ha, va}) of a text next to a point, on the side of direction (2,)."""
     if abs(direction[0]) > 0.4:
         return np.array([np.sign(direction[0]), 0.0]), {
             "ha": "left" if direction[0] > 0.0 else "right",
@@ -175,8 +170,9 @@ def _beside(direction):
 
 
 def _draw_points(sheet, axes, config, structure, view, columns):
-    """Draw the named points: one label for all names at a place, the directions of its sensors, and
-    the drive.
+    """Draw the named points with the directions of their sensors, and the drive.
+
+    Names at the same place share one label.
     """
     places = {}
     for name, position in config.points.items():
@@ -231,8 +227,9 @@ def _draw_points(sheet, axes, config, structure, view, columns):
 
 
 def _direction(axes, spot, direction, view):
-    """Draw a force: an arrow where it lies in the plane of view, else a circle with a dot (towards
-    the reader) or a cross.
+    """Draw a force as an arrow; as a circle with a dot or cross along the line of sight.
+
+    The dot points towards the reader.
     """
     direction = direction / np.linalg.norm(direction)
     inside = direction[list(view[:2])]
@@ -260,9 +257,7 @@ def _direction(axes, spot, direction, view):
 
 
 def _support_side(sheet, axes, config, structure, gap):
-    """Draw the first support from the side: the tube between the walls of the hole, and its contact
-    points.
-    """
+    """Draw the first support from the side: the tube in the hole, and its contact points."""
     radius = 0.5 * config.structure.section.outer_diameter_m
     support = config.supports[0] if config.supports else None
     axes.set_title(f"a support from the side (gap × {GAP_EXAGGERATION:g})")
@@ -384,10 +379,10 @@ def _support_section(sheet, axes, config, gap):
 
 
 def free_modes(structure, highest_Hz, count=SHOWN_MODES):
-    """Return (frequency (mode,) Hz, shapes (mode, node, 3)) of the lowest modes of the tube without
-    contact, largest displacement 1.
+    """Return (frequency (mode,) Hz, shapes (mode, node, 3)) of the lowest modes without contact.
 
-    highest_Hz bounds the search; fewer modes are returned where fewer lie below it.
+    The largest displacement of a shape is 1. Fewer than `count` modes are returned where fewer lie
+    below highest_Hz.
     """
     groups = uncoupled_groups(structure.mass, structure.stiffness, structure.contact_rows())
     found = []

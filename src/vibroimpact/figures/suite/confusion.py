@@ -1,4 +1,4 @@
-"""What was hidden against what came first."""
+"""Hidden effects against the first effect of the verdict."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ SHADES = "Blues"
 
 
 def confusion_figure(confusion):
-    """Return [Sheet] of the rows of confusion.csv {group, hidden, first_name, campaigns}: counts in
-    the cells of a matrix.
+    """Return [Sheet] of the confusion matrix.
+
+    confusion: rows of confusion.csv {group, hidden, first_name, campaigns}.
     """
     caption = (
         "Rows: what was hidden; columns: the name that came first, or the verdict where nothing was"
@@ -85,8 +86,9 @@ def confusion_figure(confusion):
 
 
 def _cells(confusion):
-    """Return {((group, hidden), name): campaigns}; pairs, and effects taken out of the catalogue,
-    share a row each: nearly every one is hidden once.
+    """Return {((group, hidden), name): campaigns}.
+
+    Pairs, and effects left out of the catalogue, share a row each, since most occur once.
     """
     cells = {}
     for row in confusion:
@@ -100,8 +102,9 @@ def _cells(confusion):
 
 
 def _columns(hidden, names):
-    """Return the columns in the order of the rows, so that right answers lie on the diagonal, then
-    names never hidden, then verdicts.
+    """Return the columns in the order of the rows, so that right answers lie on the diagonal.
+
+    Names never hidden and verdicts follow.
     """
     order = [*dict.fromkeys(name for _, name in hidden if name in names)]
     last = [name for name in (RIGHT_PAIR, OTHER_PAIR, *VERDICTS) if name in names]

@@ -11,8 +11,9 @@ WIDE = 4.0  # ratio of the ends from which on the axis is logarithmic
 
 
 def parameters_figure(rows):
-    """Return [Sheet] of judged rows that name a parameter: estimate over truth with its interval,
-    one line per campaign.
+    """Return [Sheet] of estimate over truth with its interval, one line per campaign.
+
+    rows: judged rows that name a parameter.
     """
     rows = sorted(
         (row for row in rows if row["parameter"]),

@@ -27,8 +27,9 @@ MARKS = {
 
 
 def rates_figure(rates):
-    """Return [Sheet] of the rows of rates.csv: a point with its interval for each, marks for
-    target, failure and chance.
+    """Return [Sheet] of the rows of rates.csv: a point with its interval for each.
+
+    Marks show target, failure and chance.
     """
     caption = (
         "Each row is a question to the verdicts of one arm of the suite, n its campaigns. Point:"

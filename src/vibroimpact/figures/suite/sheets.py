@@ -9,8 +9,9 @@ from .strength import strength_figure
 
 
 def suite_figures(rows, rates, confusion):
-    """Return the Sheets of the judged rows, the rows of rates.csv and those of confusion.csv, in
-    the order of the page.
+    """Return the Sheets of the suite, in the order of the page.
+
+    rows: judged rows. rates, confusion: rows of rates.csv and confusion.csv.
     """
     return [
         *rates_figure(rates),

@@ -1,4 +1,4 @@
-"""Detection against the strength of what is hidden."""
+"""Detection against the strength of the hidden effect."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, label_of, number, shown
 
 POINTS = 200
-ROOM = 1.25  # beside the weakest and the strongest, also where they are one
-BINS = 4  # of equally many campaigns
+ROOM = 1.25  # factor beyond the weakest and the strongest campaign
+BINS = 4  # bins with equal numbers of campaigns
 
 
 def strength_figure(rows):
-    """Return [Sheet] of judged rows: the share found over strength with the fitted curve and the
-    limit, and every campaign in the line of its effect.
+    """Return [Sheet] of the share of detected effects against strength, and of every campaign.
+
+    The share is drawn with the fitted curve and the limit. rows: judged rows.
     """
     caption = (
         "Campaigns with one effect hidden that the catalogue holds. Above: share whose set of"

@@ -1,6 +1,4 @@
-"""The evidence of the paper's claims that no figure of the study shows: limits, damping, rank,
-node, valleys, response points.
-"""
+"""Evidence of the paper's claims: limits, damping, rank, node, valleys, response points."""
 
 from __future__ import annotations
 
@@ -13,15 +11,13 @@ from vibroimpact.validation.claims.response import peaks_by_sensor, valleys
 from vibroimpact.validation.claims.shapes import node_places, quadrature
 from vibroimpact.validation.study_curves import POLES, median
 
-from .columns import VALIDATION_COLUMNS
-
-assert VALIDATION_COLUMNS  # the labels of these columns
 COLOURS = (BLUE, ORANGE, GREEN, RED)
 
 
 def claims_of_the_peak(model, gaps):
-    """Return the Sheet of the main peak: frequency by response point between the linear limits,
-    damping by method, against load.
+    """Return the Sheet of frequency and damping of the main peak against load.
+
+    Frequency by response point is drawn with the linear limits, damping by method.
     """
     wide, tight = gaps
     sheet = Sheet(
@@ -90,8 +86,9 @@ def claims_of_the_peak(model, gaps):
 
 
 def claims_of_the_shape(model, gaps):
-    """Return the Sheet of the deflection shape: singular values, node, quadrature, and the filling
-    of anti-resonances, against load.
+    """Return the Sheet of the deflection shape against load.
+
+    It shows singular values, node, quadrature, and the filling of anti-resonances.
     """
     wide, tight = gaps
     sheet = Sheet(

@@ -1,6 +1,4 @@
-"""Convergence of frequencies: with the mesh, and with the number of contact points over the whole
-range of stiffness.
-"""
+"""Convergence of frequencies with the mesh and with the number of contact points."""
 
 from __future__ import annotations
 
@@ -20,8 +18,6 @@ from vibroimpact.figures.style import (
     shown,
 )
 
-from . import columns as validation_columns  # noqa: F401  the axis labels
-
 POINTS = {
     ("equal", 1): (PINK, (0, (1, 1))),
     ("equal", 2): (ORANGE, (0, (4, 1))),
@@ -39,8 +35,9 @@ SMALLEST = 1.0e-10  # relative, of the axes
 
 
 def slope_line(sheet, axes, columns, start, order, ends, curve):
-    """Draw a grey line of slope `order` through start (x, y) between the x values `ends`, named by
-    the order.
+    """Draw a grey line of slope `order` through start (x, y), labelled with the order.
+
+    ends: x values of its ends.
     """
     x = np.array(ends, dtype=float)
     y = start[1] * (x / start[0]) ** order
@@ -59,8 +56,9 @@ def slope_line(sheet, axes, columns, start, order, ends, curve):
 
 
 def mesh(rows):
-    """Return the Sheet of the frequencies' changes with each halving of the elements, from the rows
-    of `mesh_rows`.
+    """Return the Sheet of the changes of frequencies with each halving of the elements.
+
+    rows: of `mesh_rows`.
     """
     caption = (
         f"Relative change of the first seven frequencies (k = {SHOWN_STIFFNESS:g} N/m per support)"
@@ -124,8 +122,9 @@ def mesh(rows):
 
 
 def contact_points(rows, refinement):
-    """Return the Sheet of the first frequency by contact points, from `contact_point_rows` and
-    `refinement_rows`.
+    """Return the Sheet of the first frequency by number of contact points.
+
+    rows, refinement: of `contact_point_rows` and `refinement_rows`.
     """
     caption = (
         "First frequency against the bilateral stiffness per support (the paper's figure 4). Left:"

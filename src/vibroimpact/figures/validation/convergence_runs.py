@@ -1,6 +1,4 @@
-"""Convergence of runs: linear modes and energy balance with the step; response statistics with the
-step and with the modes kept.
-"""
+"""Convergence of runs with the step and with the number of modes."""
 
 from __future__ import annotations
 
@@ -20,19 +18,18 @@ from vibroimpact.figures.style import (
 )
 from vibroimpact.validation.convergence.statistics import ENERGY, LARGEST_SCATTER
 
-from . import columns as validation_columns  # noqa: F401  the axis labels
 from .convergence import slope_line
 
 LOAD_STYLES = ((BLUE, "o"), (RED, "s"), (GREEN, "^"), (ORANGE, "D"), (PINK, "v"), (BLACK, "P"))
 AMPLITUDE_PER_DB = np.log(10.0) / 20.0  # relative change of an amplitude per dB of its PSD
 STANDARD_ERRORS = 2.0  # half length of a bar
 STEP_REMARK = (
-    "Both schemes are held against Newmark at the finest step. Stresses are read at 10 to 41 kHz,"
-    " as the step has it: the peak stress grows a little with that rate."
+    "Both schemes are compared with Newmark at the finest step. Stresses are sampled at 10 to 41"
+    " kHz, depending on the step: the peak stress grows a little with that rate."
 )
 MODES_REMARK = (
-    "Constrained modes and attachment shapes are kept but in the control, 'free modes alone', which"
-    " misses the local bending at the supports."
+    "All but the control, 'free modes alone', have constrained modes and attachment shapes; the"
+    " control lacks the local bending at the supports."
 )
 AXIS_NAMES = {
     "step": ("Newmark", "steps/s"),
@@ -43,10 +40,10 @@ AXIS_NAMES = {
 
 
 def step(periods, table):
-    """Return the Sheet of the frequency loss of linear modes and of the energy residual of impacts
-    against the step.
+    """Return the Sheet of period error of linear modes and energy residual of impacts.
 
-    periods: rows of `period_rows`; table: rows of `statistics_rows`.
+    Both are drawn against the step. periods: rows of `period_rows`; table: rows of
+    `statistics_rows`.
     """
     caption = (
         "Left: relative loss of frequency of linear out-of-plane modes in free vibration under"
@@ -130,11 +127,11 @@ def step(periods, table):
 
 
 def statistics(table, axes_of_study, name, title, remark):
-    """Return the Sheet of the differences of response statistics from the finest value, one panel
-    per load.
+    """Return the Sheet of the differences of statistics from the finest value, a panel per load.
 
-    table: rows of `statistics_rows`; axes_of_study: names of the axes drawn together, such as
-    ("modes", "modes_alone"); remark: the last sentence of the caption.
+    table: rows of `statistics_rows`.
+    axes_of_study: names of the axes drawn together, such as ("modes", "modes_alone").
+    remark: the last sentence of the caption.
     """
     loads = sorted({row["load_rms_N"] for row in table})
     own = [
@@ -194,9 +191,7 @@ def both_axes(table):
 
 
 def _panel(sheet, axes, rows, names, curves):
-    """Draw the scatter of one record as bands and the differences as bars, one group per
-    statistic.
-    """
+    """Draw the scatter of one record as bands and the differences as bars, grouped by statistic."""
     for place, text in enumerate(names):
         group = [row for row in rows if row["statistic"] == text and _shown(row)]
         if not group:

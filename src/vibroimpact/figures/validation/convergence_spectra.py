@@ -1,6 +1,4 @@
-"""What length, buffer, overlap and window of a record are worth: degrees of freedom, leakage, and
-the scatter that impacts add.
-"""
+"""Effect of length, buffer, overlap and window of a record, and the scatter due to impacts."""
 
 from __future__ import annotations
 
@@ -9,15 +7,15 @@ import numpy as np
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, ordered_colours
 
-from . import columns as validation_columns  # noqa: F401  the axis labels
-
 WINDOWS = {"hann": ("-", "o"), "boxcar": ((0, (2, 1)), "s")}
 PEAK_COLOURS = (BLUE, RED, GREEN)
 
 
 def spectra(averages, leakage, impacts):
-    """Return the Sheet with four panels; rows of `noise_rows` and `linear_rows` together, of
-    `leakage_rows` and of `impact_rows`.
+    """Return the Sheet of degrees of freedom, leakage and scatter, with four panels.
+
+    averages: rows of `noise_rows` and `linear_rows`. leakage, impacts: rows of `leakage_rows` and
+    `impact_rows`.
     """
     caption = (
         "Degrees of freedom: formula of Welch (1967) against 2 mean²/variance over records (bars:"
@@ -83,8 +81,9 @@ def _averages(sheet, axes, rows):
 
 
 def _impacts(sheet, axes, rows):
-    """Draw the multiple of the Gaussian variance against the width of the bands, one curve per
-    load, with the longest buffers.
+    """Draw the multiple of the Gaussian variance against the width of the bands.
+
+    There is one curve per load, with the longest buffers.
     """
     axes.set_title("levels over seeds, with impacts")
     longest = max(row["segment_s"] for row in rows)

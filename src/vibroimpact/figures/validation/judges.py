@@ -1,34 +1,24 @@
-"""The impacting tube in OpenSees and ours: displacement and contact force step by step, and how the
-difference falls.
-"""
+"""The impacting tube in OpenSees and ours: displacement and contact force, and convergence."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.figures.columns import COLUMNS
 from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, COLUMNS, GREY, ORANGE, SKY
+from vibroimpact.figures.style import BLACK, BLUE, GREY, ORANGE, SKY
 
-COLUMNS.update(
-    {
-        "across_plane_m": ("Displacement across the plane (mm)", 1e3),
-        "moment_s": ("Time (ms)", 1e3),
-        "push_N": ("Contact force (N)", 1.0),
-        "free_modes_to_Hz": ("Free modes kept to (kHz)", 1e-3),
-        "bend_elements": ("Elements of the bend (-)", 1.0),
-        "judged_difference": ("Relative difference from OpenSees (-)", 1.0),
-    }
-)
 POINT = 0  # the lower edge of the left plate
 ZOOM_S = (0.088, 0.100)
-COMPLETE_HZ = 1.0e5  # a basis said to keep modes beyond this has them all; shown at the right edge
+COMPLETE_HZ = 1.0e5  # a basis with modes beyond this is complete; drawn at the right edge
 CURVES = {"displacement": (BLUE, "o"), "contact force": (ORANGE, "s")}
 OURS, JUDGE = {"color": BLACK, "linewidth": 0.8}, {"color": SKY, "linewidth": 3.0}
 
 
 def judged_impacts(verdicts, gap_m):
-    """Return the Sheet of the comparison with OpenSees from Verdicts; gap_m in m. Without OpenSees
-    the axes say so.
+    """Return the Sheet of the comparison with OpenSees; without OpenSees it says so.
+
+    verdicts: of validation.judges.table. gap_m: m.
     """
     caption = (
         "The same tube, force, gaps, Rayleigh damping and step in OpenSees (broad, light blue; all"
@@ -107,8 +97,9 @@ def _traces(sheet, impacts, gap_m):
 
 
 def _differences(sheet, axes, names, rows):
-    """Draw the relative differences against an axis; names: (column of the figure, key of the
-    rows).
+    """Draw the relative differences against an axis.
+
+    names: (column of the figure, key of the rows).
     """
     column, key = names
     for quantity, (colour, marker) in CURVES.items():

@@ -1,6 +1,4 @@
-"""How far the equivalent linear tube predicts: error of each quantity against contact, where
-nothing was fitted.
-"""
+"""Error of the equivalent linear tube for each quantity, where nothing was fitted."""
 
 from __future__ import annotations
 
@@ -10,9 +8,6 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLUE, GREEN, GREY, ORANGE
 from vibroimpact.validation.prediction.table import USABLE_dB
 
-from .columns import VALIDATION_COLUMNS
-
-assert VALIDATION_COLUMNS  # the labels of these columns
 QUANTITIES = (
     "RMS displacement",
     "PSD 5-20 Hz",

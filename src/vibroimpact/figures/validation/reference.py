@@ -1,22 +1,17 @@
-"""The reference cases at a glance: order of the contact times in the step, and the exact
-random-stop law.
-"""
+"""The reference cases: order of the contact times in the step, and the exact random-stop law."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLUE, GREY
-
-from .columns import VALIDATION_COLUMNS
-
-assert VALIDATION_COLUMNS  # the labels of these columns
+from vibroimpact.figures.style import BLUE, GREY, label_of
 
 
 def reference(checks, order):
-    """Return the Sheet of R3's order and of R11; checks: rows of validation.csv; order: rows
-    {step_s, contact_time_error_s}.
+    """Return the Sheet of R3's order and of R11.
+
+    checks: rows of validation.csv. order: rows {step_s, contact_time_error_s}.
     """
     sheet = Sheet(
         "validation_reference",
@@ -82,5 +77,5 @@ def reference(checks, order):
     )
     axes.axvline(1.0, color=GREY, linewidth=0.9)
     axes.set_yticks(places, [str(row["quantity"]) for row in rows], fontsize=7.5)
-    axes.set_xlabel(VALIDATION_COLUMNS["law_ratio"][0])
+    axes.set_xlabel(label_of("law_ratio"))
     return sheet

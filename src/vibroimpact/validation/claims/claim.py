@@ -1,4 +1,4 @@
-"""One claim of the paper beside what this study measured."""
+"""One claim of the paper and what this study measured."""
 
 from dataclasses import asdict, dataclass
 
@@ -10,9 +10,12 @@ AGREE = 0.25  # of the median: what "agree" means throughout
 class Claim:
     """A claim of the paper, how it was measured, and whether it holds.
 
-    claim, section: of the paper; measure: what was computed; value: the numbers, with units;
-    threshold: what they were held against; verdict: HOLDS, CONDITIONS or FAILS; why: a sentence
-    with the condition or the reason, with numbers.
+    claim, section: of the paper.
+    measure: what was computed.
+    value: the numbers, with units.
+    threshold: what the numbers are compared with.
+    verdict: HOLDS, CONDITIONS or FAILS.
+    why: a sentence with the condition or the reason, with numbers.
     """
 
     claim: str

@@ -1,6 +1,4 @@
-"""Claims on the equivalent support: the three readings agree, a smaller gap acts as a larger load,
-and what the model needs.
-"""
+"""Claims on the equivalent support: agreement of the methods, gap and load, the model's needs."""
 
 import numpy as np
 
@@ -12,12 +10,12 @@ from vibroimpact.validation.variant import changed
 from .claim import AGREE, Claim, graded
 
 STIFFNESS_RANGE = (1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 4e6, 1e7, 1e8, 1e9)  # N/m per support
-# N/m per support: the contact's own stiffness, the largest that an equivalent one reaches
+# N/m per support: the contact's own stiffness, an upper bound of the equivalent one.
 OWN = 4.0e6
 POINTS, LAYER_POINTS = (1, 2, 3, 5), 33
 ACCURATE = 0.01  # of a frequency
 MODES = 4
-FINE = 2.0  # standard errors within which a finer step or a wider basis changes nothing
+FINE = 2.0  # standard errors: smaller changes by a finer step or larger basis are not significant
 
 
 def three_stiffnesses(curves, model):
@@ -61,8 +59,9 @@ def three_stiffnesses(curves, model):
 
 
 def gap_reduction(curves, model):
-    """Return the Claim that a smaller gap acts as a larger load: k of different gaps at equal
-    load/gap.
+    """Return the Claim that a smaller gap acts as a larger load.
+
+    The measure is the ratio of k of different gaps at equal load/gap.
     """
     ratio = np.array(
         [row["k_ratio"] for row in curves.collapse if row["method"] in STIFFNESS], dtype=float
@@ -81,9 +80,7 @@ def gap_reduction(curves, model):
 
 
 def five_points(config):
-    """Return the Claim that five contact points per plate suffice over the whole range of
-    stiffness.
-    """
+    """Return the Claim that five contact points per plate suffice for all support stiffnesses."""
     shares = np.ones(LAYER_POINTS)
     shares[[0, -1]] = 0.5  # trapezoidal: the layer's own integral
     layer = _frequencies(
@@ -155,8 +152,9 @@ def theories(config):
 
 
 def step(rows):
-    """Return the Claim that a step of 2e-5 s is small enough; rows: runs along the step
-    (convergence_runs.run_rows).
+    """Return the Claim that a step of 2e-5 s is small enough.
+
+    rows: runs with different steps, of convergence.runs.run_rows.
     """
     return _along(
         rows,
@@ -169,8 +167,9 @@ def step(rows):
 
 
 def basis(rows, quality):
-    """Return the Claim that widening the basis matters least; rows: runs along the modes; quality:
-    rows of basis_quality.csv.
+    """Return the Claim that a larger basis matters least.
+
+    rows: runs with different numbers of modes. quality: rows of basis_quality.csv.
     """
     worst = {}
     for row in quality:
@@ -260,7 +259,7 @@ def _pairs(rows, value, finest):
 
 
 def _changes(rows, value, finest):
-    """{statistic: change of the mean over its standard error}."""
+    """Return {statistic: change of the mean over its standard error}."""
     return {
         name: float(
             (one.mean() - other.mean())

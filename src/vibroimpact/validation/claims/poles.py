@@ -1,6 +1,4 @@
-"""Claims on the main peak: its transition, its pole by width and by operational modal analysis, its
-apparent damping.
-"""
+"""Claims on the main peak: its transition, its pole by two methods, its apparent damping."""
 
 import numpy as np
 
@@ -34,7 +32,7 @@ def smooth_transition(curves, model):
 
 
 def _span(curves, frequency):
-    """Factor in load over which the peak covers 5 to 95 % of its rise."""
+    """Return the factor in load over which the peak covers 5 to 95 % of its rise."""
     share = (frequency - frequency[0]) / (frequency[-1] - frequency[0])
     return float(
         np.exp(
@@ -45,8 +43,9 @@ def _span(curves, frequency):
 
 
 def limits(curves, model):
-    """Return the Claim that low and high level peaks sit on the two linear limits (k = 1 and k =
-    the contact's own stiffness).
+    """Return the Claim that the peaks at low and high level are at the two linear limits.
+
+    The limits are k = 1 N/m and k = the contact's own stiffness.
     """
     stiffness = float(np.bincount(model.support_of_point, model.contact_stiffness).mean())
     free, held = (abs(first_pole(model, k, 0.0)) / (2.0 * np.pi) for k in (1.0, stiffness))

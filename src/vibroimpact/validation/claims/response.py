@@ -1,4 +1,4 @@
-"""Claims on the broadband response: anti-resonances, peaks that spread, and the response point."""
+"""Claims on the broadband response: anti-resonances, wide peaks, and the response point."""
 
 import numpy as np
 
@@ -8,24 +8,23 @@ from vibroimpact.validation.study_curves import median
 from .claim import Claim, graded
 
 VALLEY_SENSOR = "bend_45.y"
-DEEP_dB = 15.0  # what counts as an anti-resonance of the linear tube
-GONE_dB, RAISED_dB = (
-    6.0,
-    3.0,
-)  # depth of a valley that has vanished; height above the linear one of a valley that is filled
+DEEP_dB = 15.0  # least depth of an anti-resonance of the linear tube
+GONE_dB = 6.0  # depth below which a valley has vanished
+RAISED_dB = 3.0  # height above the linear one from which a valley is filled
 SAME_FREQUENCY = 0.02
 SPREAD = 2.0  # times the wider of the two ends
 SMOOTHING_HZ = 0.5
 
 
 def valleys(curves, model, sensor=VALLEY_SENSOR):
-    """Return {load: (valley, 3) dB}: depth of each anti-resonance of the equivalent linear tube,
-    depth left of it in the measured PSD, and how far the measured valley stands above the linear
-    one under the same force.
+    """Return {load: (valley, 3) dB} of the anti-resonances of the equivalent linear tube.
 
-    Anti-resonances: minima of the linear response at `sensor` between the main peak and 150 Hz, at
-    least DEEP_dB below the lower of the two maxima beside them, which is what depth is counted
-    from. Measured: the smallest mean PSD within 5 % of each.
+    Columns: depth in the linear tube; depth in the measured PSD; height of the measured valley
+    above the linear one under the same force.
+
+    Anti-resonances are minima of the linear response at `sensor` between the main peak and 150 Hz,
+    at least DEEP_dB below the lower of the two adjacent maxima, from which depth is measured. The
+    measured value is the smallest mean PSD within 5 % of the frequency.
     """
     k, c = median(curves.stiffness["broadband"]), median(curves.support_damping["broadband"])
     shape = model.sensor_shapes[:, [model.sensor_names.index(sensor)]]
@@ -49,12 +48,12 @@ def _valley(linear, measured, frequency, at):
 
 
 def _brim(level, at):
-    """The lower of the maxima on both sides."""
+    """Return the lower of the maxima on both sides."""
     return min(level[:at].max(), level[at:].max())
 
 
 def _minima(level):
-    """Indices of the minima at least DEEP_dB below their brim."""
+    """Return the indices of the minima at least DEEP_dB below their brim."""
     inner = np.flatnonzero((level[1:-1] < level[:-2]) & (level[1:-1] <= level[2:])) + 1
     return [at for at in inner if _brim(level, at) - level[at] > DEEP_dB]
 
@@ -90,8 +89,9 @@ def _smooth(psd, frequency):
 
 
 def peaks_by_sensor(curves):
-    """Return {sensor: (load,) Hz}: centre of the main peak of the mean PSD, within 25 % of the LSCF
-    frequency.
+    """Return {sensor: (load,) Hz}: centre of the main peak of the mean PSD.
+
+    It is within 25 % of the LSCF frequency.
     """
     around = median(curves.pole_frequency["lscf"])
     return {
@@ -128,7 +128,7 @@ def response_point(curves, model):
 
 
 def _peak(psd, frequency, around):
-    """Hz of the centre of the peak: mean frequency above half of the smoothed maximum."""
+    """Return the centre of the peak in Hz: mean frequency above half of the smoothed maximum."""
     smooth = _smooth(psd, frequency)
     inside = np.abs(frequency / around - 1.0) < 0.25
     high = inside & (smooth >= 0.5 * smooth[inside].max())
@@ -136,8 +136,9 @@ def _peak(psd, frequency, around):
 
 
 def spread_peaks(curves, model, sensor="bend_45.y"):
-    """Return the Claim that PSD peaks spread near the second and third constrained modes: effective
-    bandwidth against load.
+    """Return the Claim that peaks widen near the second and third constrained modes.
+
+    The measure is the effective bandwidth against load.
     """
     held = float(np.bincount(model.support_of_point, model.contact_stiffness).mean())
     spreads, centres = [], []
@@ -173,7 +174,7 @@ def spread_peaks(curves, model, sensor="bend_45.y"):
 
 
 def _driven_frequencies(model, k, sensor):
-    """Hz of the modes with bilateral k in the plane of the sensor, lowest first."""
+    """Return Hz of the modes with bilateral k in the plane of the sensor, lowest first."""
     modes = next(
         modes
         for modes, _ in model.blocks
@@ -188,6 +189,6 @@ def _driven_frequencies(model, k, sensor):
 
 
 def _bandwidth(psd, frequency):
-    """Effective bandwidth in Hz: (integral of S)² over integral of S²."""
+    """Return the effective bandwidth in Hz: (integral of S)² over integral of S²."""
     step = frequency[1] - frequency[0]
     return float(np.sum(psd) ** 2 * step / np.sum(psd**2))

@@ -1,6 +1,4 @@
-"""Claims on the operational deflection shape: its rank, its node, its phase, and what it knows of
-damping.
-"""
+"""Claims on the operational deflection shape: rank, node, phase, and its dependence on damping."""
 
 import numpy as np
 
@@ -15,9 +13,7 @@ SAME_SHAPE = 0.99  # MAC
 
 
 def rank(curves, model):
-    """Return the Claim that the response is of rank one at both ends of the load range and of more
-    in between.
-    """
+    """Return the Claim that the response is of rank one at both ends of the load range only."""
     ratio = np.median(curves.singular[:, :, 1] / curves.singular[:, :, 0], axis=1)
     third = np.median(curves.singular[:, :, 2] / curves.singular[:, :, 0], axis=1)
     top = int(np.argmax(ratio))
@@ -38,8 +34,11 @@ def rank(curves, model):
 
 
 def node_place(shape, arc_length, half):
-    """Return the arc length in m of the shape's node between the root and the apex at `half` m, NaN
-    without one: the highest sign change.
+    """Return the arc length in m of the node between root and apex, NaN without one.
+
+    shape, arc_length (point,): complex, and m. half: arc length of the apex, m.
+
+    It is the highest change of sign.
     """
     real = np.real(shape * np.exp(-0.5j * np.angle(np.sum(shape**2))))
     left = arc_length <= half
@@ -61,8 +60,9 @@ def node_places(curves):
 
 
 def node(curves, model):
-    """Return the Claim that the vibration node of the shape appears and rises with load; curves: at
-    the smallest gap.
+    """Return the Claim that the node of the shape appears and rises with load.
+
+    curves: at the smallest gap.
     """
     places = node_places(curves)
     seen = np.flatnonzero(np.isfinite(places))
@@ -90,8 +90,9 @@ def node(curves, model):
 
 
 def quadrature(shape):
-    """Return the imaginary part's share of the norm of a shape (point,), turned to be as real as it
-    can.
+    """Return the share of the imaginary part in the norm of a shape (point,).
+
+    The shape is first rotated to be as real as possible.
     """
     turned = shape * np.exp(-0.5j * np.angle(np.sum(shape**2)))
     return float(np.linalg.norm(turned.imag) / np.linalg.norm(turned))
@@ -120,8 +121,9 @@ def phase(curves, model):
 
 
 def no_damping(curves, model):
-    """Return the Claim that the shape carries no damping: MAC of the linear tube's shapes with and
-    without the identified c.
+    """Return the Claim that the shape does not depend on damping.
+
+    The measure is the MAC of the linear tube's shapes with and without the identified c.
     """
     k, c = median(curves.stiffness["broadband"]), median(curves.support_damping["broadband"])
     known = np.flatnonzero(np.isfinite(k) & np.isfinite(c))

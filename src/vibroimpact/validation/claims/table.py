@@ -20,11 +20,13 @@ CURVE_CLAIMS = (
 
 
 def all_claims(config, model, gaps, step_rows, mode_rows, quality):
-    """Return a list of Claims.
+    """Return a list of all Claims.
 
-    config, model: of the default study; gaps: its StudyCurves at the largest and at the smallest
-    gap; step_rows, mode_rows: runs along the step and along the modes kept
-    (convergence_runs.run_rows); quality: rows of basis_quality.csv.
+    config, model: of the default study.
+    gaps: its StudyCurves at the largest and at the smallest gap.
+    step_rows, mode_rows: runs with different steps and numbers of modes, of
+    convergence.runs.run_rows.
+    quality: rows of basis_quality.csv.
     """
     wide, tight = gaps
     claims = [claim(wide, model) for claim in CURVE_CLAIMS]

@@ -1,10 +1,10 @@
-"""First frequency of the tube against a bilateral support stiffness, by the number of contact
-points that stand for the layer.
+"""First frequency against support stiffness, by the number of contact points per support.
 
-N points of equal stiffness with both edges included have the second moment h²/12 (N + 1)/(N - 1)
-about mid-height, a layer of the same stiffness h²/12: the rotational stiffness is too high by 2/(N
-- 1), an error of order 1 in the spacing. Half a share at the two edges (the trapezoidal rule) makes
-it 2/(N - 1)², order 2. Both orders are asserted.
+The points stand for a layer of distributed stiffness. N points of equal stiffness, both edges
+included, have the second moment h²/12 (N + 1)/(N - 1) about mid-height; a layer of the same
+stiffness has h²/12. The rotational stiffness is too high by 2/(N - 1), an error of order 1 in the
+spacing. With half a share at the edges (the trapezoidal rule) it is too high by 2/(N - 1)²,
+order 2. Both orders are checked.
 """
 
 import numpy as np
@@ -19,18 +19,12 @@ from .rate import extrapolated, fitted_order, successive_changes
 CASE = "convergence: contact points"
 STIFFNESS = np.sort(np.append(np.logspace(0.0, 9.0, 37), 4.0e6))  # N/m per support
 REFINED_POINTS = (3, 5, 9, 17, 33)  # spacings halve
-REFINED_STIFFNESS = (
-    1.0e6,
-    4.0e6,
-    1.0e7,
-)  # N/m per support: where the first frequency feels the rotational stiffness
-WEIGHTS = {
-    "equal": 1.0,
-    "trapezoidal": 2.0,
-}  # how the stiffness is shared -> expected order in the spacing
+# N/m per support, where the first frequency depends on the rotational stiffness.
+REFINED_STIFFNESS = (1.0e6, 4.0e6, 1.0e7)
+WEIGHTS = {"equal": 1.0, "trapezoidal": 2.0}  # sharing of the stiffness -> order in the spacing
 ORDER_TOLERANCE = 0.1  # absolute
-# Published first frequencies (Hz) of the stand-in tube, 20 elements per span and 40 per bend: (k
-# N/m, points)
+# (k N/m, points) -> published first frequency (Hz) of the stand-in tube, 20 elements per span and
+# 40 per bend.
 PUBLISHED = {
     (4.0e6, 1): 27.751,
     (4.0e6, 2): 28.215,
@@ -44,13 +38,14 @@ PUBLISHED = {
     (1.0e9, 9): 33.173,
 }
 PUBLISHED_TOLERANCE = 1.0e-4
-FIVE_SUFFICE = 3.0e-3  # relative: what a modal frequency of a model is trusted to (docs/method.md)
+FIVE_SUFFICE = 3.0e-3  # relative: accuracy of the modal frequencies of a model (docs/method.md)
 SHARING = (("equal", 1), ("equal", 2), ("equal", 3), ("equal", 5), ("equal", 9), ("trapezoidal", 5))
 
 
 def model_with_points(config, points, weights="equal"):
-    """Return the ModalModel of the configuration with `points` contact points per support, shared
-    equally or by the trapezoidal rule.
+    """Return the ModalModel of the configuration with `points` contact points per support.
+
+    weights: "equal", or that of the trapezoidal rule.
     """
     share = np.ones(points)
     if weights == "trapezoidal":
@@ -68,11 +63,10 @@ def model_with_points(config, points, weights="equal"):
 
 
 def contact_point_rows(config, sharing=SHARING, stiffness=STIFFNESS):
-    """Return one row per way of sharing, number of points and stiffness; the layer has the sharing
-    "layer" and 0 points.
+    """Return one row per sharing of the stiffness, number of points and stiffness.
 
-    Row keys: weights, points, stiffness_N_per_m, first_frequency_Hz, from_layer (relative
-    difference from the layer).
+    The layer has the sharing "layer" and 0 points. Row keys: weights, points, stiffness_N_per_m,
+    first_frequency_Hz, from_layer (relative difference from the layer).
     """
     layer = layer_frequencies(config, stiffness)
     rows = []
@@ -101,8 +95,9 @@ def first_frequencies(model, stiffness):
 
 
 def layer_frequencies(config, stiffness):
-    """Return (k,) Hz of a layer of stiffness: the limit of 17 and 33 points that share by the
-    trapezoidal rule, order 2.
+    """Return (k,) Hz of a layer of stiffness.
+
+    It is the limit of 17 and 33 points shared by the trapezoidal rule, of order 2.
     """
     coarse, fine = (
         first_frequencies(model_with_points(config, count, "trapezoidal"), stiffness)
@@ -112,10 +107,10 @@ def layer_frequencies(config, stiffness):
 
 
 def refinement_rows(config, stiffness=REFINED_STIFFNESS, points=REFINED_POINTS):
-    """Return one row per way of sharing, number of points and stiffness, spacings halving.
+    """Return one row per sharing of the stiffness, number of points and stiffness.
 
-    Row keys: weights, points, stiffness_N_per_m, size (spacing over the support's height),
-    first_frequency_Hz, change (relative, to the next finer spacing; NaN for the finest).
+    Spacings halve. Row keys: weights, points, stiffness_N_per_m, size (spacing over the support's
+    height), first_frequency_Hz, change (relative, to the next finer spacing; NaN for the finest).
     """
     rows = []
     for weights in WEIGHTS:
@@ -142,9 +137,7 @@ def refinement_rows(config, stiffness=REFINED_STIFFNESS, points=REFINED_POINTS):
 
 
 def published_checks(config):
-    """Return the Checks against the published first frequencies, on the mesh they were computed
-    with.
-    """
+    """Return the Checks against the published first frequencies, on the published mesh."""
     stated = changed(
         config, {"structure.mesh.elements_per_span": 20, "structure.mesh.elements_per_bend": 40}
     )
@@ -190,11 +183,10 @@ def order_checks(rows):
 
 
 def five_points_checks(config, rows):
-    """Return the Check that five equal points follow the layer up to the contact's own stiffness,
-    from `contact_point_rows`.
+    """Return the Check that five equal points follow the layer up to the contact's own stiffness.
 
-    Towards 1e9 N/m they are up to 2 % too stiff (the rows tell): both edges carry a whole share
-    where the layer has half of one.
+    rows: of `contact_point_rows`. Towards 1e9 N/m five points are up to 2 % too stiff, because
+    both edges have a whole share where the layer has half of one.
     """
     contact = float(np.sum(config.supports[0].stiffness_N_per_m))
     own = [

@@ -1,10 +1,10 @@
-"""Scatter of levels over seeds when the tube impacts, against that of Gaussian records of the same
-length, buffers and overlap.
+"""Scatter of levels over seeds when the tube impacts, against that of Gaussian records.
 
-The level of a band is the mean of the PSD over its bins. For a Gaussian record its variance follows
-from nu and from the correlation of neighbouring bins; averaging over more bins makes it small. With
-impacts the levels wander slowly, all bins of a band together: a single bin hardly shows it, a
-band's level does. Below contact the same pipeline is the control.
+Length, buffers and overlap are the same. The level of a band is the mean of the PSD over its bins.
+For a Gaussian record its variance follows from nu and from the correlation of neighbouring bins,
+and averaging over more bins reduces it. With impacts the levels drift slowly, all bins of a band
+together; the level of a band shows it, a single bin hardly does. Loads without contact are the
+control.
 """
 
 import numpy as np
@@ -19,34 +19,23 @@ from vibroimpact.validation.variant import changed
 
 from .spectra import CASE, DECIBEL, POINT, averaging, estimates_of
 
-LOADS_N = (
-    0.2,
-    2.0,
-    5.0,
-    20.0,
-)  # no contact, first contacts, transition, in contact half of the time
+LOADS_N = (0.2, 2.0, 5.0, 20.0)  # no, first, intermediate contact; contact half of the time
 SEEDS = 16
 SETTINGS = ((10.0, 0.65), (5.0, 0.5), (2.0, 0.5))  # buffer s, overlap; Hann
 BAND_HZ = (6.0, 195.0)
-WIDTHS_HZ = (
-    0.1,
-    0.5,
-    1.0,
-    2.0,
-    5.0,
-    10.0,
-    20.0,
-)  # of the bands that fill BAND_HZ; those narrower than a bin are left out
+# Widths of the bands that fill BAND_HZ; those narrower than a bin are left out.
+WIDTHS_HZ = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 WIDE_HZ = 20.0
 EXPECTED_MULTIPLE = (2.0, 9.0)  # of the Gaussian variance, for levels of bands at impact loads
 STANDARD_ERRORS = 3.0
 
 
 def impact_spectra(config, loads=LOADS_N, seeds=SEEDS, settings=SETTINGS):
-    """Return ({(load N, buffer s, overlap): (frequency (frequency,) Hz, PSD (seed, frequency) m²/Hz
-    at POINT)}, {load: contact fraction}).
+    """Return (spectra, contact) of records of the configuration's length at its largest gap.
 
-    Records of the configuration's length and largest gap.
+    spectra: {(load N, buffer s, overlap): (frequency (frequency,) Hz, PSD (seed, frequency) m²/Hz
+    at POINT)}.
+    contact: {load: fraction of time in contact}.
     """
     run = changed(config, {"grid.seeds": seeds})
     model, rate = build_model(run), run.record.sampling_frequency_Hz
@@ -69,8 +58,7 @@ def impact_spectra(config, loads=LOADS_N, seeds=SEEDS, settings=SETTINGS):
 
 
 def impact_rows(config, found, contact):
-    """Return one row per load, setting and width of the bands: how the seed variance of their
-    levels compares with the Gaussian one.
+    """Return one row per load, setting and width of the bands: variance over the Gaussian one.
 
     Row keys: load_rms_N, contact_fraction, segment_s, overlap, width_Hz, bins (per band), multiple
     (mean over bands of variance over Gaussian variance), standard_error (jackknife over seeds),
@@ -116,11 +104,12 @@ def impact_rows(config, found, contact):
 
 
 def variance_multiple(psd, bins, nu, correlation):
-    """Return (variance over seeds of band levels over the Gaussian one, Gaussian variance / mean²),
-    means over the bands.
+    """Return (variance of band levels over the Gaussian one, Gaussian variance / mean²).
 
-    psd (seed, frequency), cut into bands of `bins` bins; correlation (distance,): squared
-    correlation of bins 0, 1, ... apart.
+    Both are means over the bands; the variance is over seeds.
+
+    psd (seed, frequency): cut into bands of `bins` bins.
+    correlation (distance,): squared correlation of bins 0, 1, ... apart.
     """
     bands = psd.shape[1] // bins
     levels = psd[:, : bands * bins].reshape(len(psd), bands, bins)
@@ -139,11 +128,10 @@ def variance_multiple(psd, bins, nu, correlation):
 
 
 def impact_checks(rows):
-    """Return the Checks with the study's buffers: Gaussian without contact, of bins and bands; with
-    impacts 2 to 9 times so, of wide bands.
+    """Return the Checks of the variance with the study's buffers.
 
-    With impacts a single bin stays near the Gaussian variance (the rows tell): levels wander
-    together, which only a band sees.
+    Without contact it is Gaussian, for bins and bands. With impacts it is 2 to 9 times the Gaussian
+    one for wide bands, while a single bin stays near it.
     """
     checks = []
     for row in rows:

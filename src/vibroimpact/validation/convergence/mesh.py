@@ -1,10 +1,9 @@
-"""Frequencies of the tube on bilateral springs against the mesh: legs, bend, or both refined, in
-both beam theories.
+"""Frequencies of the tube on bilateral springs against the mesh, in both beam theories.
 
-Expected orders in the element length. Legs: 4 for Euler-Bernoulli (cubic elements, consistent
-mass), 2 for Timoshenko, whose shear angle is constant along an element. Bend: 2 in both, because
-straight elements cut the corner: a chord is shorter than its arc by the share theta²/24, theta the
-angle of an element.
+Legs, bend, or both are refined. Expected orders in the element length: for the legs 4 with
+Euler-Bernoulli (cubic elements, consistent mass) and 2 with Timoshenko, whose shear angle is
+constant along an element; for the bend 2 in both, because a chord is shorter than its arc by the
+share theta²/24, theta being the angle of an element.
 """
 
 import numpy as np
@@ -21,8 +20,7 @@ CASE = "convergence: mesh"
 THEORIES = ("euler_bernoulli", "timoshenko")
 STIFFNESS = (1.0, 4.0e6, 1.0e9)  # N/m per support
 MODES = 7
-# What is refined -> (elements per span, elements per bend) from coarse to fine, each twice the one
-# before.
+# Refined part -> (elements per span, elements per bend) from coarse to fine, doubling.
 MESHES = {
     "legs": tuple((count, 80) for count in (4, 8, 16, 32)),
     "bend": tuple((20, count) for count in (10, 20, 40, 80, 160)),
@@ -40,15 +38,16 @@ CURVE = ("refined", "theory", "stiffness_N_per_m", "mode")
 SHEAR = {("legs", "timoshenko")}
 SOURCE = "order of the element; chords in place of arcs"
 ORDER_TOLERANCE = 0.1  # absolute
-# relative change of a frequency below which matrices of 1e4 to 1e12 times the first eigenvalue
-# decide
+# Relative change of a frequency below which round-off dominates: the matrices have entries of 1e4
+# to 1e12 times the first eigenvalue.
 ROUND_OFF = 4.0e-9
-STATED_MESH = 1.0e-3  # relative: what the stand-in's frequency table promises at 20 and 80 elements
+STATED_MESH = 1.0e-3  # relative: stated accuracy of the stand-in with 20 and 80 elements
 
 
 def frequencies_on_springs(structure, k, count=MODES):
-    """Return (count,) lowest frequencies in Hz of the full finite-element tube with bilateral k N/m
-    per support, both directions alike.
+    """Return (count,) lowest frequencies in Hz of the finite-element tube on bilateral springs.
+
+    k: N/m per support, the same in both directions.
     """
     rows = sparse.csr_array(structure.contact_rows().reshape(-1, structure.dofs))
     weight = sparse.diags_array(k * np.repeat(structure.contact.weight, 2))
@@ -112,12 +111,12 @@ def mesh_rows(config, refined=tuple(MESHES), theories=THEORIES, stiffness=STIFFN
 
 
 def mesh_orders(rows):
-    """Return one row per refined part, theory, stiffness and mode: fitted order of the changes
-    above round-off, and how many there are.
+    """Return one row per refined part, theory, stiffness and mode: the fitted order of convergence.
 
-    Row keys: refined, theory, stiffness_N_per_m, mode, order (NaN for fewer than 2 changes),
-    points. Legs, Timoshenko: the order of what is left when the change of the Euler-Bernoulli tube
-    is taken off, the part of the shear; the sum of a second and a fourth order has none.
+    Row keys: refined, theory, stiffness_N_per_m, mode, order (NaN for fewer than 2 changes above
+    round-off), points (number of changes). For legs with Timoshenko, the change of the
+    Euler-Bernoulli tube is subtracted first and the order is that of the shear; the sum of a second
+    and a fourth order has none.
     """
     change = {_place(row): row["change"] for row in rows}
     curves = {}
@@ -139,8 +138,9 @@ def mesh_orders(rows):
 
 
 def mesh_checks(rows):
-    """Return the Checks of the orders (the mode farthest from the expected one) and of the stated
-    mesh against the limit of refinement.
+    """Return the Checks of the orders, and of the study's mesh against the limit of refinement.
+
+    An order is that of the mode farthest from the expected one.
     """
     checks = []
     orders = mesh_orders(rows)
@@ -177,8 +177,9 @@ def mesh_checks(rows):
 
 
 def _stated_mesh_error(rows, theory, k):
-    """Return the largest relative difference over the modes between 80 bend elements and the limit
-    of refining the bend.
+    """Return the largest relative error over the modes of 80 bend elements.
+
+    The reference is the limit of refining the bend.
     """
     errors = []
     for mode in range(1, MODES + 1):

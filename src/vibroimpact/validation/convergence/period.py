@@ -1,13 +1,12 @@
-"""The period error of the integration on the linear tube: free vibration of single modes at several
-steps.
+"""Period error of the integration on the linear tube: free vibration at several steps.
 
-Average acceleration is the trapezoidal rule: in one step an undamped mode turns by the angle 2
-atan(omega dt / 2) instead of omega dt, so that its frequency comes out as
+Average acceleration is the trapezoidal rule. In one step an undamped mode turns by the angle
+2 atan(omega dt / 2) instead of omega dt, so that its frequency is
 
     omega' / omega = 2 atan(omega dt / 2) / (omega dt) = 1 - (omega dt)² / 12 + O((omega dt)⁴).
 
-The amplitude is kept exactly. Here whole runs through the compiled integration and the output
-filter are measured, not the formula.
+The amplitude is exact. This is measured on whole runs through the compiled integration and the
+output filter.
 """
 
 from dataclasses import replace
@@ -24,17 +23,13 @@ CASE = "convergence: step"
 STEP_RATES = (25600, 51200, 102400, 204800)  # steps per second
 SAMPLING_HZ = 5120.0  # passes to 2000 Hz
 DURATION_S = 2.0
-BAND_HZ = (
-    40.0,
-    1500.0,
-)  # modes that are started: slower ones turn by less than the estimate can tell
-SHORT_S = 0.02  # the fastest mode slips by 2 rad in it at the longest step
+BAND_HZ = (40.0, 1500.0)  # of the modes that start; slower ones lag less than can be estimated
+SHORT_S = 0.02  # the fastest mode lags by 2 rad in this time at the longest step
 LARGE_GAP_M = 1.0  # nothing touches
 ORDER, CONSTANT = 2.0, 1.0 / 12.0
 ORDER_TOLERANCE, CONSTANT_TOLERANCE = 0.02, 0.01  # absolute; relative
 DAMPING_TOLERANCE = 1.0e-8  # absolute; records are float32
-# omega dt below which the fourth-order term is under 1 % of the second-order one: (3/20) (omega
-# dt)²
+# omega dt: below it the fourth-order term, (3/20) (omega dt)² of the second-order one, is under 1 %
 SMALL_ANGLE = 0.1
 
 
@@ -65,9 +60,7 @@ def period_rows(config, rates=STEP_RATES):
 
 
 def driven_modes(model):
-    """Return (started,) indices of the modes in BAND_HZ that the shape line sees: the out-of-plane
-    ones.
-    """
+    """Return (started,) indices of the modes in BAND_HZ that move the shape line, out of plane."""
     seen = np.abs(model.line_shapes).max(axis=1) > 0.0
     return np.flatnonzero(
         seen & (model.frequencies > BAND_HZ[0]) & (model.frequencies < BAND_HZ[1])
@@ -75,11 +68,10 @@ def driven_modes(model):
 
 
 def frequency_shift(model, started, rate):
-    """Return (1 - measured / true frequency, damping ratio), each (started,), of free vibration
-    without damping at `rate` steps per second.
+    """Return (1 - measured / true frequency, damping ratio), each (started,), of free vibration.
 
-    All modes start together with equal amplitudes; the shape line separates them again (least
-    squares).
+    rate: steps per second. There is no damping. All modes start together with equal amplitudes;
+    their shapes on the shape line separate them again, by least squares.
     """
     amplitude = np.zeros(model.modes)
     amplitude[started] = 1.0e-3
@@ -105,11 +97,10 @@ def frequency_shift(model, started, rate):
 
 
 def slip_and_decay(series, omega):
-    """Return (angular frequency in rad/s above `omega` rad/s, decay rate in 1/s) of a sine series
-    (time,).
+    """Return (angular frequency above `omega` in rad/s, decay rate in 1/s) of a sine (time,).
 
-    First from the turn between short stretches, which can not be a whole turn, then from that
-    between the halves of the record.
+    The frequency follows from the phase between short stretches, which is less than a full turn,
+    then from the phase between the halves of the record.
     """
     time = np.arange(series.size) / SAMPLING_HZ
     turned = series * np.exp(-1j * omega * time)
@@ -123,8 +114,9 @@ def slip_and_decay(series, omega):
 
 
 def _ratios(turned, length, hop):
-    """Return complex ratios of Hann-weighted sums over stretches of `length` samples, each to the
-    one `hop` samples before.
+    """Return complex ratios of Hann-weighted sums over stretches, each to an earlier one.
+
+    length: samples of a stretch. hop: samples between the two.
     """
     window = np.hanning(length)
     sums = np.array(
@@ -137,8 +129,9 @@ def _ratios(turned, length, hop):
 
 
 def period_checks(rows):
-    """Return the Checks of the order in the step (per mode, worst) and of the constant 1/12, over
-    small angles, and of no numerical damping.
+    """Return the Checks of the order in the step, of the constant 1/12, and of zero damping.
+
+    The order is that of the worst mode; the constant is taken over small angles.
     """
     small = [row for row in rows if row["omega_step"] < SMALL_ANGLE]
     orders = []

@@ -1,9 +1,8 @@
-"""Response statistics of impacting runs along two axes, the step and the modes kept: one row per
-case.
+"""Response statistics of impacting runs with different steps and numbers of modes, a row per case.
 
-The runs are the study's but for the length, the sampling frequency (1024 Hz divides all four rates
-by a multiple of 5, as the output filter needs) and the axis. A seed's force has the same lines at
-every step: the synthesis length is the same time at all rates.
+The runs are the study's except for length, sampling frequency (1024 Hz divides all four rates by a
+multiple of 5, as the output filter needs) and the varied quantity. The force of a seed has the same
+lines at every step, because the synthesis length is the same time at all rates.
 """
 
 import numpy as np
@@ -18,7 +17,7 @@ STEP_RATES = (25600, 51200, 102400, 204800)  # steps per second, the paper's sch
 EXACT_RATES = (10240, 20480, 40960)  # steps per second, the exact modal step
 MODES_TO_HZ = (2000.0, 4000.0, 7500.0, 12000.0)
 NO_MODE_BELOW_HZ = 1.0
-MODES_RATE = 102400  # steps per second of the runs along the modes: 12 kHz asks for more than 75400
+MODES_RATE = 102400  # steps per second of runs with different modes; 12 kHz needs more than 75400
 LOADS_N = (5.0, 20.0)  # transition, and nearly always in contact
 SEEDS = 16
 RUN = {
@@ -33,11 +32,13 @@ EDGES = ("start", "middle", "end")  # sections of a support
 
 
 def run_rows(config, axis, values=None, loads=LOADS_N, seeds=SEEDS):
-    """Return one row per case along an axis: "step", "step_exact" (steps per second), "modes" or
-    "modes_alone" (free modes kept to Hz).
+    """Return one row per case along an axis, at the largest gap of the configuration.
 
-    Row keys: axis, value, load_rms_N, seed, modes, then the statistics of `case_statistics`.
-    Largest gap of the configuration. Raises KeyError for another axis.
+    axis: "step" or "step_exact" (values in steps per second), "modes" or "modes_alone" (highest
+    frequency of the free modes, Hz).
+
+    Row keys: axis, value, load_rms_N, seed, modes, then the statistics of `case_statistics`. Raises
+    KeyError for another axis.
     """
     variant, default = AXES[axis]
     rows = []
@@ -61,11 +62,10 @@ def run_rows(config, axis, values=None, loads=LOADS_N, seeds=SEEDS):
 
 
 def step_variant(config, steps_per_second, scheme="newmark"):
-    """Return (Config, ModalModel) of a run with another step and scheme, the modes being those of
-    the configuration.
+    """Return (Config, ModalModel) of a run with another step and scheme and the same modes.
 
-    A step that the configuration refuses beside its modes (omega step above 1) is set past the
-    check: it is what is to be seen.
+    A step that the configuration would refuse (omega step above 1) is set after its check: its
+    effect is what is measured.
     """
     run = changed(config, RUN)
     integration = run.integration.model_copy(
@@ -80,8 +80,9 @@ def exact_step_variant(config, steps_per_second):
 
 
 def modes_variant(config, free_modes_to_Hz):
-    """Return (Config, ModalModel) of a run with another number of free modes; constrained modes and
-    attachment shapes stay.
+    """Return (Config, ModalModel) of a run with another number of free modes.
+
+    Constrained modes and attachment shapes are the same.
     """
     run = changed(
         config,
@@ -96,8 +97,9 @@ def modes_variant(config, free_modes_to_Hz):
 
 
 def free_modes_alone(config, free_modes_to_Hz):
-    """Return (Config, ModalModel) of a run on free modes only, without what carries the local
-    flexibility: the control of the comparison.
+    """Return (Config, ModalModel) of a run on free modes only, as a control.
+
+    The basis then lacks the shapes of local flexibility.
     """
     alone = {"basis.constrained_modes_to_Hz": NO_MODE_BELOW_HZ, "basis.attachment_shapes": False}
     run = changed(
@@ -114,13 +116,14 @@ def free_modes_alone(config, free_modes_to_Hz):
 
 
 def case_statistics(config, record):
-    """Return {name: value} of one record: what a user reads off a run.
+    """Return {name: value} of one record.
 
-    rms_displacement_<sensor>_m; rms_force_N, contact_fraction, impact_rate_per_s,
-    impact_velocity_rms_m_per_s, wear_work_rate_W, mean over the supports (of the square for RMS
-    values); rms_stress_root_Pa (larger root), rms_stress_support_Pa (largest at a support),
-    peak_stress_Pa; band_<low>_<high>_dB, mean PSD of bend_45.y in a band in dB re 1 m²/Hz;
-    potential_energy_residual.
+    rms_displacement_<sensor>_m.
+    rms_force_N, contact_fraction, impact_rate_per_s, impact_velocity_rms_m_per_s, wear_work_rate_W:
+    means over the supports (of the square for RMS values).
+    rms_stress_root_Pa: of the larger root. rms_stress_support_Pa: the largest at a support.
+    peak_stress_Pa, potential_energy_residual.
+    band_<low>_<high>_dB: mean PSD of bend_45.y in a band, dB re 1 m²/Hz.
     """
     sensors = [str(name) for name in record["sensor"].values]
     displacement = record["displacement"].values

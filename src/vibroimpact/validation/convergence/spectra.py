@@ -49,11 +49,8 @@ SETTINGS = tuple(
         (10.0, 0.65, 98.0),
     )
 )
-NOISE_RATE_HZ, NOISE_RECORDS, NOISE_TOLERANCE = (
-    32.0,
-    1000,
-    0.03,
-)  # relative: about 3 standard errors
+NOISE_RATE_HZ, NOISE_RECORDS = 32.0, 1000
+NOISE_TOLERANCE = 0.03  # relative: about 3 standard errors
 LINEAR_RATE_HZ, LINEAR_BAND_HZ, LINEAR_RECORDS = 256.0, (5.0, 110.0), 1024
 LINEAR_SETTINGS = (
     (10.0, 0.65, 49.0, "hann"),
@@ -131,8 +128,9 @@ def noise_rows(study_seed, settings=SETTINGS, records=NOISE_RECORDS):
 
 
 def linear_records(model, study_seed, duration_s=49.0, count=LINEAR_RECORDS):
-    """Return (record, time) m: POINT of the tube without contact under noise in LINEAR_BAND_HZ, cut
-    from one long record.
+    """Return (record, time) m at POINT of the tube without contact, cut from one long record.
+
+    The force is noise in LINEAR_BAND_HZ.
     """
     samples = round(duration_s * LINEAR_RATE_HZ)
     force = band_limited_noise(
@@ -147,11 +145,11 @@ def linear_records(model, study_seed, duration_s=49.0, count=LINEAR_RECORDS):
 
 
 def linear_rows(model, records, settings=LINEAR_SETTINGS):
-    """Return one row per setting and peak of the linear tube, keys as `noise_rows`; and the level
-    of the peak.
+    """Return one row per setting and peak of the linear tube.
 
-    More keys: level_dB (mean over records at the peak's bin in dB of the true PSD there),
-    level_error_dB (its standard error), level_expected_dB (true PSD convolved with the window).
+    Row keys: those of `noise_rows`; level_dB (mean over records at the peak's bin in dB of the true
+    PSD there), level_error_dB (its standard error), level_expected_dB (true PSD convolved with the
+    window).
     """
     rows = []
     for segment, overlap, duration, window in settings:
@@ -183,12 +181,11 @@ def linear_rows(model, records, settings=LINEAR_SETTINGS):
 
 
 def at_bin(model, bin_Hz, duration_s, spectra):
-    """Return (expected averaged PSD in m²/N², nu) at one bin of the linear tube, for a force of
-    unit PSD; see the module's formula.
+    """Return (expected averaged PSD in m²/N², nu) at one bin of the linear tube.
 
-    The expectation counts the whole band and its mirror image at negative frequency: through the
-    side lobes of a 2 s boxcar the first peak and its image add 0.3 dB to the third one, 90 and 120
-    Hz away.
+    The force has unit PSD. The formula is that of the module. The expectation covers the whole band
+    and its mirror image at negative frequency: through the side lobes of a 2 s boxcar the first
+    peak and its image add 0.3 dB to the third one, 90 and 120 Hz away.
     """
     length, step, count = segment_layout(
         round(duration_s * LINEAR_RATE_HZ), LINEAR_RATE_HZ, spectra.segment_s, spectra.overlap
@@ -210,11 +207,12 @@ def at_bin(model, bin_Hz, duration_s, spectra):
 
 
 def power_kernel(window, bins, length):
-    """Return |W|² of a window of `length` samples (bin offset,) at offsets in bins (any real
-    number), of unit area over a period of `length`.
+    """Return |W|² (bin offset,) of a window, of unit area over a period of `length`.
 
-    The window's discrete Fourier transform in closed form: for sampled records the side lobes end
-    at a level, not at zero.
+    bins: offsets in bins, any real numbers. length: samples of the window.
+
+    It is the window's discrete Fourier transform in closed form: for sampled records the side lobes
+    approach a constant level, not zero.
     """
     amplitude = _boxcar_transform(bins, length)
     if window == "hann":
@@ -237,11 +235,11 @@ def _boxcar_transform(bins, length):
 
 
 def leakage_rows(model, segments_s=LEAKAGE_SEGMENTS_S):
-    """Return one row per window, buffer and peak: level_dB of the highest bin's expectation over
-    the true peak, and apparent damping.
+    """Return one row per window, buffer and peak: level and apparent damping of the expected PSD.
 
-    Row keys: window, segment_s, peak_Hz, damping_ratio (true), level_dB, apparent_damping_ratio
-    (half-power width of the expected PSD over 2 f, evaluated at all frequencies, not at bins only).
+    Row keys: window, segment_s, peak_Hz, damping_ratio (true), level_dB (of the highest bin over
+    the true peak), apparent_damping_ratio (half-power width over 2 f, evaluated at all frequencies,
+    not at bins only).
     """
     fine = np.arange(1.0, LINEAR_BAND_HZ[1], FINE_HZ)
     true = {
@@ -267,33 +265,33 @@ def leakage_rows(model, segments_s=LEAKAGE_SEGMENTS_S):
 
 
 def peak_frequencies(model):
-    """Return (PEAKS,) Hz: the lowest modes that POINT sees."""
+    """Return (PEAKS,) Hz of the lowest modes that POINT responds to."""
     seen = np.abs(_shape(model)[:, 0]) > 0.0
     return model.frequencies[seen][:PEAKS]
 
 
 def true_psd(model, frequency):
-    """Return (frequency,) m²/N²: PSD at POINT of the tube without contact for a force of unit
-    PSD.
-    """
+    """Return (frequency,) m²/N²: PSD at POINT of the tube without contact, for unit force PSD."""
     return np.abs(frf(without_contact(model), 0.0, 0.0, frequency, _shape(model))[0]) ** 2
 
 
 def without_contact(model):
-    """Return the ModalModel whose contacts move nowhere: for k = c = 0 the same responses,
-    sooner.
+    """Return the ModalModel without the motion of its contacts.
+
+    For k = c = 0 the responses are the same, and faster to compute.
     """
     return replace(model, contact_shapes=np.zeros_like(model.contact_shapes))
 
 
 def force_psd():
-    """Return the one-sided PSD in N²/Hz of the noise of `linear_records`, whose RMS is 1."""
+    """Return the one-sided PSD in N²/Hz of the force of `linear_records`, whose RMS is 1."""
     return 1.0 / (LINEAR_BAND_HZ[1] - LINEAR_BAND_HZ[0])
 
 
 def expected_psd(model, spectra, highest_Hz=LINEAR_BAND_HZ[1]):
-    """Return (frequency (fine,) Hz, expected averaged PSD (fine,) m²/N²) at all frequencies, not at
-    bins only: true PSD convolved with |W|².
+    """Return (frequency (fine,) Hz, expected averaged PSD (fine,) m²/N²), between bins too.
+
+    It is the true PSD convolved with |W|².
     """
     half = round(0.5 * LINEAR_RATE_HZ / FINE_HZ)
     frequency = (
@@ -314,9 +312,7 @@ def expected_psd(model, spectra, highest_Hz=LINEAR_BAND_HZ[1]):
 
 
 def _half_width(peak, frequency, psd):
-    """Return (highest value, half-power width / (2 f)) of a PSD (fine,) on a fine grid within 3 Hz
-    of a peak.
-    """
+    """Return (highest value, half-power width / (2 f)) of a PSD (fine,) within 3 Hz of a peak."""
     near = np.where(np.abs(frequency - peak) < 3.0, psd, 0.0)
     above = np.flatnonzero(near >= 0.5 * near.max())
     return near.max(), (above[-1] - above[0] + 1) * (frequency[1] - frequency[0]) / (2.0 * peak)
@@ -362,8 +358,9 @@ def published_checks():
 
 
 def measured_checks(rows):
-    """Return the Checks of measured degrees of freedom: white noise against the flat formula, peaks
-    against the one that rings; peak levels.
+    """Return the Checks of measured degrees of freedom and peak levels.
+
+    White noise is compared with the formula for a flat spectrum, peaks with that of a resonance.
     """
     checks = []
     for row in rows:
@@ -413,9 +410,7 @@ def measured_checks(rows):
 
 
 def averages_rows(model, study_seed):
-    """Return the rows of `noise_rows` and `linear_rows` together; the cells that white noise does
-    not have are NaN.
-    """
+    """Return the rows of `noise_rows` and `linear_rows`; NaN in columns that white noise lacks."""
     missing = dict.fromkeys(("level_dB", "level_error_dB", "level_expected_dB"), np.nan)
     return [row | missing for row in noise_rows(study_seed)] + linear_rows(
         model, linear_records(model, study_seed)

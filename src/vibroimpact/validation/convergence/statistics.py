@@ -1,9 +1,9 @@
-"""Response statistics along the step and the modes kept, beside their scatter over seeds.
+"""Response statistics against the step and the number of modes, with their scatter over seeds.
 
-Impacting motion is chaotic, so values are compared as means over seeds. Each seed has the same
-force at every value of an axis; the difference from the finest value is taken seed by seed, and its
-standard error from the scatter of these differences, which stays right whether or not the common
-force makes the two records alike.
+Impacting motion is chaotic, so means over seeds are compared. Each seed has the same force at every
+value of an axis. The difference from the finest value is taken seed by seed, and its standard error
+from the scatter of these differences. This is right whether or not the common force makes the two
+records alike.
 """
 
 import numpy as np
@@ -12,18 +12,11 @@ from vibroimpact.validation.check import Check
 
 from .rate import fitted_order
 
-STUDY_VALUES = {
-    "step": 51200,
-    "step_exact": 20480,
-    "modes": 7500.0,
-}  # what the paper's scheme asks for, and what the default study uses
-PARENTS = {
-    "step_exact": "step",
-    "modes_alone": "modes",
-}  # axis -> the one whose finest value it is held against
-STANDARD_ERRORS = 4.0  # 1 of 800 comparisons of equal means lies beyond, with 16 seeds
-# of the mean: a statistic that scatters more from record to record is not compared (in-plane motion
-# at its onset)
+STUDY_VALUES = {"step": 51200, "step_exact": 20480, "modes": 7500.0}  # paper, default, both
+PARENTS = {"step_exact": "step", "modes_alone": "modes"}  # axis -> axis of its reference value
+STANDARD_ERRORS = 4.0  # exceeded by 1 of 800 comparisons of equal means, with 16 seeds
+# Relative scatter between records above which a statistic is not compared, such as that of in-plane
+# motion at its onset.
 LARGEST_SCATTER = 0.5
 ENERGY = "potential_energy_residual"
 ENERGY_ORDER, ENERGY_ORDER_TOLERANCE = 2.0, 0.1
@@ -86,11 +79,10 @@ def seeds_of(rows, axis, value, load, name):
 
 
 def statistics_checks(table):
-    """Return the Checks of the study's step and modes against the finest: within STANDARD_ERRORS of
-    the difference.
+    """Return the Checks of the study's step and modes against the finest.
 
-    They tell that no difference is seen; its standard error in the table tells how small one would
-    have been.
+    They pass within STANDARD_ERRORS of the difference, which means that no difference is seen. The
+    standard error in the table is how small a difference would have been seen.
     """
     checks = []
     for row in table:
@@ -127,9 +119,7 @@ def statistics_checks(table):
 
 
 def energy_checks(table):
-    """Return the Checks of the order in the step at which the energy balance of the impacts closes,
-    one per load.
-    """
+    """Return the Checks of the order of the energy residual of impacts in the step, per load."""
     checks = []
     for load in dict.fromkeys(row["load_rms_N"] for row in table):
         own = [

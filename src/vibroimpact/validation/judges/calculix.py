@@ -1,10 +1,10 @@
-"""The study's tube in CalculiX as what it is, a thin pipe of three-dimensional elastic solid:
-20-node bricks, one through the wall.
+"""The study's tube in CalculiX as a thin pipe of three-dimensional elastic solid.
 
-Its beam elements are no judge: the user element U1 has no mass, and B32R with a PIPE section,
-expanded into solids, was 1 % stiff on a straight tube of 20 elements. The solid pipe knows what a
-beam leaves out: Poisson's contraction held at the roots (stiffer by about 0.1 %) and the section of
-the bend turning oval as it bends (softer, see `karman_factor`).
+The elements are 20-node bricks, one through the wall. CalculiX's beam elements are not used: the
+user element U1 has no mass, and B32R with a PIPE section, expanded into solids, was 1 % stiff on a
+straight tube of 20 elements. The solid pipe has two effects that a beam leaves out: Poisson's
+contraction is restrained at the roots (stiffer by about 0.1 %), and the section of the bend turns
+oval (softer, see `karman_factor`).
 """
 
 from dataclasses import dataclass
@@ -43,8 +43,11 @@ AROUND = 12  # bricks around the section
 
 @dataclass(frozen=True)
 class PipeMesh:
-    """Bricks of a pipe: nodes {(half step along, around, outward): number from 1}, position [(3,)
-    m], bricks [(20,) node numbers].
+    """Brick elements of a pipe.
+
+    nodes: {(half step along, around, outward): number from 1}.
+    position: [(3,) m] of the nodes.
+    bricks: [(20,) node numbers].
     """
 
     nodes: dict
@@ -53,12 +56,14 @@ class PipeMesh:
 
 
 def u_tube_frequencies(config, stiffness, count, bricks=(30, 60), around=AROUND):
-    """Return (mode,) Hz, the lowest `count` of the solid U-tube clamped at its roots; stiffness N/m
-    per support, x and y alike.
+    """Return (mode,) Hz, the lowest `count` of the solid U-tube clamped at its roots.
 
-    bricks: along each stretch of a leg between root, plate and bend, and along the bend. The spring
-    of a contact point holds the mean motion of the outer ring of nodes there: springs on the nodes
-    themselves would hold the section's twist too. Raises JudgeAbsent.
+    stiffness: N/m per support, the same in x and y.
+    bricks: number along each stretch of a leg between root, plate and bend, and along the bend.
+    around: number around the section.
+
+    The spring of a contact point acts on the mean motion of the outer ring of nodes. Springs on
+    single nodes would also restrain the twist of the section. Raises JudgeAbsent.
     """
     tube, support = config.structure, config.supports[0]
     leg, radius = tube.leg_length_m, tube.bend_radius_m
@@ -99,8 +104,9 @@ def u_tube_frequencies(config, stiffness, count, bricks=(30, 60), around=AROUND)
 
 
 def straight_tube_frequencies(config, length, count, bricks=40, around=AROUND):
-    """Return (mode,) Hz, the lowest `count` of a straight clamped-clamped solid tube with the
-    study's section, `length` in m. Raises JudgeAbsent.
+    """Return (mode,) Hz, the lowest `count` of a straight clamped-clamped solid tube.
+
+    length: m. The section is that of the study. Raises JudgeAbsent.
     """
     frames = [
         _frame(np.array([0.0, 0.0, at]), 0.0)
@@ -111,12 +117,12 @@ def straight_tube_frequencies(config, length, count, bricks=40, around=AROUND):
 
 
 def karman_factor(structure):
-    """Return the factor by which a bend is softer than its beam because its section turns oval: 1 +
-    9 / (12 h² + 1), h = t R / (r² sqrt(1 - nu²)).
+    """Return the factor by which a bend is softer than its beam because its section turns oval.
 
-    r: mean radius of the section. Sources: Th. von Karman, Zeitschrift des VDI 55 (1911) 1889, the
-    first term of his series, good for h > 0.5; Poisson's ratio, the wall bending as a plate: E. C.
-    Rodabaugh and H. H. George, Transactions of the ASME 79 (1957) 939.
+    It is 1 + 9 / (12 h² + 1) with h = t R / (r² sqrt(1 - nu²)); r is the mean radius of the
+    section. Sources: Th. von Karman, Zeitschrift des VDI 55 (1911) 1889, the first term of his
+    series, good for h > 0.5; Poisson's ratio, the wall bending as a plate: E. C. Rodabaugh and
+    H. H. George, Transactions of the ASME 79 (1957) 939.
     """
     section = structure.section
     mean = 0.5 * (section.outer_diameter_m - section.wall_thickness_m)
@@ -127,13 +133,14 @@ def karman_factor(structure):
 
 
 def _with_middles(arc):
-    """Return (2 n - 1,) values with the middles put between."""
+    """Return (2 n - 1,) values with the midpoints inserted."""
     return np.interp(0.5 * np.arange(2 * len(arc) - 1), np.arange(len(arc)), arc)
 
 
 def _frame(centre, angle):
-    """Return (centre (3,), two axes (2, 3) of the section) where the tube has turned by `angle` rad
-    from z towards x.
+    """Return (centre (3,), axes (2, 3) of the section).
+
+    angle: rad, by which the tube has turned from z towards x.
     """
     return centre, np.array([[np.cos(angle), 0.0, -np.sin(angle)], [0.0, 1.0, 0.0]])
 
@@ -162,8 +169,9 @@ def _pipe(frames, section, around):
 
 
 def _deck(pipe, material, springs, count):
-    """Return the input deck (str): bricks, clamped ends, springs [(node numbers, N/m on their mean
-    motion)] along x and y, and a frequency step.
+    """Return the input deck: bricks, clamped ends, springs, and a frequency step.
+
+    springs: [(node numbers, N/m on their mean motion)], along x and y.
     """
     last = max(along for along, _, _ in pipe.nodes)
     lines = ["*NODE,NSET=ALL"]
@@ -207,8 +215,9 @@ def _deck(pipe, material, springs, count):
 
 
 def _frequencies(printed, count):
-    """Return (mode,) Hz from the eigenvalue table of a .dat file: mode, eigenvalue, rad/s, Hz,
-    imaginary part.
+    """Return (mode,) Hz from the eigenvalue table of a .dat file.
+
+    Its columns are mode, eigenvalue, rad/s, Hz, imaginary part.
     """
     rows = [line.split() for line in printed.partition("P A R T I C I P A T I O N")[0].splitlines()]
     return np.array([float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()])[:count]

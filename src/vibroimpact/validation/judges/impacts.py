@@ -1,11 +1,10 @@
-"""The impacting tube, judged by OpenSees: the same tube, force, gaps, damping and step,
-displacement and contact force at every step.
+"""The impacting tube against OpenSees: displacement and contact force at every step.
 
-Across its plane the tube meets |y| = gap from either side at ten points. OpenSees marches all
-degrees of freedom with Newmark's average acceleration and solves each step with Newton; the project
-marches a reduced basis with a recurrence and a fixed point. Both damp with the same Rayleigh
-coefficients: modal damping of a reduced basis has no twin in OpenSees. With all modes kept the two
-solve the same equations.
+Tube, force, gaps, damping and step are the same. Across its plane the tube meets |y| = gap on both
+sides at ten points. OpenSees integrates all degrees of freedom with Newmark's average acceleration
+and solves each step with Newton; the project integrates a reduced basis with a recurrence and a
+fixed-point iteration. Both use the same Rayleigh coefficients, because OpenSees has no counterpart
+of modal damping in a reduced basis. With all modes in the basis the two solve the same equations.
 """
 
 from dataclasses import dataclass
@@ -32,18 +31,14 @@ RUN = {
         "stiffness_coefficient_s": 2.0e-6,
     },
 }
-LOAD_RMS_N, BAND_HZ, SEED, RAMP_S = (
-    20.0,
-    (5.0, 200.0),
-    3,
-    0.005,
-)  # the ramp: at rest, zero force and no acceleration
+LOAD_RMS_N, BAND_HZ, SEED = 20.0, (5.0, 200.0), 3
+RAMP_S = 0.005  # the force rises from zero, so that the initial acceleration is zero
 HORIZON_S, MESH_HORIZON_S = 0.1, 0.05
 MODES_TO_HZ = (2000.0, 4000.0, 7500.0, 15000.0, 1.0e9)  # the last: all modes
 BEND_ELEMENTS, FINEST_BEND = (10, 20, 40, 80), 160
 ACROSS = 1  # of the two contact directions of a leg: y
-# What a truncated basis leaves out is told by the project's own change to the complete basis; twice
-# it is allowed. Impacts multiply what the contact iteration leaves of each step (1e-4 of the force,
+# The error of a truncated basis is estimated by our own change to the complete basis; twice it is
+# allowed. Impacts amplify the residual of the contact iteration in each step (1e-4 of the force,
 # times its contraction): it may grow back to 1e-4.
 TRUNCATION_SAFETY = 2.0
 MESH_ORDER, MESH_ORDER_TOLERANCE = 2.0, 0.3
@@ -51,8 +46,10 @@ MESH_ORDER, MESH_ORDER_TOLERANCE = 2.0, 0.3
 
 @dataclass(frozen=True)
 class Impacts:
-    """time (step,) s; displacement m and force N on the tube across its plane, each (contact_point,
-    step).
+    """Motion and contact force across the plane of the tube.
+
+    time (step,): s.
+    displacement, force (contact_point, step): m, and N on the tube.
     """
 
     time: np.ndarray
@@ -61,7 +58,7 @@ class Impacts:
 
 
 def impact_force(steps_per_second, horizon_s, load_rms=LOAD_RMS_N):
-    """Return (step,) N: band-limited noise of about load_rms, from zero on."""
+    """Return (step,) N: band-limited noise of about load_rms N, zero at first."""
     steps = 20 * round(horizon_s * steps_per_second / 20.0)
     noise = load_rms * band_limited_noise(
         np.random.default_rng(SEED), steps + 1, steps_per_second, BAND_HZ
@@ -70,8 +67,9 @@ def impact_force(steps_per_second, horizon_s, load_rms=LOAD_RMS_N):
 
 
 def impact_config(config, values=None):
-    """Return the configuration of the comparison: few elements, Rayleigh damping, the drive exactly
-    at the 45 degree node.
+    """Return the configuration of the comparison.
+
+    It has few elements, Rayleigh damping, and the drive exactly at the 45 degree node.
     """
     tube = config.structure
     at = tube.bend_radius_m * np.sqrt(0.5)
@@ -83,8 +81,10 @@ def impact_config(config, values=None):
 
 
 def our_impacts(config, force, gap, free_modes_to_Hz):
-    """Return the Impacts of the project, free modes kept to a frequency in Hz (past the
-    configuration's check of omega step).
+    """Return the Impacts of the project.
+
+    free_modes_to_Hz: highest frequency of the basis; it may exceed the limit that the
+    configuration puts on omega step.
     """
     basis = config.basis.model_copy(update={"free_modes_to_Hz": free_modes_to_Hz})
     model = build_model(config.model_copy(update={"basis": basis}))
@@ -112,8 +112,9 @@ def judged_impacts(config, force, gap, refinement=1):
 
 
 def apart(ours, judge):
-    """Return {quantity: relative difference}: largest displacement difference, RMS and peak of the
-    contact forces, against the judge's.
+    """Return {quantity: relative difference from the judge}.
+
+    Quantities: largest displacement difference, RMS and peak of the contact forces.
     """
     return {
         "displacement": float(
@@ -129,18 +130,15 @@ def apart(ours, judge):
 
 
 def impacts_of(force):
-    """Return the number of impacts: times at which a contact point's force (contact_point, step)
-    begins.
-    """
+    """Return the number of impacts: how often a force (contact_point, step) begins."""
     return int(np.sum((force[:, 1:] != 0.0) & (force[:, :-1] == 0.0)))
 
 
 def modes_rows(config, horizon_s=HORIZON_S, modes_to_Hz=MODES_TO_HZ):
-    """Return (rows, {name: Impacts}): ours against OpenSees on the same nodes, a row per basis; the
-    last basis is complete.
+    """Return (rows, {name: Impacts}): ours against OpenSees on the same nodes, one row per basis.
 
-    Row keys: free_modes_to_Hz, quantity, difference (ours to OpenSees), own_difference (ours to
-    ours with all modes), impacts. Raises JudgeAbsent.
+    The last basis is complete. Row keys: free_modes_to_Hz, quantity, difference (from OpenSees),
+    own_difference (from ours with all modes), impacts. Raises JudgeAbsent.
     """
     run, gap = impact_config(config), min(config.grid.gap_m)
     force = impact_force(run.integration.steps_per_second, horizon_s)
@@ -163,8 +161,9 @@ def modes_rows(config, horizon_s=HORIZON_S, modes_to_Hz=MODES_TO_HZ):
 
 
 def mesh_rows(config, horizon_s=MESH_HORIZON_S, bends=BEND_ELEMENTS, finest=FINEST_BEND):
-    """Return rows: ours on coarser bends against OpenSees on the finest. Keys: elements_per_bend,
-    quantity, difference. Raises JudgeAbsent.
+    """Return rows of ours on coarser bends against OpenSees on the finest.
+
+    Row keys: elements_per_bend, quantity, difference. Raises JudgeAbsent.
     """
     fine = impact_config(config, {"structure.mesh.elements_per_bend": finest})
     gap = min(config.grid.gap_m)
@@ -186,8 +185,9 @@ def mesh_rows(config, horizon_s=MESH_HORIZON_S, bends=BEND_ELEMENTS, finest=FINE
 
 
 def modes_checks(rows) -> list[Check]:
-    """Return the Checks of `modes_rows`: no difference beyond what our own truncation and the
-    contact iteration explain.
+    """Return the Checks of `modes_rows`.
+
+    Differences must be explained by the truncation of our basis and by the contact iteration.
     """
     names = {rows[-1]["free_modes_to_Hz"]: "all modes"}
     return [
@@ -207,8 +207,9 @@ def modes_checks(rows) -> list[Check]:
 
 
 def mesh_checks(rows) -> list[Check]:
-    """Return the Check of the order at which ours comes to OpenSees on the finest bend: chords are
-    shorter than arcs by angle²/24.
+    """Return the Check of the order of convergence to OpenSees on the finest bend.
+
+    Chords are shorter than arcs by angle²/24.
     """
     own = [row for row in rows if row["quantity"] == "displacement"]
     # The finest mesh has an error too: with order 2 the difference is (1/n² - 1/finest²).

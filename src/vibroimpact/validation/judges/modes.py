@@ -1,5 +1,6 @@
-"""Frequencies of the study's tube, judged: by OpenSees' beams on the same nodes, and by CalculiX'
-solid pipe, which is no beam at all.
+"""Frequencies of the study's tube against OpenSees (beams) and CalculiX (a solid pipe).
+
+OpenSees has the same nodes.
 """
 
 from dataclasses import replace
@@ -24,28 +25,25 @@ SOLID_STIFFNESS = (1.0, 4.0e6, 1.0e9)
 MODES, SOLID_MODES = 9, 7
 REFINED = 4  # elements of OpenSees per element of ours
 TO_HZ = 2000.0
-# Same elements on the same nodes: what is left is the round-off of two eigenvalue solvers, on
-# elements of 7.5 mm beside 2.3 m of tube.
+# Same elements on the same nodes: the difference is the round-off of two eigenvalue solvers, with
+# elements of 7.5 mm in 2.3 m of tube.
 SAME_MESH = 1.0e-8
 # Finer mesh: the bend's chords are shorter than its arc by (angle of an element)² / 24 = 6.4e-5,
-# which a frequency feels twice.
+# and a frequency changes by twice as much.
 MESH_SAFETY = 3.0
-# Solid against beam: a clamped solid end also holds Poisson's contraction, which makes a straight
-# tube 0.11 to 0.15 % stiffer. Without Poisson's ratio nothing is held, and what is left is the
-# bricks' mesh (1e-4).
+# Solid against beam: a clamped solid end also restrains Poisson's contraction, which makes a
+# straight tube 0.11 to 0.15 % stiffer. Without Poisson's ratio only the mesh of bricks is left
+# (1e-4).
 SOLID, SOLID_WITHOUT_POISSON = 2.0e-3, 3.0e-4
-COWPER = {
-    0.0: 0.5,
-    0.3: 0.53,
-}  # shear coefficient of a thin tube by Poisson's ratio, 2 (1 + nu) / (4 + 3 nu)
+# Shear coefficient of a thin tube by Poisson's ratio, 2 (1 + nu) / (4 + 3 nu) (Cowper).
+COWPER = {0.0: 0.5, 0.3: 0.53}
 STRAIGHT_M = 1.0
 
 
 def opensees_checks(config, stiffness=STIFFNESS) -> list[Check]:
-    """Return the Checks of both theories on bilateral supports, a row per stiffness: the largest
-    difference over the first modes.
+    """Return the Checks of both beam theories on bilateral supports, one row per stiffness.
 
-    Raises JudgeAbsent.
+    The error is the largest over the first modes. Raises JudgeAbsent.
     """
     checks = []
     for theory in THEORIES:
@@ -82,10 +80,10 @@ def _refined(config):
 
 
 def calculix_checks(config, stiffness=SOLID_STIFFNESS) -> list[Check]:
-    """Return the Checks against the solid pipe: a straight tube as beam, the U-tube as beam whose
-    bend is softer by Karman's factor.
+    """Return the Checks against the solid pipe.
 
-    Raises JudgeAbsent.
+    A straight tube is compared with a beam, the U-tube with a beam whose bend is softer by Karman's
+    factor. Raises JudgeAbsent.
     """
     tube, checks = changed(config, {"structure.theory": "timoshenko"}), []
     for poisson, tolerance in ((0.3, SOLID), (0.0, SOLID_WITHOUT_POISSON)):
@@ -131,8 +129,9 @@ def calculix_checks(config, stiffness=SOLID_STIFFNESS) -> list[Check]:
 
 
 def _straight_beam(structure):
-    """Return (mode,) Hz of our straight clamped beam of STRAIGHT_M with the section and material of
-    `structure`.
+    """Return (mode,) Hz of our straight clamped beam of STRAIGHT_M.
+
+    structure: gives section and material.
     """
     clamped = {"kind": "clamped"}
     path = {
@@ -153,8 +152,9 @@ def _straight_beam(structure):
 
 
 def oval_bend_rows(config, stiffness=SOLID_STIFFNESS):
-    """Return rows (dict) of what the study's beam leaves out: its frequencies beside those with
-    Karman's bend, no judge needed.
+    """Return rows (dict) of the frequencies of the study's beam with and without Karman's bend.
+
+    They show what the beam leaves out; no other code is needed.
     """
     rows = []
     for k in stiffness:
@@ -174,8 +174,9 @@ def oval_bend_rows(config, stiffness=SOLID_STIFFNESS):
 
 
 def beam_frequencies(config, stiffness, bend_softer=1.0):
-    """Return (mode,) Hz up to 2 kHz of the project's finite-element tube, support stiffness N/m;
-    bend_softer: divides E I in the bend.
+    """Return (mode,) Hz up to 2 kHz of the project's finite-element tube.
+
+    stiffness: N/m per support. bend_softer: divides E I of the bend.
     """
     tube = build_structure(config)
     own = (
@@ -195,9 +196,7 @@ def beam_frequencies(config, stiffness, bend_softer=1.0):
 
 
 def _softer_bend(tube, structure, factor):
-    """Return the change (dof, dof) of the stiffness when E I of the bend's elements is divided by
-    `factor`.
-    """
+    """Return the change (dof, dof) of the stiffness when E I of the bend is divided by `factor`."""
     soft = replace(tube.beam, bending_stiffness=tube.beam.bending_stiffness / factor)
     begin, end = structure.leg_length_m, tube.centreline.length - structure.leg_length_m
     middle = 0.5 * (tube.node_arc_length[1:] + tube.node_arc_length[:-1])

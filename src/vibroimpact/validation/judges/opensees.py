@@ -1,11 +1,10 @@
-"""The study's tube in OpenSees: its elastic beam elements, its gap springs, its eigenvalue solver
-and its Newmark integration.
+"""The study's tube in OpenSees: elastic beams, gap springs, eigenvalues, Newmark integration.
 
-The nodes come from the tube's drawing alone (legs, bend, plates), not from the project's mesh.
-Elements: ElasticTimoshenkoBeam or elasticBeamColumn with consistent mass; contact: two ElasticPPGap
-springs back to back at each contact point, across the plane. With an obstacle that is a circle and
-motion across the plane alone this is the project's contact: force k (|y| - gap) beyond the gap,
-either way.
+The nodes follow from the dimensions of the tube alone (legs, bend, plates), not from the project's
+mesh. Elements: ElasticTimoshenkoBeam or elasticBeamColumn with consistent mass; contact: two
+ElasticPPGap springs in opposite senses at each contact point, across the plane. For a circular hole
+and motion across the plane alone this is the project's contact: force k (|y| - gap) beyond the gap,
+on both sides.
 """
 
 from dataclasses import dataclass
@@ -23,8 +22,9 @@ NODES_FROM = 1  # number of the first node and element
 
 @dataclass(frozen=True)
 class TubeNodes:
-    """Nodes of the tube: position (node, 3) m, indices of the contact points (contact_point,) and
-    of the driven node.
+    """Nodes of the tube: positions (node, 3) in m, contact points (contact_point,), driven node.
+
+    Contact points and driven node are indices.
     """
 
     position: np.ndarray
@@ -33,11 +33,13 @@ class TubeNodes:
 
 
 def tube_nodes(config, refinement=1):
-    """Return the TubeNodes of a configuration's U-tube with two supports of several points, each
-    element cut into `refinement`.
+    """Return the TubeNodes of a U-tube with two supports of several points.
 
-    The drive is at the top of the left leg's eighth of the circle (45 degrees), which must be a
-    node: elements_per_bend a multiple of 4.
+    config: its structure and supports are read.
+    refinement: number of parts of each element.
+
+    The drive is at 45 degrees on the left half of the bend. This must be a node: elements_per_bend
+    is a multiple of 4.
     """
     tube, (left, right) = config.structure, config.supports
     leg, radius = tube.leg_length_m, tube.bend_radius_m
@@ -80,8 +82,9 @@ def tube_nodes(config, refinement=1):
 
 
 def u_tube_position(arc_length, leg, radius):
-    """Return (3,) m: the point of the U-tube at an arc length in m, from the left root; leg length
-    and bend radius in m.
+    """Return (3,) m: the point of the U-tube at an arc length in m from the left root.
+
+    leg, radius: length of a leg and radius of the bend, m.
     """
     angle = (arc_length - leg) / radius
     if angle <= 0.0:
@@ -92,10 +95,9 @@ def u_tube_position(arc_length, leg, radius):
 
 
 def opensees_frequencies(config, stiffness, count, refinement=1):
-    """Return (mode,) Hz, the lowest `count` of OpenSees' tube, support stiffness N/m (x and y
-    alike) shared by the points of each.
+    """Return (mode,) Hz, the lowest `count` of OpenSees' tube.
 
-    Raises JudgeAbsent.
+    stiffness: N/m per support in x and y, shared by its points. Raises JudgeAbsent.
     """
     ops = opensees()
     nodes = clamped_tube(ops, config, refinement)
@@ -108,12 +110,15 @@ def opensees_frequencies(config, stiffness, count, refinement=1):
 
 
 def opensees_impacts(config, force, steps_per_second, gap, refinement=1):
-    """Return (displacement, contact_force), each (contact_point, step), m and N on the tube across
-    its plane: OpenSees' impacting tube.
+    """Return (displacement, contact_force), each (contact_point, step), of the impacting tube.
 
-    force: (step,) N across the plane at the 45 degree point, step 0 the state of rest with zero
-    force. gap in m. Newmark average acceleration; damping.kind must be rayleigh. In-plane motion is
-    held at zero. Raises JudgeAbsent; RuntimeError when Newton does not settle.
+    They are in m, and N on the tube, across its plane.
+
+    force (step,): N across the plane at the 45 degree point; step 0 is the state of rest.
+    steps_per_second: 1/s. gap: m.
+
+    Newmark's average acceleration; damping.kind must be rayleigh; in-plane motion is fixed. Raises
+    JudgeAbsent; RuntimeError when Newton's method does not converge.
     """
     ops = opensees()
     nodes = clamped_tube(ops, config, refinement)
@@ -156,8 +161,9 @@ def _march(ops, nodes, steps, dt):
 
 
 def clamped_tube(ops, config, refinement):
-    """Return the TubeNodes of a configuration; OpenSees (the module ops) holds its tube, clamped at
-    both ends, and nothing else.
+    """Return the TubeNodes of a configuration, after building its clamped tube in OpenSees.
+
+    ops: the module openseespy.opensees.
     """
     nodes = tube_nodes(config, refinement)
     section, material = config.structure.section, config.structure.material

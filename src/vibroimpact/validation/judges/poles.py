@@ -1,7 +1,7 @@
-"""Poles and spectra, judged: the LSCF of sdypy-EMA and pyOMA2 on the very numbers that ours gets,
-and scipy's averaged spectra.
+"""Poles and spectra against the LSCF of sdypy-EMA, pyOMA2, and scipy's averaged spectra.
 
-The records are those of the linear tube with a bilateral support, whose poles are known exactly.
+All are given the same data as ours. The records are those of the linear tube with a bilateral
+support, whose poles are known exactly.
 """
 
 import numpy as np
@@ -26,10 +26,7 @@ from vibroimpact.validation.check import Check
 
 from .presence import pyoma2, sdypy_ema
 
-SUPPORT = (
-    1.0e5,
-    62.0525,
-)  # N/m and N s/m per support: the damping doubles the first mode's damping ratio
+SUPPORT = (1.0e5, 62.0525)  # N/m, N s/m per support; c doubles the damping ratio of the first mode
 RATE_HZ, DURATION_S, PERIOD_S, BAND_HZ = 256.0, 49.0, 51.0, (5.0, 100.0)
 SEGMENTS = Spectra(segment_s=10.0, overlap=0.65, window="hann")
 SEEDS, REFERENCES = 16, (0, 1)
@@ -39,22 +36,24 @@ LONGEST_LAG_S = 1.5
 SSI_ROWS, SSI_ORDER = 40, 16  # block rows of the Hankel matrix; states
 SEARCH = {"band_Hz": (8.0, 60.0), "window": "hann", "max_order": 24}
 PEAK_SEARCH_HZ = (8.0, 45.0)
-# relative to the pole: FRFs without noise, round-off times the condition of the normal equations
+# Relative to the pole. FRFs without noise: round-off times the condition of the normal equations.
 EXACT_FRF = 1.0e-6
-# the same spectra and order: the same, one code by eigenvalues of the transposed companion matrix
+# The same spectra and order: the equations are the same; one code takes the transposed companion
+# matrix.
 SAME_EQUATIONS = 1.0e-6
 SAME_RECORDS = 3.0  # standard errors of the mean difference, measured over the records
 SAME_PSD = 1.0e-10  # the same formula
 
 
 def sensors_across(model):
-    """Return (mode, output) the sensor shapes across the tube's plane."""
+    """Return (mode, output) the sensor shapes across the plane of the tube."""
     return model.sensor_shapes[:, [name.endswith(".y") for name in model.sensor_names]]
 
 
 def sdypy_checks(model) -> list[Check]:
-    """Return the Checks of the first three poles across the plane: ours and sdypy-EMA's LSCF on the
-    same exact FRFs. Raises JudgeAbsent.
+    """Return the Checks of the first three poles across the plane from exact FRFs.
+
+    Ours and sdypy-EMA's LSCF get the same FRFs. Raises JudgeAbsent.
     """
     ema = sdypy_ema()
     frequency = np.arange(0.0, RATE_HZ + 1.0e-9, EMA_STEP_HZ)
@@ -87,9 +86,7 @@ def sdypy_checks(model) -> list[Check]:
 
 
 def exact_poles(model):
-    """Return (pole,) rad/s across the plane, by frequency: eigenvalues of the state matrix of the
-    tube on its support.
-    """
+    """Return (pole,) rad/s across the plane, by frequency, from the state matrix of the tube."""
     modes, (k, c) = driven_block(model), SUPPORT
     contact = contact_matrix(model)[modes]
     held, size = contact @ contact.T, len(modes)
@@ -107,8 +104,9 @@ def exact_poles(model):
 
 
 def _pole_check(case, name, source, reference, found, tolerance):
-    """Return the Check of two poles in rad/s: reference is a magnitude, ours that plus the distance
-    of the poles in the complex plane.
+    """Return the Check of two poles in rad/s.
+
+    reference is a magnitude; ours is it plus the distance of the poles in the complex plane.
     """
     return Check(
         case,
@@ -122,11 +120,11 @@ def _pole_check(case, name, source, reference, found, tolerance):
 
 
 def pyoma_checks(model, seeds=SEEDS) -> list[Check]:
-    """Return the Checks of the first pole from records: pyOMA2's pLSCF on our half spectra, and its
-    SSI-cov on the records themselves.
+    """Return the Checks of the first pole from records, against pyOMA2.
 
-    SSI works in time and shares no line with ours: over `seeds` records the two means must agree
-    within their own scatter. Raises JudgeAbsent.
+    Its pLSCF gets our half spectra, its SSI-cov the records. SSI works in the time domain and
+    shares no code with ours: over `seeds` records the two means must agree within their scatter.
+    Raises JudgeAbsent.
     """
     ssi, plscf = pyoma2()
     exact = first_pole(model, *SUPPORT)
@@ -186,8 +184,9 @@ def _same_spectra_checks(plscf, motion, exact):
 
 
 def record(model, seed):
-    """Return (output, time) m: the tube on its bilateral support under band-limited noise at the
-    shaker, at 256 Hz.
+    """Return (output, time) m of the tube on its bilateral support, at 256 Hz.
+
+    The force is band-limited noise at the shaker.
     """
     force = band_limited_noise(
         np.random.default_rng(seed), round(PERIOD_S * RATE_HZ), RATE_HZ, BAND_HZ
@@ -198,9 +197,7 @@ def record(model, seed):
 
 
 def _our_pole(motion):
-    """Return our operational pole in rad/s of a record (output, time), without a model to correct
-    its bias.
-    """
+    """Return our operational pole in rad/s of a record (output, time), without bias correction."""
     spectra = segment_spectra(motion, RATE_HZ, SEGMENTS)
     search = PoleSearch(spectra.frequency, **SEARCH)
     peak = find_peak(spectra.frequency, psd_statistics(spectra.values)[0][0], PEAK_SEARCH_HZ)
@@ -217,8 +214,9 @@ def _our_pole(motion):
 
 
 def _ssi_pole(ssi, motion, exact):
-    """Return the pole in rad/s that pyOMA2's SSI-cov finds in a record (output, time), nearest to
-    the exact one.
+    """Return the pole in rad/s of pyOMA2's SSI-cov that is nearest to the exact one.
+
+    motion: record (output, time).
     """
     hankel = ssi.build_hank(Y=motion, Yref=motion[list(REFERENCES)], br=SSI_ROWS, method="cov")[0]
     states = ssi.SSI_fast(hankel, SSI_ROWS, SSI_ORDER, step=2)[1][-1]
@@ -226,8 +224,9 @@ def _ssi_pole(ssi, motion, exact):
 
 
 def _discrete_poles(plscf, spectra, order):
-    """Return (pole,) rad/s of pyOMA2's pLSCF of one order on spectra (output, reference, frequency)
-    from 0 to half the rate.
+    """Return (pole,) rad/s of pyOMA2's pLSCF of one order.
+
+    spectra (output, reference, frequency): from 0 to half the rate.
     """
     denominators, numerators = plscf.pLSCF(spectra, 1.0 / RATE_HZ, order, sgn_basf=1)
     roots = np.linalg.eigvals(plscf.rmfd2ac(denominators[-1], numerators[-1])[0]).astype(complex)
@@ -241,14 +240,15 @@ def upper_half(poles):
 
 
 def nearest(poles, target):
-    """Return the pole (complex, rad/s) of positive imaginary part that is nearest to a target."""
+    """Return the pole (complex, rad/s) of positive imaginary part nearest to a target."""
     poles = upper_half(poles)
     return poles[np.argmin(np.abs(poles - target))]
 
 
 def spectrum_checks(model) -> list[Check]:
-    """Return the Checks of the PSD and of a cross-spectrum of a record against scipy.signal: the
-    worst bin of each window.
+    """Return the Checks of a PSD and a cross-spectrum of a record against scipy.signal.
+
+    The error is that of the worst bin, for each window.
     """
     motion, checks = record(model, 0), []
     for window in ("hann", "boxcar"):

@@ -1,5 +1,6 @@
-"""The other codes that judge the project, imported or found only when asked for: each is there, or
-a sentence says how to get it.
+"""Import of the other codes, each only when it is used.
+
+Where one is not installed, a sentence says how to install it.
 """
 
 import logging
@@ -21,10 +22,8 @@ def opensees():
     """Return the module openseespy.opensees. Raises JudgeAbsent."""
     try:
         import openseespy.opensees as module
-    except (
-        ImportError,
-        RuntimeError,
-    ) as error:  # RuntimeError: the package is there, its compiled part does not fit this Python
+    except (ImportError, RuntimeError) as error:
+        # RuntimeError: its compiled part does not fit this version of Python
         raise JudgeAbsent(
             f"OpenSeesPy cannot be imported ({error}): {PYTHON_JUDGES}; its compiled part needs"
             " Python 3.11 on Linux"
@@ -44,19 +43,18 @@ def sdypy_ema():
 def pyoma2():
     """Return the modules (pyoma2.functions.ssi, pyoma2.functions.plscf). Raises JudgeAbsent."""
     try:
-        with (
-            np.errstate()
-        ):  # its import switches numpy's floating-point warnings off for the whole process
+        with np.errstate():  # its import switches off numpy's floating-point warnings for good
             from pyoma2.functions import plscf, ssi
     except ImportError as error:
         raise JudgeAbsent(f"pyOMA2 cannot be imported ({error}): {PYTHON_JUDGES}") from error
-    logging.getLogger("pyoma2").setLevel(logging.WARNING)  # it reports every record it works on
+    logging.getLogger("pyoma2").setLevel(logging.WARNING)  # it logs every record it works on
     return ssi, plscf
 
 
 def calculix(deck):
-    """Return the text of the .dat file that CalculiX writes for an input deck (str). Raises
-    JudgeAbsent; RuntimeError when it fails.
+    """Return the text of the .dat file that CalculiX writes for an input deck.
+
+    Raises JudgeAbsent; RuntimeError when CalculiX fails.
     """
     program = shutil.which("ccx")
     if program is None:

@@ -1,6 +1,4 @@
-"""What the third-party codes say: the Checks of those that are installed, and a sentence for each
-that is not.
-"""
+"""The Checks of all other codes that are installed."""
 
 from dataclasses import dataclass, field
 
@@ -15,8 +13,11 @@ from .presence import JudgeAbsent
 
 @dataclass
 class Verdicts:
-    """checks; absent: a sentence per judge that is not installed; impacts {name: Impacts} and rows
-    of the impact comparison, for the figure.
+    """Results of the comparisons with other codes.
+
+    checks: list of Check.
+    absent: a sentence for each code that is not installed.
+    impacts: {name: Impacts} and rows of the impact comparison, for the figure.
     """
 
     checks: list[Check] = field(default_factory=list)
@@ -26,7 +27,7 @@ class Verdicts:
     by_mesh: list[dict] = field(default_factory=list)
 
     def presence(self) -> str:
-        """Return the text that says which judges spoke and which were absent."""
+        """Return the text that lists the codes that were used and those that were absent."""
         spoke = sorted({check.case.removeprefix("judge ") for check in self.checks})
         return (
             "\n".join(
@@ -40,8 +41,9 @@ class Verdicts:
 
 
 def all_verdicts(config) -> Verdicts:
-    """Return the Verdicts of every judge on the study's tube; config: the default study's
-    configuration.
+    """Return the Verdicts of every code on the study's tube.
+
+    config: of the default study.
     """
     model, verdicts = build_model(config), Verdicts()
 

@@ -1,1 +1,1 @@
-"""Whether the equivalent linear tube predicts what it was not fitted on."""
+"""Predictions by the equivalent linear tube where it was not fitted."""

@@ -1,10 +1,9 @@
-"""The equivalent support as a law of the level: fitted on one study, used at loads, gaps and
-geometries that it has not seen.
+"""The equivalent support as a law of the level, fitted on one study and used beyond it.
 
-Two forms. "load / gap": k and c of the tube of the study against load over gap, exact for that tube
-because its model is homogeneous. "scaled": k over the tube's own static stiffness at the plates,
-against the RMS displacement that the FREE tube would have there over the gap; both come from the
-linear model of any tube, so the law can be carried to another one.
+There are two forms. "load / gap": k and c of the study's tube against load over gap; exact for that
+tube because its model is homogeneous. "scaled": k over the static stiffness of the tube at the
+plates, against the RMS displacement that the FREE tube would have there over the gap. Both follow
+from the linear model of any tube, so that the law applies to another one.
 """
 
 from dataclasses import dataclass
@@ -20,11 +19,12 @@ FREE = 1.0  # N/m: a support that is not there
 
 @dataclass(frozen=True)
 class EquivalentLaw:
-    """k N/m and c N s/m per support against a level, by straight lines between medians in
-    logarithms.
+    """k in N/m and c in N s/m per support against a level, interpolated linearly in logarithms.
 
-    level, k, c (point,): ascending level; below the first the tube counts as free, beyond the last
-    the last slope goes on (`inside` tells).
+    level, k, c (point,): medians, level ascending.
+
+    Below the first level the tube is free; beyond the last, the last slope is continued (see
+    `inside`).
     """
 
     level: np.ndarray
@@ -32,7 +32,7 @@ class EquivalentLaw:
     c: np.ndarray
 
     def at(self, level):
-        """Return (k, c) at a level, (0, 0) where the tube counts as free."""
+        """Return (k, c) at a level, (0, 0) where the tube is free."""
         if level < self.level[0]:
             return 0.0, 0.0
         x = np.log(level)
@@ -56,8 +56,10 @@ def _line(x, places, values):
 def fit_law(summary, level_of, scale=(1.0, 1.0), without_load=None) -> EquivalentLaw:
     """Return the law of a study: running medians over loads, gaps and methods.
 
-    summary: rows of consistency_summary.csv; level_of: function (load N, gap m) -> level; scale:
-    what k and c are divided by; without_load: a load N RMS that is left out.
+    summary: rows of consistency_summary.csv.
+    level_of: function (load N, gap m) that returns the level.
+    scale: divisors of k and c.
+    without_load: a load in N RMS to leave out.
     """
     points = sorted(
         (level_of(row["load_rms_N"], row["gap_m"]), row["k_median"], row["c_median"])
@@ -82,8 +84,9 @@ def fit_law(summary, level_of, scale=(1.0, 1.0), without_load=None) -> Equivalen
 
 
 def free_level(model, band_Hz):
-    """Return metres per newton: RMS displacement of the free tube at the middle of its plates,
-    along the drive, per RMS force in the band.
+    """Return the RMS displacement of the free tube at its plates per RMS force in the band, m/N.
+
+    It is that of the middle of the plates, along the drive.
     """
     frequency = np.arange(band_Hz[0], band_Hz[1], 0.02)
     response = frf(model, FREE, 0.0, frequency, _plate_shapes(model))
@@ -91,8 +94,9 @@ def free_level(model, band_Hz):
 
 
 def plate_stiffness(model):
-    """Return (N/m, N s/m): static stiffness of the tube at its plates, all moving alike, per plate;
-    and over the first frequency, for c.
+    """Return (N/m, N s/m): static stiffness of the tube per plate, and it over the first omega.
+
+    All plates move alike. The second is the scale of c.
     """
     shapes = _plate_shapes(model)
     moved = shapes.sum(axis=1)
@@ -103,8 +107,9 @@ def plate_stiffness(model):
 
 
 def _plate_shapes(model):
-    """(mode, support): mean displacement of each support's points along its direction that the
-    drive moves most.
+    """Return (mode, support): mean displacement of each support's points.
+
+    The direction is the one that the drive moves most.
     """
     driven = np.abs(
         np.einsum(

@@ -1,6 +1,4 @@
-"""The cases that the prediction is tried on: other loads and gaps of the study's tube, another
-tube, and each load of the study left out.
-"""
+"""Cases of the prediction: other loads and gaps, another tube, and each load left out in turn."""
 
 from pathlib import Path
 
@@ -24,8 +22,9 @@ RUN = {"record.duration_s": 24.0}
 
 
 def study_laws(config, model, results: Path, without_load=None):
-    """Return {law: (EquivalentLaw, level function (model, load, gap) -> level, scale function model
-    -> (k, c))} of a finished study.
+    """Return {name: (law, level function, scale function)} of a finished study.
+
+    law: EquivalentLaw. level function (model, load, gap) -> level; scale function model -> (k, c).
     """
     summary, band = read_table(results / "consistency_summary.csv"), config.excitation.band_Hz
     per_newton, stiffness = free_level(model, band), plate_stiffness(model)
@@ -56,12 +55,11 @@ def predicted(laws, law, tube, load, gap, config):
 
 
 def input_gain(config, model, results: Path, law):
-    """Return (level (load,), gain (load,)): by what the force of the equivalent linear tube must be
-    raised for the displacements of the study.
+    """Return (level (load,), gain (load,)) of the force of the equivalent linear tube.
 
-    Non-linear over linear RMS displacement, mean over driven sensors and seeds, at the largest gap.
-    The apparent damping of the identified support widens peaks without taking the energy that a
-    real damper would: the linear tube with it answers too little.
+    With this gain the linear tube has the RMS displacements of the study: mean over driven sensors
+    and seeds, at the largest gap. The identified apparent damping widens the peaks but dissipates
+    less than a real damper, so that the linear tube without gain responds too little.
     """
     gap, level, gain = float(max(config.grid.gap_m)), [], []
     for load in load_values(config.grid):
@@ -83,7 +81,7 @@ def _driven(config, model):
 
 
 def _study_seeds(config, model, results, load, gap):
-    """The non-linear Responses of the study at one load and gap, one per seed."""
+    """Return the non-linear Responses of the study at one load and gap, one per seed."""
     seeds = []
     for seed in range(config.grid.seeds):
         name = Case(load, gap, seed).id
@@ -146,8 +144,9 @@ def simulated_rows(config, geometry, laws, gains, gaps, loads=LOADS_N, seeds=SEE
 
 
 def left_out_rows(config, model, results: Path):
-    """Return the prediction rows of the study's own records at its largest gap, each load predicted
-    by a law fitted without it.
+    """Return the prediction rows of the study's own records at its largest gap.
+
+    Each load is predicted by a law fitted without it.
     """
     gap, rows = float(max(config.grid.gap_m)), []
     for load in load_values(config.grid)[::3]:

@@ -1,6 +1,4 @@
-"""Does the equivalent linear tube predict? Its response beside the non-linear one, quantity by
-quantity, where nothing was fitted.
-"""
+"""Comparison of the equivalent linear tube with the non-linear one where nothing was fitted."""
 
 from dataclasses import dataclass, replace
 
@@ -11,19 +9,19 @@ from vibroimpact.linear.responses import frf
 BANDS_HZ = ((5.0, 20.0), (20.0, 40.0), (40.0, 60.0), (60.0, 100.0), (100.0, 200.0))
 RESOLUTION_HZ = 0.01
 USABLE_dB = 2.0  # 26 % in amplitude: the "agree" of the study
-REGIMES = (
-    ("hardly touching", 0.01),
-    ("transition", 0.40),
-    ("mostly in contact", 1.0),
-)  # up to this fraction of time in contact
+# Name and largest fraction of time in contact.
+REGIMES = (("hardly touching", 0.01), ("transition", 0.40), ("mostly in contact", 1.0))
 EULER_GAMMA = 0.5772
 
 
 @dataclass(frozen=True)
 class Response:
-    """One tube under one load: psd {sensor: (frequency,) m²/Hz} at frequency (frequency,) Hz,
-    rms_displacement {sensor: m}, rms_force {support: N}, rms_stress and peak_stress {section: Pa},
-    contact fraction of time (NaN for a linear tube).
+    """The response of one tube under one load.
+
+    frequency (frequency,): Hz. psd: {sensor: (frequency,) m²/Hz}.
+    rms_displacement: {sensor: m}. rms_force: {support: N}.
+    rms_stress, peak_stress: {section: Pa}.
+    contact: fraction of time, NaN for a linear tube.
     """
 
     frequency: np.ndarray
@@ -36,8 +34,10 @@ class Response:
 
 
 def linear_response(model, k, c, load, band_Hz, duration_s) -> Response:
-    """Return the Response of the linear tube with support (k N/m, c N s/m) to a force of RMS `load`
-    N, flat in a band.
+    """Return the Response of the linear tube with support (k N/m, c N s/m).
+
+    load: RMS of the force, N, flat in band_Hz.
+    duration_s: for the peak stress.
 
     Peak stress: expected maximum of a Gaussian process over the duration, sigma (sqrt(2 ln n) +
     0.5772 / sqrt(2 ln n)), n upcrossings. Source: Davenport 1964. Plate force: (k + i omega c)
@@ -75,27 +75,31 @@ def linear_response(model, k, c, load, band_Hz, duration_s) -> Response:
 
 def amplified(response: Response, gain: float) -> Response:
     """Return the Response of a linear tube to a force `gain` times as large."""
-    values = {
-        name: {place: gain * value for place, value in getattr(response, name).items()}
-        for name in ("rms_displacement", "rms_force", "rms_stress", "peak_stress")
-    }
+
+    def times(values: dict[str, float]) -> dict[str, float]:
+        return {place: gain * value for place, value in values.items()}
+
     return replace(
-        response, psd={name: gain**2 * psd for name, psd in response.psd.items()}, **values
+        response,
+        psd={name: gain**2 * psd for name, psd in response.psd.items()},
+        rms_displacement=times(response.rms_displacement),
+        rms_force=times(response.rms_force),
+        rms_stress=times(response.rms_stress),
+        peak_stress=times(response.peak_stress),
     )
 
 
 def expected_peak_factor(crossings):
-    """Return the expected maximum of a Gaussian process in standard deviations, over a time with
-    that many upcrossings of its mean.
+    """Return the expected maximum of a Gaussian process, in standard deviations.
+
+    crossings: expected number of upcrossings of the mean.
     """
     root = np.sqrt(2.0 * np.log(np.maximum(crossings, 2.0)))
     return root + EULER_GAMMA / root
 
 
 def _support_shapes(model):
-    """(mode, 2 per support): displacement that the resultant of a support acts on, in its two
-    directions.
-    """
+    """Return (mode, 2 per support): displacement conjugate to the resultant of each support."""
     weighted = model.contact_shapes * model.contact_weight[:, None]
     return np.concatenate(
         [
@@ -107,8 +111,10 @@ def _support_shapes(model):
 
 
 def recorded_response(record, frequency, psd, names) -> Response:
-    """Return the Response of a non-linear record: statistics of its dataset, psd (sensor,
-    frequency) m²/Hz of the sensors `names`.
+    """Return the Response of a non-linear record.
+
+    record: Dataset with its statistics.
+    psd (sensor, frequency): m²/Hz, of the sensors `names`.
     """
     step = frequency[1] - frequency[0]
     return Response(
@@ -131,9 +137,11 @@ def _named(record, axis, name):
 def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) -> list[dict]:
     """Return the rows that compare one linear Response with the non-linear ones of several seeds.
 
-    labels: columns that identify the case. Row keys: those, regime, quantity, of, unit, linear,
-    nonlinear (root mean square over seeds), scatter_dB (standard error), error_dB, usable. sensors:
-    those whose displacement counts (the driven direction).
+    labels: columns that identify the case.
+    sensors: those whose displacement is compared (the driven direction).
+
+    Row keys: labels, regime, quantity, of, unit, linear, nonlinear (root mean square over seeds),
+    scatter_dB (standard error), error_dB, usable.
     """
     contact = float(np.mean([seed.contact for seed in seeds]))
     regime = next(name for name, limit in REGIMES if contact <= limit)
@@ -169,7 +177,7 @@ def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) ->
 
 
 def _largest(values, count=3):
-    """The sections with the largest stress: where a designer looks."""
+    """Return the sections with the largest stress, which a designer checks."""
     return sorted(values, key=values.get, reverse=True)[:count]
 
 
@@ -200,17 +208,15 @@ def _row(quantity, of, unit, linear, seeds):
 
 
 def summary_rows(rows) -> list[dict]:
-    """Return the engineer's table: per geometry, law, quantity and regime the median and the worst
-    error in dB, and whether to use it.
+    """Return rows per geometry, law, quantity and regime: median and worst error in dB.
 
-    yes: every case within 2 dB; with care: the median within 2 dB; no: else.
+    usable: "yes" where every case is within 2 dB, "with care" where the median is, else "no".
     """
-    groups = {}
+    groups: dict[tuple, list[float]] = {}
     for row in rows:
         if np.isfinite(row["error_dB"]):
-            groups.setdefault(
-                (row["geometry"], row["law"], row["quantity"], row["regime"]), []
-            ).append(row["error_dB"])
+            key = (row["geometry"], row["law"], row["quantity"], row["regime"])
+            groups.setdefault(key, []).append(row["error_dB"])
     table = []
     for (geometry, law, quantity, regime), errors in groups.items():
         worst, middle = max(errors, key=abs), float(np.median(errors))

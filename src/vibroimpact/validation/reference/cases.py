@@ -1,5 +1,4 @@
-"""R1 to R5: small systems with closed forms or exact published values, read from step-by-step
-records.
+"""R1 to R5: small systems with closed forms or exact published values, from records of every step.
 
 Numbers: code_aster validation tests (EDF, published with their reference values), recomputed. Each
 function takes the record dataset of one run (record.every_step) and returns Checks.
@@ -9,7 +8,7 @@ import numpy as np
 
 from vibroimpact.validation.check import Check
 
-SLIDE_EXTREMES_M = (-6.5e-4, 4.5e-4, -2.5e-4, 0.5e-4, 0.5e-4)  # at n pi/100 s; the last one holds
+SLIDE_EXTREMES_M = (-6.5e-4, 4.5e-4, -2.5e-4, 0.5e-4, 0.5e-4)  # at n pi/100 s; the last is at rest
 LAUNCH = {
     "mass_kg": 100.0,
     "speed_m_per_s": 1.0,
@@ -42,11 +41,10 @@ SDND102, SDND104 = "exact (SDND102)", "published (SDND104)"
 
 
 def contact_times(record, point=0):
-    """Return (contact, 2) s: begin and end of each contact of a point, from its force at every step
-    by linear interpolation.
+    """Return (contact, 2) s: begin and end of each contact of a point.
 
-    Where the force is zero the straight line through the first two loaded steps is followed back:
-    at the step of the touch the force has no sign to interpolate on.
+    They are interpolated from its force at every step. Before contact the force is zero, so that
+    the line through the first two loaded steps is extrapolated back.
     """
     time = record["step_time"].values
     force = np.hypot(*record["contact_force"].values[point])
@@ -63,9 +61,7 @@ def contact_times(record, point=0):
 
 
 def _crossing(time, force, at, step):
-    """Time at which the force was zero, on the parabola through the three loaded steps next to
-    it.
-    """
+    """Return the time at which the force was zero, on the parabola through the next three steps."""
     away = -1 if step > 0.0 else 1
     f0, f1, f2 = force[at], force[at + away], force[at + 2 * away]
     slope, bend = (4.0 * f1 - 3.0 * f0 - f2) / 2.0, (f2 - 2.0 * f1 + f0) / 2.0
@@ -76,8 +72,9 @@ def _crossing(time, force, at, step):
 
 
 def slide_checks(record):
-    """Return the Checks of R1: a mass on a spring that slides to rest, 0.1 % of the initial
-    displacement on each extreme.
+    """Return the Checks of R1: a mass on a spring that slides to rest.
+
+    Tolerance: 0.1 % of the initial displacement on each extreme.
     """
     time, displacement = record["step_time"].values, record["element_displacement"].values[0]
     checks = []
@@ -99,9 +96,7 @@ def slide_checks(record):
 
 
 def launch_checks(record):
-    """Return the Checks of R2: a mass launched on a stop that it touches, a second stop too far to
-    be met.
-    """
+    """Return the Checks of R2: a mass launched against a stop, and a second stop out of reach."""
     time = record["step_time"].values
     force = -record["contact_force"].values[0, 0]
     first = np.flatnonzero(force > 0.0)
@@ -155,7 +150,7 @@ def launch_checks(record):
 
 
 def _summit(time, force):
-    """(value, time) of the maximum, on the parabola through its three largest steps."""
+    """Return (value, time) of the maximum, on the parabola through its three largest steps."""
     i = int(np.argmax(force))
     before, top, after = force[i - 1 : i + 2]
     shift = 0.5 * (before - after) / (before - 2.0 * top + after)
@@ -163,9 +158,7 @@ def _summit(time, force):
 
 
 def forced_impact_checks(record):
-    """Return the Checks of R3: contact in and out times and peak forces of a mass driven against a
-    stiff stop, at a fine step.
-    """
+    """Return the Checks of R3: contact times and peak forces of a mass driven against a stop."""
     ours = contact_times(record)
     duration = FORCED_CONTACT_S[0][1] - FORCED_CONTACT_S[0][0]
     checks = []
@@ -215,7 +208,7 @@ def forced_impact_checks(record):
 
 
 def _elastic_scale(record):
-    """Largest energy that the stop held: the energy that moves at an impact."""
+    """Return the largest energy that the stop stored, which is the energy of an impact."""
     force, depth = record["contact_force"].values[0, 0], record["contact_displacement"].values[0, 0]
     at = int(np.argmax(np.abs(force)))
     return 0.5 * abs(force[at]) * (depth[at] - 1e-3)
@@ -229,8 +222,9 @@ def contact_time_error(record):
 
 
 def contact_time_order(records):
-    """Return (step (run,) s, error (run,) s, order): RMS error of R3's contact times against the
-    step, and the slope of its logarithm.
+    """Return (step (run,) s, error (run,) s, order) of R3's contact times.
+
+    error: RMS. order: slope of its logarithm against that of the step.
     """
     steps = np.array([1.0 / record.attrs["steps_per_second"] for record in records])
     errors = np.array([contact_time_error(record) for record in records])
@@ -238,9 +232,7 @@ def contact_time_order(records):
 
 
 def base_driven_checks(record):
-    """Return the Checks of R4: absolute displacement of a mass whose base moves, against a fixed
-    wall.
-    """
+    """Return the Checks of R4: displacement of a mass on a moving base, against a fixed wall."""
     time, displacement = record["step_time"].values, record["contact_displacement"].values[0, 0]
     largest = max(map(abs, BASE_DRIVEN_M.values()))
     return [
@@ -280,10 +272,9 @@ def wear_checks(records, stick_stiffness):
 
 
 def wear_rate(record, stick_stiffness, friction=0.1, window=(4.0, 12.0)):
-    """Return W: normal force times slip speed, mean over `window` s, from an element's slider at
-    every step.
+    """Return the wear work rate in W: normal force times slip speed, mean over `window` s.
 
-    Slip is the displacement less the stretch of the stick spring, whose force is the element's.
+    Slip is the displacement less the elongation of the stick spring, whose force is the element's.
     """
     time = record["step_time"].values
     force = record["element_force"].values[0]

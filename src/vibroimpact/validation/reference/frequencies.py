@@ -1,5 +1,6 @@
-"""R10: frequencies of beams, continuous beams, U-bend, ring and the stand-in tube, beside closed
-forms and published numbers.
+"""R10: frequencies of beams, continuous beams, U-bend, ring and the stand-in tube.
+
+They are compared with closed forms and published numbers.
 """
 
 import numpy as np
@@ -38,12 +39,13 @@ TUBE_TOLERANCE = 1e-3
 CLOSED_FORM_TOLERANCE = 2e-5
 PUBLISHED_TOLERANCE = 1e-3
 THIN_RING_TOLERANCE = 5e-3
-RIGID_SUPPORT = 1.0e12  # N/m: stiff beside the tube, far from the round-off of its own stiffness
+RIGID_SUPPORT = 1.0e12  # N/m: stiff compared with the tube, still far from round-off
 
 
 def frequency_checks(study) -> list[Check]:
-    """Return the Checks of every frequency with a reference; study: the configuration of the
-    stand-in tube.
+    """Return the Checks of every frequency with a reference.
+
+    study: the configuration of the stand-in tube.
     """
     return [
         *beam_checks(),
@@ -55,8 +57,9 @@ def frequency_checks(study) -> list[Check]:
 
 
 def straight_tube(ends, elements, length=1.0, theory="euler_bernoulli", supports=()):
-    """Return the Structure of a straight tube; ends like "clamped-free"; supports: arc lengths in m
-    of single contact points.
+    """Return the Structure of a straight tube.
+
+    ends: such as "clamped-free". supports: arc lengths in m of single contact points.
     """
     start, end = ends.split("-")
     return tube_path(
@@ -80,8 +83,9 @@ def straight_tube(ends, elements, length=1.0, theory="euler_bernoulli", supports
 
 
 def tube_path(segments, ends, elements, theory, supports=()):
-    """Return the Structure of a tube along `segments` from the origin in z; elements (per span, per
-    bend).
+    """Return the Structure of a tube along `segments`, from the origin in the direction of z.
+
+    elements: (per span, per bend).
     """
     structure = {
         "kind": "path",
@@ -99,8 +103,9 @@ def tube_path(segments, ends, elements, theory, supports=()):
 
 
 def plane_frequencies(structure, to_Hz, stiffness=0.0):
-    """Return [(mode,) Hz] of each uncoupled group, the one that moves along x first; stiffness N/m:
-    bilateral, of every contact point.
+    """Return [(mode,) Hz] of each uncoupled group, the one that moves along x first.
+
+    stiffness: N/m, bilateral, of every contact point.
     """
     frequencies = []
     for group in uncoupled_groups(structure.mass, structure.stiffness, structure.contact_rows()):
@@ -169,8 +174,9 @@ def continuous_beam_roots(spans):
 
 
 def continuous_beam_checks():
-    """Return the Checks of tubes over two, three and four equal spans: ends pinned, stiff point
-    supports between.
+    """Return the Checks of tubes over two, three and four equal spans.
+
+    The ends are pinned, the intermediate supports are stiff points.
     """
     checks = []
     for spans in (2, 3, 4):
@@ -222,8 +228,9 @@ def u_bend_checks():
 
 
 def ring_checks(count=60):
-    """Return the Checks of the free ring (NAFEMS): radius 1 m, solid section of radius 0.05 m,
-    `count` straight elements.
+    """Return the Checks of the free ring (NAFEMS), of `count` straight elements.
+
+    Its radius is 1 m, its solid section has a radius of 0.05 m.
     """
     bar = StageSettings(
         {"outer_diameter_m": 0.1, "wall_thickness_m": 0.05, "shear_coefficient": 0.9}

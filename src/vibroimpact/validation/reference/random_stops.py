@@ -1,5 +1,4 @@
-"""R11: an oscillator between two elastic stops under white noise, whose stationary law is known
-exactly.
+"""R11: an oscillator between two elastic stops under white noise, with an exact stationary law.
 
 m x'' + c x' + k x + Kc (excess over the gap g) = w, white. The joint density is exp(-(m v²/2 +
 U(x)) / T), T = pi S0 / c, whatever the damping. Source: the stationary solution of the
@@ -16,16 +15,15 @@ from scipy.special import erfc
 from vibroimpact.validation.check import Check
 
 SOURCE = "exact, Fokker-Planck"
-LARGEST_STANDARD_ERROR = {
-    "contact probability": 0.01
-}  # of the reference; 0.005 for all other quantities
+LARGEST_STANDARD_ERROR = {"contact probability": 0.01}  # relative; 0.005 for all other quantities
 STANDARD_ERRORS = 3.0
 
 
 @dataclass(frozen=True)
 class StopLaw:
-    """Stationary statistics in units of m = k = g = 1: RMS displacement, contact probability, RMS
-    stop force, upcrossings of +g per time.
+    """Stationary statistics in units of m = k = g = 1.
+
+    They are RMS displacement, contact probability, RMS stop force, and upcrossings of +g per time.
     """
 
     displacement_rms: float
@@ -62,11 +60,10 @@ def exact_law(sigma: float, ratio: float) -> StopLaw:
 
 
 def gaussian_linearisation(sigma: float, ratio: float) -> tuple[float, float]:
-    """Return (RMS displacement, equivalent stiffness) of Gaussian statistical linearisation, in
-    units of m = k = g = 1.
+    """Return (RMS displacement, equivalent stiffness) of Gaussian statistical linearisation.
 
-    k_eq = 1 + r erfc(1 / (s sqrt 2)), s² = T / k_eq, by bisection on s. Source: Roberts and Spanos
-    1990.
+    Units are m = k = g = 1. k_eq = 1 + r erfc(1 / (s sqrt 2)), s² = T / k_eq, by bisection on s.
+    Source: Roberts and Spanos 1990.
     """
     low, high = 1e-6, sigma
     for _ in range(200):
@@ -77,12 +74,11 @@ def gaussian_linearisation(sigma: float, ratio: float) -> tuple[float, float]:
 
 
 def step_error(ratio: float, omega_step: float) -> float:
-    """Return the relative error of the statistics that the step is responsible for: (omega_c dt)² /
-    3, omega_c on the stop.
+    """Return the relative error of the statistics due to the step: (omega_c dt)² / 3.
 
-    Average acceleration lowers the frequency by (omega_c dt)² / 12; the mean of the noise at both
-    ends of a step has the power cos²(omega_c dt / 2) of white noise, (omega_c dt)² / 4 less.
-    Stated, not fitted.
+    omega_c is the frequency on the stop. Average acceleration lowers the frequency by (omega_c dt)²
+    / 12; the mean of the noise at both ends of a step has the power cos²(omega_c dt / 2) of white
+    noise, (omega_c dt)² / 4 less. It is derived, not fitted.
     """
     return (1.0 + ratio) * omega_step**2 / 3.0
 

@@ -1,6 +1,4 @@
-"""Running the reference cases through the public interface: configuration, reduced model,
-simulation, record, checks.
-"""
+"""The reference cases run through the public interface, from configuration to checks."""
 
 from pathlib import Path
 
@@ -18,13 +16,11 @@ from .frequencies import frequency_checks
 from .random_stops import law_checks
 
 STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
-# the place of a touch inside a step is random, and the order of four steps scatters with it
+# The position of a contact within a step is random, so that the order from four steps scatters.
 ORDER_TOLERANCE = 0.3
 ORDER_COLUMNS = ("steps_per_second", "step_s", "contact_time_error_s")
-WHITE_SIGMA = {
-    "r11_stops_10": (0.5, 1.0),
-    "r11_stops_100": (1.0, 2.0),
-}  # s0 of the loads of each configuration
+# s0 of the loads of each configuration.
+WHITE_SIGMA = {"r11_stops_10": (0.5, 1.0), "r11_stops_100": (1.0, 2.0)}
 
 
 def run(config) -> list:
@@ -34,8 +30,9 @@ def run(config) -> list:
 
 
 def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
-    """Return (Checks of R1 to R5, rows {steps_per_second, contact_time_error_s} of R3); folder: of
-    the reference configurations.
+    """Return (Checks of R1 to R5, rows {steps_per_second, contact_time_error_s} of R3).
+
+    folder: of the reference configurations.
     """
     configs = {
         name: load_config(folder / f"{name}.yaml")
@@ -81,6 +78,8 @@ def random_stop_checks(folder: Path, name: str) -> list[Check]:
     """Return the Checks of one configuration of R11, "r11_stops_10" or "r11_stops_100"."""
     config = load_config(folder / f"{name}.yaml")
     omega = 2.0 * np.pi * build_model(config).full_mode_frequencies[0]
+    support = config.supports[0]
+    assert support.gap_m is not None, "the stops of R11 have a gap"
     records = run(config)
     checks = []
     for sigma, load in zip(WHITE_SIGMA[name], load_values(config.grid), strict=True):
@@ -88,18 +87,19 @@ def random_stop_checks(folder: Path, name: str) -> list[Check]:
         checks += law_checks(
             seeds,
             sigma,
-            config.supports[0].stiffness_N_per_m / omega**2,
+            support.stiffness_N_per_m / omega**2,
             omega,
-            config.supports[0].gap_m,
+            support.gap_m,
         )
     return checks
 
 
 def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[dict]]:
-    """Return (Checks, rows of R3's order) of "frequencies", "impacts", "r11_stops_10" or
-    "r11_stops_100".
+    """Return (Checks, rows of R3's order) of one group of reference cases.
 
-    study: the configuration of the stand-in tube; folder: of the reference configurations.
+    group: "frequencies", "impacts", "r11_stops_10" or "r11_stops_100".
+    study: the configuration of the stand-in tube.
+    folder: of the reference configurations.
     """
     if group == "frequencies":
         return frequency_checks(study), []

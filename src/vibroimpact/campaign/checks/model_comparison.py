@@ -1,26 +1,30 @@
-"""Checks of a linear record against a linear model: channels that fit another place better,
-reversed ones, and factors that look like units.
+"""Checks of a linear record against a linear model: swapped or reversed channels, wrong units.
 
-Band powers of the responses per force are compared, in bands wide enough that modes 1 % off stay in
-theirs; signs are those of the phases, line by line, which resonances disturb on few lines.
+Band powers of the responses per force are compared. The bands are wide enough that a mode that is
+1 % off stays in its band. Polarity is the sign of the phase, line by line; resonances disturb it on
+few lines only.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 import numpy as np
 
+from vibroimpact.campaign.signals import Transfer
+
 from .linear_record import mean_coherence
 
 BANDS = 30
-HEARD = 0.3  # least mean coherence of a channel that is judged
-# a pair is swapped where exchanging them takes the misfit below this share of it and by this much
+LEAST_COHERENCE = 0.3  # least mean coherence of a channel that is judged
+# Two channels are swapped where exchanging them reduces their misfit to below this share of it and
+# by at least SWAP_DB.
 SWAP_RATIO = 0.6
 SWAP_DB = 1.0
 OPPOSITE = -0.4  # mean cosine of the phase between measured and simulated
-UNIT_FACTOR_DB = 6.0  # gains are within a few per cent; a factor of two and more is a unit
-KNOWN_FACTORS = {
+UNIT_FACTOR_DB = 6.0  # sensor gains are within a few per cent; a factor of two is a wrong unit
+UNIT_FACTORS = {
     9.80665: "g and m s-2",
     1e3: "mm and m (or kN and N)",
     1e6: "um and m",
@@ -32,12 +36,16 @@ KNOWN_FACTORS = {
     386.09: "g and in s-2",
     9806.65: "g and mm s-2",
 }
-NEAR_FACTOR = 0.06
+FACTOR_TOLERANCE = 0.06
 
 
-def band_levels_dB(frequency, h1, weights):
-    """Return (channel, band) dB of the weighted mean of |h1|² in logarithmic bands; NaN where a
-    band holds no line.
+def band_levels_dB(frequency: np.ndarray, h1: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return (channel, band) dB of the weighted mean of |h1|² in logarithmic bands.
+
+    frequency (line,): Hz.
+    h1, weights (channel, line).
+
+    NaN where a band holds no line.
     """
     edges = np.geomspace(frequency[0], frequency[-1] * (1.0 + 1e-9), BANDS + 1)
     place = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
@@ -52,38 +60,48 @@ def band_levels_dB(frequency, h1, weights):
     )
 
 
-def misfits_dB(measured, simulated):
-    """Return (misfit (channel, channel), offset (channel, channel)) in dB between band levels
-    (channel, band): the robust spread of measured i less simulated j, and its median.
+def misfits_dB(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return (misfit, offset), each (channel, channel) in dB, of band levels (channel, band).
+
+    offset: median of measured channel i less simulated channel j; misfit: robust spread about it.
     """
     difference = measured[:, None, :] - simulated[None, :, :]
     offset = np.nanmedian(difference, axis=-1)
     return np.nanmedian(np.abs(difference - offset[..., None]), axis=-1) * 1.4826, offset
 
 
-def compare_with_model(spectra, simulated, names, kinds, record=None):
-    """Return rows {check, level, record, channel, message} of channels that the linear model
-    contradicts; none where all fit.
+def compare_with_model(
+    spectra: Transfer,
+    simulated: np.ndarray,
+    names: Sequence[str],
+    kinds: Sequence[str],
+    record: str | None = None,
+) -> list[dict]:
+    """Return rows {check, level, record, channel, message} of channels that contradict the model.
 
-    spectra: campaign_signals.Transfer of a linear record; simulated (channel, line): the model's
-    response per force at the same lines, places and directions, complex, SI; names, kinds: of the
-    channels; record: its name.
+    spectra: campaign.signals.Transfer of a linear record.
+    simulated (channel, line): complex response per force of the model at the same lines, points
+    and directions, SI.
+    names, kinds (channel,): texts.
+    record: its name.
     """
-    heard = np.flatnonzero(
-        (mean_coherence(spectra) > HEARD) & np.any(np.abs(simulated) > 0.0, axis=-1)
+    coherent = np.flatnonzero(
+        (mean_coherence(spectra) > LEAST_COHERENCE) & np.any(np.abs(simulated) > 0.0, axis=-1)
     )
-    if heard.size == 0:
+    if coherent.size == 0:
         return []
-    weights = np.maximum(spectra.coherence, 1e-3)[heard]
-    h1, model = spectra.h1[heard], simulated[heard]
+    channels = coherent.tolist()
+    weights = np.maximum(spectra.coherence, 1e-3)[coherent]
+    h1, model = spectra.h1[coherent], simulated[coherent]
     misfit, offset = misfits_dB(
         band_levels_dB(spectra.frequency, h1, weights),
         band_levels_dB(spectra.frequency, model, weights),
     )
-    rows, moved = [], {}
-    for first, second in _swaps(misfit, [kinds[index] for index in heard]):
-        one, other = names[heard[first]], names[heard[second]]
-        moved |= {first: second, second: first}
+    rows: list[dict] = []
+    exchanged: dict[int, int] = {}
+    for first, second in _swaps(misfit, [kinds[channel] for channel in channels]):
+        one, other = names[channels[first]], names[channels[second]]
+        exchanged |= {first: second, second: first}
         rows += [
             _row(
                 "swapped channels",
@@ -95,8 +113,8 @@ def compare_with_model(spectra, simulated, names, kinds, record=None):
             )
             for this, that in ((one, other), (other, one))
         ]
-    for index, channel in enumerate(heard):
-        place = moved.get(index, index)
+    for index, channel in enumerate(channels):
+        place = exchanged.get(index, index)
         cosine = np.real(h1[index] * model[place].conj()) / np.maximum(
             np.abs(h1[index] * model[place]), np.finfo(float).tiny
         )
@@ -118,15 +136,16 @@ def compare_with_model(spectra, simulated, names, kinds, record=None):
                     record,
                     names[channel],
                     f"{names[channel]} is {10 ** (gain / 20):.3g} times the model in record "
-                    f"{record}{_known(gain)}: check its unit.",
+                    f"{record}{_unit_hint(gain)}: check its unit.",
                 )
             )
-    return _together(rows)
+    return _merge_gains(rows)
 
 
-def _together(rows):
-    """Return the rows with those of units as rows of "gains" where several channels are off: then
-    no channel is to be left out for it.
+def _merge_gains(rows: list[dict]) -> list[dict]:
+    """Return the rows with "units" renamed "gains" where several channels are off.
+
+    Then the common cause is not the unit of a channel, and none is to be left out for it.
     """
     if sum(row["check"] == "units" for row in rows) < 2:
         return rows
@@ -144,35 +163,33 @@ def _together(rows):
     ]
 
 
-def _swaps(misfit, kinds):
-    """Yield pairs (first, second) that fit better when exchanged, the best first, each channel
-    once.
-    """
+def _swaps(misfit: np.ndarray, kinds: list[str]) -> Iterator[tuple[int, int]]:
+    """Yield pairs (first, second) that fit better when exchanged, best first, each channel once."""
     gains = []
     for first, second in combinations(range(len(kinds)), 2):
         now = misfit[first, first] + misfit[second, second]
         then = misfit[first, second] + misfit[second, first]
         if kinds[first] == kinds[second] and then < SWAP_RATIO * now and now - then > SWAP_DB:
             gains.append((now - then, first, second))
-    taken = set()
+    taken: set[int] = set()
     for _, first, second in sorted(gains, reverse=True):
         if not {first, second} & taken:
             taken |= {first, second}
             yield first, second
 
 
-def _known(gain_dB):
-    """Return ", as between g and m s-2" where a gain is near the factor of two units, else
-    nothing.
-    """
+def _unit_hint(gain_dB: float) -> str:
+    """Return ", as between g and m s-2" where a gain is near the ratio of two units, else ""."""
     factor = 10.0 ** (abs(gain_dB) / 20.0)
     near = [
-        text for known, text in KNOWN_FACTORS.items() if abs(np.log(factor / known)) < NEAR_FACTOR
+        text
+        for known, text in UNIT_FACTORS.items()
+        if abs(np.log(factor / known)) < FACTOR_TOLERANCE
     ]
     return f", as between {near[0]}" if near else ""
 
 
-def _row(check, record, channel, message):
+def _row(check: str, record: str | None, channel: str, message: str) -> dict:
     return {
         "check": check,
         "level": "warn",

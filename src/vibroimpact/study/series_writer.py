@@ -1,14 +1,23 @@
-"""The time series of a batch, written while it is integrated: memory holds a piece of them,
-whatever their duration.
+"""Write the time series of a batch of cases while it is integrated.
+
+Memory holds a piece of them, whatever their duration.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from vibroimpact.integration.batch import Schedule
 from vibroimpact.records import RecordFile, write_record
+from vibroimpact.reduction.modal_model import ModalModel
 
+from .cases import Case
 from .record_variables import VARIABLES, split_record
 from .simulation import case_attributes, sample_times
 
@@ -16,15 +25,16 @@ PIECE = 8192  # samples written at a time: many small writes cost more than the 
 SERIES = ("displacement", "acceleration", "line_displacement", "support_force", "force")
 
 
-def series_files(config, model, paths: dict, attributes: dict):
-    """The `keep` of simulate_cases that writes the series of each case to its path {case: path},
-    with attributes beside those of the case.
+def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict) -> Callable:
+    """Return the `writer` of simulate_cases that writes the time series of each case.
 
-    Without any path the series are dropped.
+    config: its key study is read.
+    paths: {case: path}; where it is empty the series are dropped.
+    attributes: of the files, beside those of the case.
     """
 
     @contextmanager
-    def keep(schedule, batch):
+    def writer(schedule: Schedule, batch: list[Case]) -> Iterator[Callable]:
         if not paths:
             yield lambda first, series: None
             return
@@ -39,7 +49,7 @@ def series_files(config, model, paths: dict, attributes: dict):
             for name, (dims, dtype, unit, long_name) in VARIABLES.items()
             if name in SERIES
         }
-        waiting = []
+        waiting: list[dict[str, np.ndarray]] = []
         with ExitStack() as open_files:
             heads = [
                 xr.Dataset({}, coordinates, case_attributes(config, schedule, case) | attributes)
@@ -50,7 +60,7 @@ def series_files(config, model, paths: dict, attributes: dict):
                 for case, head in zip(batch, heads, strict=True)
             ]
 
-            def put(first, series):
+            def put(first: int, series: dict[str, np.ndarray]) -> None:
                 waiting.append({name: values.copy() for name, values in series.items()})
                 held = sum(piece["force"].shape[-1] for piece in waiting)
                 last = first + series["force"].shape[-1]
@@ -64,14 +74,18 @@ def series_files(config, model, paths: dict, attributes: dict):
 
             yield put
 
-    return keep
+    return writer
 
 
-def write_parts(record, path, series_path=None):
-    """Write a record: its statistics to a path, the time series that it holds itself, if any (see
-    step_records), to another.
+def write_record_parts(
+    record: xr.Dataset, path: str | Path, series_path: str | Path | None = None
+) -> None:
+    """Write the statistics of a record to one file and its time series to another.
+
+    series_path: needed only where the record holds time series itself, see every_step_records.
     """
     statistics, series = split_record(record)
     write_record(statistics, path)
     if series.data_vars:
+        assert series_path is not None, "a record with time series needs a path for them"
         write_record(series, series_path)

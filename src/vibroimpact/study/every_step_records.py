@@ -1,8 +1,15 @@
-"""Short runs kept at every step: the records of `record.every_step`, from the initial state on,
-without start-up and without filter.
+"""Short runs recorded at every step, as `record.every_step` asks.
+
+They begin at the initial state, without start-up and without output filter.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
+import xarray as xr
 
 from vibroimpact.excitation.force_stream import normalised_force
 from vibroimpact.integration.every_step import Traces, trace_lanes
@@ -14,11 +21,13 @@ from .cases import Case
 from .record_variables import describe
 
 
-def trace_cases(config, model: ModalModel, cases: list[Case]):
-    """Yield (case, record dataset) for every case: contact and element displacement and force at
-    every step, and the energies of the run.
+def trace_cases(
+    config: Any, model: ModalModel, cases: list[Case]
+) -> Iterator[tuple[Case, xr.Dataset]]:
+    """Yield (case, record) for every case, with values at every step; time 0 is the initial state.
 
-    Time 0 is the initial state. Raises IntegrationError, ForceError.
+    The records hold displacement and force of contacts and elements, and the energies of the run.
+    Raises IntegrationError, ForceError.
     """
     rate = config.integration.steps_per_second
     steps = round(config.record.duration_s * rate)
@@ -42,15 +51,15 @@ def trace_cases(config, model: ModalModel, cases: list[Case]):
             yield case, _dataset(config, model, traces, lane, case)
 
 
-def _normalised_force(config, seed, steps, rate):
+def _normalised_force(config: Any, seed: int, steps: int, rate: float) -> np.ndarray:
     generator = random_generator(config.seed, seed, "force")
     return normalised_force(
         config.excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0
     )
 
 
-def _dataset(config, model: ModalModel, traces: Traces, lane: int, case: Case):
-    values = {
+def _dataset(config: Any, model: ModalModel, traces: Traces, lane: int, case: Case) -> xr.Dataset:
+    values: dict[str, Any] = {
         name: getattr(traces, name)[lane]
         for name in (
             "contact_displacement",
