@@ -207,8 +207,8 @@ def test_what_came_nearest_is_told_where_nothing_is_named():
             ],
         )
     )
-    assert told.endswith("What came nearest, clearance and support offset, is not it.")
-    assert "nearest" not in verdict_sentence(made_up_verdict("unknown"))
+    assert told.endswith("The best candidate, clearance and support offset, does not explain it.")
+    assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
 
 
 def test_of_several_the_most_probable_is_shown_with_its_parameters():

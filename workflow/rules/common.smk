@@ -1,4 +1,5 @@
-# The checked configuration, the names of all files, and the inputs and params that rules declare with functions.
+# The checked configuration, the names of all files, and the functions that give rules their
+# inputs and params.
 import os
 import re
 import sys
@@ -7,7 +8,7 @@ from pathlib import Path
 SOURCE = os.path.relpath(Path(workflow.basedir, "src"))
 SCRIPTS = os.path.relpath(Path(workflow.basedir, "workflow", "scripts"))
 sys.path.insert(0, SOURCE)
-# Jobs inherit these: the library needs no installation, and -j jobs of one thread each do not crowd one another out.
+# Jobs inherit these: the library needs no installation, and -j jobs use one thread each.
 os.environ.update(
     PYTHONPATH=os.path.abspath(SOURCE),
     OMP_NUM_THREADS="1",
@@ -72,7 +73,7 @@ FIGURES = {
 }
 
 
-# What a run is asked to look at; no key of the study.
+# Values of --config that are not keys of the study.
 REQUEST = {
     name: str(config.pop(name))
     for name in (
@@ -94,7 +95,10 @@ REQUEST = {
 
 
 def number_asked(name):
-    """The number that --config name=NUMBER gives, None where it is not given; a sentence where it is no positive number."""
+    """The number of --config name=NUMBER, None where it is not given.
+
+    Exits with a sentence where it is not a positive number.
+    """
     try:
         value = float(REQUEST[name]) if name in REQUEST else None
     except ValueError:
@@ -114,7 +118,10 @@ QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
 
 
 def requested(name, example):
-    """The path that --config name=PATH gives, as an input; a sentence where it is not given or not there."""
+    """The path of --config name=PATH, as an input function.
+
+    Exits with a sentence where it is not given or does not exist.
+    """
 
     def path(wildcards):
         if not os.path.exists(REQUEST.get(name, "")):
@@ -127,7 +134,10 @@ def requested(name, example):
 
 
 def checked_config():
-    """The Config of the files and --config values given to snakemake; ends with every problem as a sentence before any job is planned."""
+    """The Config of the files and --config values given to snakemake.
+
+    Exits with a sentence for every problem before any job is planned.
+    """
     files = [os.path.relpath(file) for file in workflow.configfiles]
     try:
         for file in files:
@@ -138,7 +148,10 @@ def checked_config():
 
 
 def checked_model():
-    """The Config of the model that a campaign is compared with: that of --config model=FILE, the study's where none is given."""
+    """The Config of the model that a campaign is compared with.
+
+    It is that of --config model=FILE, or the study's where none is given.
+    """
     try:
         return load_config(REQUEST["model"]) if "model" in REQUEST and OWN is None else STUDY
     except ConfigError as error:
@@ -146,7 +159,7 @@ def checked_model():
 
 
 def own_structure():
-    """The StructureFile of --config model=FILE where its modes are still to be identified from the campaign, else None."""
+    """The StructureFile of --config model=FILE if its modes are to be identified, else None."""
     try:
         return read_structure(REQUEST["model"]) if "model" in REQUEST else None
     except ConfigError as error:
@@ -167,7 +180,7 @@ CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
 
 
 def library(script):
-    """The library files that a script imports: an edit then reruns the stages that import the file, and no others."""
+    """The library files that a script imports; an edit reruns only the stages that import it."""
     return [str(file) for file in imported_files(f"{SCRIPTS}/{script}.py", SOURCE)]
 
 
@@ -196,7 +209,10 @@ def files_of_study(folder, suffix="nc"):
 
 
 def series_of_load():
-    """The time series that a simulation writes: none where neither the study keeps them nor anything could be made of them."""
+    """The time series that a simulation writes.
+
+    There are none where the study neither keeps them nor identifies anything from them.
+    """
     return files_of_load("timeseries") if KEPT or STUDY.identification is not None else []
 
 
@@ -210,7 +226,7 @@ def figure_files(group):
 
 
 def jobs_of_study():
-    """The jobs of a complete study, as their benchmark files and logs are named."""
+    """The names of the benchmark files and logs of the jobs of a complete study."""
     loads = [value_text(load) for load in load_values(STUDY.grid)]
     jobs = ["basis", *(f"simulate_load_{load}" for load in loads)]
     if STUDY.identification is None:
@@ -241,7 +257,7 @@ MEASURED = {
 
 
 def measured_files(wildcards):
-    """The record files of wildcard {structure} in the configured folder; a sentence where they are missing."""
+    """The record files of wildcard {structure} in the configured folder."""
     return files_of_structure(wildcards.structure)
 
 
@@ -263,7 +279,10 @@ def own_study_file(wildcards):
 
 
 def study_of_structure(structure):
-    """The Study of a structure; that of a user's campaign once it is prepared, None where it is refused."""
+    """The Study of a structure, None where a user's campaign is refused.
+
+    That of a user's campaign is available once it is prepared.
+    """
     if structure in STUDIES:
         return study_of(structure)
     prepared = read_values(checkpoints._completion_prepare.get().output.study)
@@ -279,7 +298,7 @@ if len(set(STRUCTURES)) < len(STRUCTURES):
 
 
 def law_files(structure, kind):
-    """The files of a structure's "candidates", or of its "additions" beside the best of them."""
+    """The files of a structure's "candidates", or of "additions" to the best of them."""
     study = study_of_structure(structure)
     return [
         f"results/{structure}/{kind}/{name}.json"
@@ -316,19 +335,19 @@ def completion_files(structure):
 
 
 def path_files(wildcards):
-    """The candidates that the lowest record left to be screened."""
+    """The files of the candidates that are screened, after the linear stage."""
     names = screened_names(checkpoints._discrepancy_prepare.get().output.prepared)
     return [str(file) for file in screened_files(names, DISCREPANCY, BANK)]
 
 
 def finalist_files(wildcards):
-    """The finalists that the screening named."""
+    """The files of the finalists of the screening."""
     names = finalist_names(checkpoints._discrepancy_screening.get().output.screening)
     return [f"{DISCREPANCY}/finalists/{name}.npz" for name in names]
 
 
 def pair_files(wildcards):
-    """The pairs that the finalists left to be tried."""
+    """The files of the pairs of effects to simulate."""
     return [
         f"{DISCREPANCY}/pairs/{name}.npz"
         for name in pair_names(checkpoints._discrepancy_pairs.get().output.pairs)
@@ -336,9 +355,9 @@ def pair_files(wildcards):
 
 
 def targets():
-    """What a complete study holds: the tables, every figure, and the time series where they are kept.
+    """The files of a complete study: tables, figures, and time series where they are kept.
 
-    Without an identification: the statistics of every case, and its time series where they are kept.
+    Without an identification: statistics of every case, and time series where they are kept.
     """
     series = files_of_study("timeseries") if KEPT else []
     if STUDY.identification is None:
@@ -363,7 +382,11 @@ wildcard_constraints:
 
 
 def suite_campaigns(suite, added):
-    """The numbers of the campaigns to judge: of the shard asked for, without those that campaigns.csv files hold already; those with a verdict for count=judged."""
+    """The numbers of the campaigns to judge.
+
+    They are those of the shard that are not in the campaigns.csv files `added`; with count=judged,
+    those that have a verdict.
+    """
     count = REQUEST.get("count", "12")
     try:
         known = numbers_added(added, Path(suite).name)
@@ -378,7 +401,10 @@ def suite_campaigns(suite, added):
 
 
 def plain_verdicts(seed, suite, campaigns):
-    """The verdicts of the plain suite that another one of its seed is held against, as an input; a sentence where the other is the plain one."""
+    """The verdicts of the plain suite of the same seed, as an input function.
+
+    Exits with a sentence where `suite` is the plain one itself.
+    """
 
     def paths(wildcards):
         plain = f"results/{suite_name(seed)}"

@@ -6,6 +6,7 @@ It has the verdict, the effects, misfit, map, ranking and checks.
 from __future__ import annotations
 
 import base64
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
@@ -14,7 +15,7 @@ from vibroimpact.discrepancy.results_folder import best_places
 from vibroimpact.display_units import display_unit
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.verdict.content import Misfit
+from vibroimpact.verdict.content import Misfit, Verdict
 
 from .page_style import STYLE
 
@@ -23,13 +24,18 @@ SPLITS = {"fit": "fitted", "holdout": "held out"}
 MOST_ROWS, MOST_MODES = 20, 6
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
-
-
+# Meanings of the floor of the misfit.
 SEEDS = "that between two seeds of the completed model"
-NOISE = "what the measurement itself scatters by, from period to period or from average to average"
+NOISE = "the scatter of the measurement itself, between periods or averages"
 
 
-def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
+def discrepancy_page(
+    name: str,
+    verdict: Verdict,
+    figures: Iterable[Path],
+    floor: str = SEEDS,
+    quick_s: float | None = None,
+) -> str:
     """Return the HTML page.
 
     name: of the campaign.
@@ -73,7 +79,7 @@ def discrepancy_page(name, verdict, figures, floor=SEEDS, quick_s=None):
     )
 
 
-def embedded(figures):
+def embedded(figures: Iterable[Path]) -> list[dict]:
     """Return {name, caption, data} of PNG files; data is the text of a data: address.
 
     The caption is in a .txt file of the same name.
@@ -88,7 +94,7 @@ def embedded(figures):
     ]
 
 
-def verdict_sentence(verdict):
+def verdict_sentence(verdict: Verdict) -> str:
     """Return the verdict in one or two sentences."""
     held_out = verdict.misfit.holdout
     closed = None if held_out is None else held_out.closed_fraction
@@ -104,26 +110,25 @@ def verdict_sentence(verdict):
         if sorted(ids) != sorted(effect.id for effect in verdict.effects)
     ]
     others = (
-        f" This campaign can not tell it from {sets_in_words(alternatives)}."
+        f" This campaign can not distinguish it from {sets_in_words(alternatives)}."
         if named and alternatives
         else ""
     )
     near = [effect.id for effect in verdict.most_probable]
-    nearest = f" What came nearest, {in_words(near)}, is not it." if near else ""
+    nearest = f" The best candidate, {in_words(near)}, does not explain it." if near else ""
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
         "none": (
             "No effect is missing: the model explains the campaign within the scatter of its seeds"
-            " (chance makes such a map with probability"
-            f" {_probability(verdict.p_global_before)})."
+            f" (p-value of the map: {_probability(verdict.p_global_before)})."
         ),
         "named": f"The model lacks {named}.{shrinks}{others}",
         "partly_explained": (
-            f"The model lacks {named}, and something else that the catalogue does not hold: the"
-            f" remaining difference is more than chance.{shrinks}{others}"
+            f"The model lacks {named}, and something else that is not in the catalogue: the"
+            f" remaining difference is significant.{shrinks}{others}"
         ),
         "ambiguous": (
-            "One of these is missing, and this campaign can not tell which:"
+            "One of these is missing, and this campaign can not decide which:"
             f" {sets_in_words(verdict.ambiguity_set)}."
             + shrinks.replace("Adding it", "Adding the most probable of them")
         ),
@@ -136,12 +141,12 @@ def verdict_sentence(verdict):
     return sentences[verdict.verdict]
 
 
-def in_words(ids):
+def in_words(ids: Sequence[str]) -> str:
     """Return effect ids as words: dry friction and gap."""
     return " and ".join(str(name).replace("_", " ") for name in ids)
 
 
-def sets_in_words(sets):
+def sets_in_words(sets: Sequence[Sequence[str]]) -> str:
     """Return the members of an ambiguity set: dry friction, or foliate obstacle."""
     return ", or ".join(in_words(ids) for ids in sets)
 
@@ -226,15 +231,11 @@ def _unit(unit):
     return "" if unit in ("1", "", "-", None) else f" {unit}"
 
 
-def digits(value):
+def digits(value: float | None) -> str:
     """Return a number with 3 digits, whole up to 100000, - where there is none."""
-    return (
-        "-"
-        if value is None or value != value
-        else f"{value:.0f}"
-        if 1e3 <= abs(value) < 1e5
-        else f"{value:.3g}"
-    )
+    if value is None or value != value:
+        return "-"
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e5 else f"{value:.3g}"
 
 
 def _for_reading(row):
@@ -247,10 +248,12 @@ def _for_reading(row):
     }
 
 
-def percent(fraction):
+def percent(fraction: float | None) -> str:
     """Return a share in whole per cent, - where there is none."""
     return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"
 
 
 def _probability(value):
-    return "not computed" if value is None else "below 0.001" if value < 1e-3 else f"{value:.2g}"
+    if value is None:
+        return "not computed"
+    return "below 0.001" if value < 1e-3 else f"{value:.2g}"

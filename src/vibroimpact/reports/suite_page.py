@@ -14,7 +14,9 @@ from .page_style import STYLE
 TEMPLATE = Path(__file__).with_suffix(".html")
 
 
-def suite_page(seed, rows, rates, limits, figures):
+def suite_page(
+    seed: int, rows: list[dict], rates: list[dict], limits: list[dict], figures: list
+) -> str:
     """Return the HTML page.
 
     seed: of the draw.
@@ -38,7 +40,7 @@ def suite_page(seed, rows, rates, limits, figures):
     )
 
 
-def suite_sentence(seed, rows, rates):
+def suite_sentence(seed: int, rows: list[dict], rates: list[dict]) -> str:
     """Return how many campaigns were judged and which rates miss their target or fail."""
     met = sum(row["standing"] == "met" for row in rates)
     missed, failing = (
@@ -56,11 +58,11 @@ def suite_sentence(seed, rows, rates):
     )
 
 
-def unasked(rates):
-    """Return the rows of the acceptance table, in words, that no campaign answers yet."""
-    held = {(row["arm"], row["quantity"]) for row in rates}
+def unasked(rates: list[dict]) -> str:
+    """Return the rows of the acceptance table, in words, that have no campaign yet."""
+    present = {(row["arm"], row["quantity"]) for row in rates}
     return "; ".join(
-        f"{arm}: {quantity}" for arm, quantity in TARGETS if (arm, quantity) not in held
+        f"{arm}: {quantity}" for arm, quantity in TARGETS if (arm, quantity) not in present
     )
 
 

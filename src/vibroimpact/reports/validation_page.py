@@ -49,16 +49,16 @@ def validation_page(
     )
 
 
-def page_tables(claims, prediction):
+def page_tables(claims: list[dict], prediction: list[dict]) -> list[tuple[str, str, list[dict]]]:
     """Return the tables of the page: the claims, and the use of the equivalent linear model."""
-    held = Counter(row["verdict"] for row in claims)
-    verdicts = ", ".join(f"{count} {verdict}" for verdict, count in held.items())
+    counts = Counter(row["verdict"] for row in claims)
+    verdicts = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     return [
         (
             "The paper's claims",
             (
-                f"Measured on the default study: {verdicts}. To agree is to lie within 25 % of the"
-                " median."
+                f"Measured on the default study: {verdicts}. Values agree where they are within"
+                " 25 % of their median."
             ),
             claims,
         ),

@@ -1,5 +1,4 @@
-"""What a record's length, buffer, overlap and window are worth: effective averages and leakage,
-theory against records.
+"""Effect of length, buffer, overlap and window of a record: effective averages and leakage.
 
 Degrees of freedom nu of a bin of an averaged PSD: nu = 2 mean² / variance over records. Welch
 (1967), for a PSD that is flat over a bin: nu = 2 M / (1 + 2 sum (1 - k/M) rho_k), rho_k the squared
@@ -9,7 +8,7 @@ stay correlated through the ringing, and the same formula holds with
     rho_k = |integral S(f) |W(f - f0)|² exp(2 pi i f k D) df|² / (integral S(f) |W(f - f0)|² df)²,
     D the step between buffers.
 
-Gaussian records throughout; what impacts add is in convergence_impacts.
+Records are Gaussian here; convergence.impacts has the effect of impacts.
 """
 
 from dataclasses import replace
@@ -75,8 +74,9 @@ def averaging(segment_s, overlap, window):
 
 
 def degrees_of_freedom(estimates):
-    """Return (nu, standard error), each (frequency,), from PSD estimates (record, frequency): 2
-    mean² / variance over the records.
+    """Return (nu, standard error), each (frequency,): 2 mean² / variance over the records.
+
+    estimates (record, frequency): PSDs.
     """
     count = len(estimates)
     nu = 2.0 * estimates.mean(axis=0) ** 2 / estimates.var(axis=0, ddof=1)
@@ -96,8 +96,7 @@ def estimates_of(records, rate, spectra):
 
 
 def noise_rows(study_seed, settings=SETTINGS, records=NOISE_RECORDS):
-    """Return one row per setting: effective averages by formula and over records of white Gaussian
-    noise.
+    """Return one row per setting: effective averages by formula and of white Gaussian noise.
 
     Row keys: record ("white noise"), segment_s, overlap, duration_s, window, frequency_Hz (NaN: all
     bins), nu_flat, nu_resonance (the same here), nu_measured, standard_error, scatter_dB

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.config.structure import UTube
 from vibroimpact.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
@@ -188,6 +189,7 @@ def case_rows(cases, config, model, results: Path, second):
             [share * diameter for share in GAPS_OF_DIAMETER],
         )
     other = check_config({**config.model_dump(mode="json"), **second}, "the second tube")
+    assert isinstance(other.structure, UTube), "the second tube is a U-tube"
     gap = (
         max(config.grid.gap_m)
         / config.structure.section.outer_diameter_m
