@@ -38,16 +38,19 @@ class Averaging:
 class CampaignSignals:
     """A campaign in SI units.
 
-    rate: sampling frequency, Hz; records, channels, forces: names; kinds (channel,); splits
-    (record,) "fit" or "holdout"; load_rms (record,) N; gap (record,) m, NaN where there is none;
-    points (channel, xyz) m; directions (channel, xyz) and force_directions (force_channel, xyz):
-    unit vectors; stated_period: samples of a period as the file states it, 0 for none;
-    transient_periods: periods at the start of a record that are not steady yet; starts_at_rest.
-
-    force, response: one array per record, (force_channel, sample) and (channel, sample), cut to
-    its valid samples. factors (channel,), force_factors (force_channel,): SI units per stored
-    unit. unit_faults, force_unit_faults {channel index: sentence}: signals whose unit can not be
-    used; they stay in their stored unit, with a factor of 1.
+    rate: sampling frequency, Hz.
+    records, channels, forces: names. kinds (channel,). splits (record,): "fit" or "holdout".
+    load_rms (record,): N. gap (record,): m, NaN where there is none.
+    points (channel, xyz): m.
+    directions (channel, xyz), force_directions (force_channel, xyz): unit vectors.
+    stated_period: samples of a period as the file states it, 0 for none.
+    transient_periods: periods at the start of a record before the steady state.
+    starts_at_rest: whether records begin at rest.
+    force, response: an array per record, (force_channel, sample) and (channel, sample), cut to its
+    valid samples.
+    factors (channel,), force_factors (force_channel,): SI units per stored unit.
+    unit_faults, force_unit_faults: {channel index: sentence} of signals whose unit can not be used;
+    they stay in their stored unit, with a factor of 1.
     """
 
     rate: float
@@ -100,9 +103,7 @@ class CampaignSignals:
         return force, response
 
     def lowest(self) -> int | None:
-        """Return the record of the lowest load whose force and at least one response are finite
-        throughout, or None.
-        """
+        """Return the record of the lowest load with a finite force and a finite response, or None."""
         order = np.argsort(self.load_rms, kind="stable")
         return next(
             (
