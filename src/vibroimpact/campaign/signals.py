@@ -103,7 +103,7 @@ class CampaignSignals:
         return force, response
 
     def lowest(self) -> int | None:
-        """Return the record of the lowest load with a finite force and a finite response, or None."""
+        """Return the record of the lowest load with a finite force and response, or None."""
         order = np.argsort(self.load_rms, kind="stable")
         return next(
             (
@@ -167,11 +167,10 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
 
 
 def common_period(forces: list[np.ndarray]) -> int:
-    """Return the samples of the period that all forces (time,) have, at least twice each; 0 where
-    they have none in common.
+    """Return the samples of the period that all forces (time,) have in common, 0 for none.
 
-    It is looked for where the file does not state one: the peaks of a periodic record come back
-    in every period, and a check would take them for clipping.
+    Each force holds it at least twice. It is searched where the file does not state one: the peaks
+    of a periodic record recur in every period, and a check would take them for clipping.
     """
     periods = set()
     for force in forces:
@@ -201,9 +200,13 @@ def _factors(
 
 @dataclass(frozen=True)
 class Transfer:
-    """Spectra of one record in the excited band: frequency (line,) Hz; h1 (channel, line) response
-    per force; coherence (channel, line) 0 to 1; power (channel,) mean square of the responses in
-    the band; averages: number of segments.
+    """Spectra of one record in the excited band.
+
+    frequency (line,): Hz.
+    h1 (channel, line): response per force.
+    coherence (channel, line): 0 to 1.
+    power (channel,): mean square of the responses in the band.
+    averages: number of segments.
     """
 
     frequency: np.ndarray
@@ -214,8 +217,9 @@ class Transfer:
 
 
 def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
-    """Return the Transfer from force channel 0 of a record, at lines that the force excites; None
-    for a record too short to average.
+    """Return the Transfer from force channel 0 of a record, at lines that the force excites.
+
+    None for a record too short to average.
     """
     force, response = signals.force[record][:1], signals.response[record]
     averaging = Averaging(
@@ -266,8 +270,9 @@ def _excited(psd: np.ndarray) -> np.ndarray:
 
 
 def transfer_band(signals: CampaignSignals) -> tuple[float, float] | None:
-    """Return (low, high) in Hz: the first and last line of the transfer of the lowest usable
-    record; None where there is none.
+    """Return (low, high) in Hz: first and last line of the transfer of the lowest usable record.
+
+    None where there is no such record.
     """
     record = signals.lowest()
     spectra = transfer(signals, record) if record is not None else None
@@ -275,11 +280,13 @@ def transfer_band(signals: CampaignSignals) -> tuple[float, float] | None:
 
 
 def excited_band(force: np.ndarray, rate: float) -> tuple[float, float]:
-    """Return (low, high) in Hz: where the PSD of the first force, summed over all records, is above
-    EXCITED_PSD of its largest lines.
+    """Return (low, high) in Hz of the band that the first force excites.
 
-    force (record, force_channel, sample) N, NaN beyond valid samples; rate: Hz. Ends close to
-    DEFAULT_BAND_HZ become those.
+    force (record, force_channel, sample): N, NaN beyond valid samples.
+    rate: Hz.
+
+    In the band the PSD, summed over all records, is above EXCITED_PSD of its largest lines. Ends
+    close to DEFAULT_BAND_HZ become those.
     """
     length = int(4.0 * rate)
     window = np.hanning(length)

@@ -145,12 +145,11 @@ def beam_checks():
 
 
 def continuous_beam_roots(spans):
-    """Return (mode,) beta L of the first group of modes of a beam on equally spaced pins, L one
-    span.
+    """Return (mode,) beta L of the first group of modes of a beam on equally spaced pins.
 
-    Three-moment equation of a vibrating beam: M(i-1) s + 2 M(i) c + M(i+1) s = 0 with c = coth b -
-    cot b and s = csc b - csch b, solved by M(i) = sin(i j pi / spans): c + s cos(j pi / spans) = 0;
-    and b = pi, where every support moment is zero.
+    L is one span. Three-moment equation of a vibrating beam: M(i-1) s + 2 M(i) c + M(i+1) s = 0
+    with c = coth b - cot b and s = csc b - csch b, solved by M(i) = sin(i j pi / spans):
+    c + s cos(j pi / spans) = 0; and b = pi, where every support moment is zero.
     """
 
     def balance(b, order):
