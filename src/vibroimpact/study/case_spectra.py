@@ -88,7 +88,8 @@ class CaseSpectra:
             coords,
             {name: getattr(spectra, name) for name in ("window", "segment_s", "overlap")},
         )
-        self.sizes = {**self.head.sizes, "segment": self._count, "line_point": line_points}
+        self.sizes: dict[str, int] = {str(name): size for name, size in self.head.sizes.items()}
+        self.sizes |= {"segment": self._count, "line_point": line_points}
         self.parts = _declared_parts()
 
     def put(self, displacement: np.ndarray, acceleration: np.ndarray, line: np.ndarray) -> None:
