@@ -9,10 +9,11 @@ import numpy as np
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
 
-from . import kernels
 from .contact_convergence import IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout
-from .kernels import BEHIND, LANES, RATIO
+from .kernels.decimation import BEHIND, RATIO, decimate
+from .kernels.lanes import LANES
+from .kernels.march import initial_forces, march
 from .output_filter import OutputFilter, output_filter
 from .stored_energy import stored_energy
 
@@ -33,7 +34,7 @@ class Lanes:
     sensor, sample) m/s²; force (case, channel, sample) N: two resultants per support (on the
     structure), then the drive forces. None, all three, where they were handed over piece by piece.
     stopwatch: CPU seconds of kernel and output filter. tally: sums over the recorded steps (see
-    kernels.Tally); steps: how many; energy (case, term, chunk) J at energy_time (chunk,) s; terms
+    kernels.tables.Tally); steps: how many; energy (case, term, chunk) J at energy_time (chunk,) s; terms
     ENERGY_TERMS, all accumulated from the start of the simulation. fixed_point_residual (case,):
     largest relative change of the contact forces in the last pass of a step; times contraction it
     bounds the error left. contact_rows (contact_point, 2), element_rows (element,): rows in the
@@ -165,7 +166,7 @@ def resting(model: ModalModel, schedule: Schedule, gap, imperfection):
         round(SETTLED / (ROOM * model.omega.min()) * schedule.steps_per_second / RATIO), run.chunk
     ):
         run.advance(ticks, 0, recorded=False)
-    return run.state.displacement[-1][run.layout.place]
+    return run.state.q[-1][run.layout.place]
 
 
 def to_lanes(values, padding):
@@ -252,8 +253,8 @@ class _Run:
             self.advance(ticks, self.tail, recorded=True)
             with self.stopwatch("output filter"):
                 values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
-                kernels.decimate(values, taps, pieces[0], 0, schedule.filter.step, buffer)
-                kernels.decimate(
+                decimate(values, taps, pieces[0], 0, schedule.filter.step, buffer)
+                decimate(
                     values[:sensors], curvature_taps, pieces[1], 0, schedule.filter.step, buffer
                 )
                 layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
@@ -289,7 +290,7 @@ class _Run:
         force = self.forces(self.done + 1, ticks * RATIO)
         output = self.output._replace(column=column)
         with self.stopwatch("kernel"):
-            steps = kernels.march(
+            steps = march(
                 self.modal,
                 self.contact,
                 self.laws,
@@ -381,15 +382,15 @@ def start_state(
         for values in (model.initial_displacement, model.initial_velocity)
     )
     if np.any(q) or np.any(v):
-        state.displacement[-1] = layout.per_mode(q)
+        state.q[-1] = layout.per_mode(q)
         state.row_displacement[...], state.row_velocity[...] = shapes @ q, shapes @ v
-        kernels.begin(modal, contact, laws, state, work)
+        initial_forces(modal, contact, laws, state, work)
     driven = modal.row_force_channel >= 0
     state.row_force[driven] = drive[modal.row_force_channel[driven]]
     ahead, change = layout.step(modal.dt).start(q, v, shapes.T @ state.row_force)
-    state.ahead[...], state.change[...] = layout.per_mode(ahead), layout.per_mode(change)
-    moves = np.any(state.ahead, axis=1) | np.any(state.change, axis=1)
-    state.awake[...] |= [
+    state.q_next_free[...], state.dq[...] = layout.per_mode(ahead), layout.per_mode(change)
+    moves = np.any(state.q_next_free, axis=1) | np.any(state.dq, axis=1)
+    state.group_active[...] |= [
         np.any(moves[first:last])
         for first, last in zip(layout.mode_start[:-1], layout.mode_start[1:], strict=True)
     ]
@@ -399,9 +400,9 @@ def modal_energies(layout: ModalLayout, dt: float, state) -> tuple[np.ndarray, n
     """Kinetic and elastic energy of the modes, each (lane,) J."""
     force = layout.row_shapes.T @ state.row_force
     velocity = layout.step(dt).velocity(
-        state.ahead[layout.place], state.change[layout.place], force
+        state.q_next_free[layout.place], state.dq[layout.place], force
     )
-    displacement = state.displacement[-1][layout.place]
+    displacement = state.q[-1][layout.place]
     return 0.5 * (velocity**2).sum(axis=0), 0.5 * (
         (layout.model.omega[:, None] * displacement) ** 2
     ).sum(axis=0)

@@ -32,7 +32,7 @@ def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -
     layout = ModalLayout(model, scheme)
     modal, own, local = layout.modal(dt), model.contact_laws, model.local_laws
     stiffness = np.zeros(modal.row_force_channel.size)
-    rate = modal.speed[0]  # of the velocity with the displacement
+    rate = modal.velocity_weights[0]  # of the velocity with the displacement
     radial = np.where(own.hertz > 0.0, 0.0, model.contact_stiffness) + rate * own.damping
     tangential = np.where(own.friction > 0.0, own.stick_stiffness, 0.0)
     for direction in range(2):
@@ -50,7 +50,7 @@ def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -
         if end == row:
             continue
         start, rows = modal.compliance_start[g], modal.row_start[g + 1] - row
-        compliance = modal.compliance[start : start + rows * rows].reshape(rows, rows)[
+        compliance = modal.row_compliance[start : start + rows * rows].reshape(rows, rows)[
             : end - row, : end - row
         ]
         weight = np.sqrt(stiffness[row:end])

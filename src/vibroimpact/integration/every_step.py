@@ -8,11 +8,12 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from . import kernels
 from .batch import modal_energies, start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout
-from .kernels import RATIO, SLOTS
+from .kernels.decimation import RATIO, SLOTS
+from .kernels.lanes import LANES
+from .kernels.march import march
 from .stored_energy import stored_energy
 
 
@@ -61,7 +62,7 @@ def trace_lanes(
     laws = layout.laws(lanes_gap)
     state, tally, work = layout.state(), layout.tally(), layout.work()
     channels = model.drive_shapes.shape[1]
-    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], kernels.LANES))
+    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], LANES))
     force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
     start_state(layout, modal, contact, laws, state, work, force[0])
@@ -69,7 +70,7 @@ def trace_lanes(
     before = sum(modal_energies(layout, modal.dt, state)), stored_energy(contact, laws, state)
     trace = layout.trace(ticks * RATIO)
     output = layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
-    done = kernels.march(
+    done = march(
         modal, contact, laws, state, tally, output, trace, work, np.ascontiguousarray(force[1:])
     )
     if done < ticks * RATIO:

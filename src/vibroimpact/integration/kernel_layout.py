@@ -6,22 +6,10 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .kernels import (
-    CHANNEL_BLOCK,
-    LANES,
-    PANEL,
-    QUIET,
-    RATIO,
-    SLOTS,
-    Contact,
-    Laws,
-    Modal,
-    Output,
-    State,
-    Tally,
-    Trace,
-    Work,
-)
+from .kernels.decimation import CHANNEL_BLOCK, RATIO, SLOTS
+from .kernels.lanes import LANES
+from .kernels.panels import PANEL
+from .kernels.tables import QUIET, Contact, Laws, Modal, Output, State, Tally, Trace, Work
 from .modal_step import StepCoefficients, step_coefficients
 
 FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
@@ -104,7 +92,7 @@ class ModalLayout:
             shape_start.append(sum(map(np.size, shapes)))
             compliance_start.append(sum(map(np.size, compliance)))
             shapes.append(rows.ravel())
-            compliance.append(((moved * step.push[modes]) @ moved.T).ravel())
+            compliance.append(((moved * step.mode_compliance[modes]) @ moved.T).ravel())
             force_row_start.append(row_start[-1] + len(implicit))
             row_start.append(row_start[-1] + len(rows))
             channels += [-1] * len(implicit) + driven
@@ -116,12 +104,19 @@ class ModalLayout:
             row_force_channel=np.array(channels, np.int64),
             shapes=np.concatenate(shapes),
             shape_start=np.array(shape_start, np.int64),
-            compliance=np.concatenate([*compliance, np.zeros(1)]),
+            row_compliance=np.concatenate([*compliance, np.zeros(1)]),
             compliance_start=np.array(compliance_start, np.int64),
-            speed=step.speed,
+            velocity_weights=step.velocity_weights,
             **{
                 name: self.per_mode(getattr(step, name))
-                for name in ("push", "shift", "decay", "restore", "kick", "loss")
+                for name in (
+                    "mode_compliance",
+                    "force_shift",
+                    "decay",
+                    "restoring",
+                    "force_gain",
+                    "damping_over_dt",
+                )
             },
         )
 
@@ -194,7 +189,7 @@ class ModalLayout:
             tolerance=min(
                 FIXED_POINT_TOLERANCE, FIXED_POINT_ERROR / max(contraction, FIXED_POINT_ERROR)
             ),
-            passes=FIXED_POINT_PASSES,
+            max_passes=FIXED_POINT_PASSES,
             limit=DIVERGED_DISPLACEMENT,
         )
 
@@ -236,20 +231,20 @@ class ModalLayout:
             "cubic": local.cubic,
             "element_damping": local.damping,
             "drag": local.drag,
-            "element_stick": slider,
-            "element_flexibility": _inverse(slider),
+            "slider_stiffness": slider,
+            "slider_flexibility": _inverse(slider),
             "slip_limit": local.slip_limit,
             "saturation_stiffness": local.saturation_stiffness,
             "saturation_limit": local.saturation_limit,
         }
         return Laws(
-            point=point,
+            contact_point=point,
             flat=np.repeat([0, 1], [len(round_points), len(own.land_point)]).astype(np.int64),
             normal_1=normal[:, 0].copy(),
             normal_2=normal[:, 1].copy(),
             lobes=own.lobes[point].astype(np.int64),
             gap=np.ascontiguousarray(self.gaps(gap)[point]),
-            row=self.element_rows(),
+            element_row=self.element_rows(),
             partner_row=self.partner_rows(),
             **{name: np.outer(values[point], np.ones(LANES)) for name, values in contact.items()},
             **{name: np.outer(values, np.ones(LANES)) for name, values in element.items()},
@@ -266,21 +261,21 @@ class ModalLayout:
         laws, elements = self._law_sizes()
         extras = 2 * supports + self.drive_shapes.shape[1]
         return State(
-            displacement=_aligned((RATIO, self.padded, LANES)),
-            ahead=_aligned((self.padded, LANES)),
-            change=_aligned((self.padded, LANES)),
-            awake=np.array([len(driven) > 0 for _, driven in self.groups], np.int64),
+            q=_aligned((RATIO, self.padded, LANES)),
+            q_next_free=_aligned((self.padded, LANES)),
+            dq=_aligned((self.padded, LANES)),
+            group_active=np.array([len(driven) > 0 for _, driven in self.groups], np.int64),
             row_displacement=_aligned((rows, LANES)),
             row_velocity=_aligned((rows, LANES)),
             row_force=_aligned((rows, LANES)),
             row_force_before=_aligned((rows, LANES)),
-            row_pull=_aligned((rows, LANES)),
-            row_pull_before=_aligned((rows, LANES)),
-            stick=_aligned((laws, LANES)),
-            slider=_aligned((elements, LANES)),
+            row_deflection=_aligned((rows, LANES)),
+            row_deflection_before=_aligned((rows, LANES)),
+            friction_force=_aligned((laws, LANES)),
+            slider_force=_aligned((elements, LANES)),
             touching=_aligned((supports, LANES)),
-            average=_aligned((SLOTS, self.padded + extras, LANES)),
-            flag=np.array([QUIET, 0], np.int64),
+            filter_sums=_aligned((SLOTS, self.padded + extras, LANES)),
+            counter=np.array([QUIET, 0], np.int64),
         )
 
     def tally(self) -> Tally:
@@ -317,10 +312,10 @@ class ModalLayout:
         counts = {
             "channels": channels,
             "resultant": 2 * len(model.support_names),
-            "stick": laws,
-            "held_stick": laws,
-            "slider": elements,
-            "held_slider": elements,
+            "friction_force": laws,
+            "frozen_friction_force": laws,
+            "slider_force": elements,
+            "frozen_slider_force": elements,
         }
         return Work(**{name: _aligned((counts.get(name, rows), LANES)) for name in Work._fields})
 
@@ -368,7 +363,7 @@ class ModalLayout:
             shape_start=np.array(shape_start, np.int64),
             stress_start=int(stress_start),
             stress_weight=stress_weight(steps_per_second),
-            extra_support=supports,
+            supports=supports,
             values=_aligned((stress_start + extras, columns, LANES)),
             columns=int(columns),
             column=0,

@@ -28,13 +28,13 @@ class StepCoefficients:
     module.
     """
 
-    push: np.ndarray
-    shift: np.ndarray
+    mode_compliance: np.ndarray
+    force_shift: np.ndarray
     decay: np.ndarray
-    restore: np.ndarray
-    kick: np.ndarray
-    loss: np.ndarray
-    speed: np.ndarray
+    restoring: np.ndarray
+    force_gain: np.ndarray
+    damping_over_dt: np.ndarray
+    velocity_weights: np.ndarray
     A: np.ndarray
     S: np.ndarray
 

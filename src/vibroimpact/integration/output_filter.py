@@ -1,6 +1,6 @@
 """The output filter: from the integration step to the sampling of the records, without aliasing.
 
-Two linear-phase stages. The first divides the rate by ``kernels.RATIO`` inside the integration; it
+Two linear-phase stages. The first divides the rate by ``decimation.RATIO`` inside the integration; it
 only has to stop what would fold into the final band (images of it around the multiples of its
 output rate). The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05
 dB below 0.78 of it (800 Hz at 2048 Hz).
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .kernels import BEHIND, RATIO, SLOTS
+from .kernels.decimation import BEHIND, RATIO, SLOTS
 
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0

@@ -10,11 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import kernels
 from .batch import start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout
-from .kernels import LANES, RATIO, SLOTS
+from .kernels.decimation import RATIO, SLOTS
+from .kernels.lanes import LANES
+from .kernels.march import march
+from .kernels.tables import STEPS_DONE
 
 SCHEME = "exact"
 
@@ -76,7 +78,7 @@ def steady_elements(model, drive, samples=None, periods_before=1):
     stuck = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)[:, None] * (
         model.element_shapes.T @ initial[0]
     )
-    state.slider[...] = np.clip(
+    state.slider_force[...] = np.clip(
         -stuck, -local.slip_limit[:, None], local.slip_limit[:, None]
     )  # as if loaded from nothing: no preload is left
     start_state(
@@ -86,11 +88,8 @@ def steady_elements(model, drive, samples=None, periods_before=1):
     output = layout.output(np.zeros((RATIO, SLOTS)), drive.steps // RATIO, rate)
     for period in range(periods_before + 1):
         trace = layout.trace(drive.steps if period == periods_before else 0)
-        state.flag[1] = 0  # the kernel counts steps from here
-        if (
-            kernels.march(modal, contact, laws, state, tally, output, trace, work, ahead)
-            < drive.steps
-        ):
+        state.counter[STEPS_DONE] = 0  # the trace starts at step 0
+        if march(modal, contact, laws, state, tally, output, trace, work, ahead) < drive.steps:
             raise IntegrationError(
                 f"the steady response diverged in period {period}: the element's law has no bounded"
                 " motion under this force"

@@ -4,7 +4,7 @@ plain array form.
 
 import numpy as np
 
-from .kernels import Contact, Laws, State
+from .kernels.tables import Contact, Laws, State
 
 
 def stored_energy(contact: Contact, laws: Laws, state: State) -> np.ndarray:
@@ -21,7 +21,7 @@ def _plain(contact, state):
 
 def _special(contact, laws, state):
     arm = [
-        state.row_displacement[row[laws.point]] - offset[laws.point]
+        state.row_displacement[row[laws.contact_point]] - offset[laws.contact_point]
         for row, offset in ((contact.row_1, contact.offset_1), (contact.row_2, contact.offset_2))
     ]
     lobes = laws.lobes[:, None]
@@ -30,19 +30,19 @@ def _special(contact, laws, state):
     round_depth = np.hypot(*arm) - laws.gap - 0.5 * laws.lobe_depth * wave
     flat_depth = laws.normal_1[:, None] * arm[0] + laws.normal_2[:, None] * arm[1] - laws.gap
     depth = np.maximum(np.where(laws.flat[:, None] != 0, flat_depth, round_depth), 0.0)
-    stick = 0.5 * laws.stick_flexibility * state.stick**2
+    stick = 0.5 * laws.stick_flexibility * state.friction_force**2
     return (0.5 * laws.stiffness * depth**2 + 0.4 * laws.hertz * depth**2.5 + stick).sum(axis=0)
 
 
 def _elements(laws, state):
-    u = state.row_displacement[laws.row]
+    u = state.row_displacement[laws.element_row]
     limit, stiffness = laws.saturation_limit, laws.saturation_stiffness
     beyond = np.maximum(
         np.abs(u) - np.divide(limit, stiffness, out=np.zeros_like(limit), where=stiffness > 0.0),
         0.0,
     )
     saturation = 0.5 * stiffness * (np.abs(u) - beyond) ** 2 + limit * beyond
-    slider = 0.5 * laws.element_flexibility * state.slider**2
+    slider = 0.5 * laws.slider_flexibility * state.slider_force**2
     return (
         0.5 * laws.element_stiffness * u**2
         + laws.quadratic * u**3 / 3.0

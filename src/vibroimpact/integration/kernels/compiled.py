@@ -1,0 +1,76 @@
+"""Decorators for compiled functions, and the cache of their machine code.
+
+numba keys its cache on the file that holds the entry point. It does not see an edit in another file
+and would then return the old physics. The cache folder is therefore named by a digest of all files
+of this folder: an edit in any of them starts from an empty cache. Nothing in this folder may import
+from the rest of the library.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numba import config, njit
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+SOURCES = Path(__file__).parent
+# Without numba's reference counts: counting each array of a table at each use costs five times the
+# arithmetic. No compiled function allocates; work space is handed in.
+WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
+
+
+def source_digest(folder: Path = SOURCES) -> str:
+    """Digest of the names and contents of all Python files in a folder; "" if there are none."""
+    files = sorted(folder.glob("*.py"))
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:16] if files else ""
+
+
+IMPORTED_SOURCES = source_digest()
+
+
+def inlined(function: Function) -> Function:
+    """The function compiled into every compiled function that calls it."""
+    return njit(forceinline=True, **WITHOUT_REFERENCE_COUNTS)(function)
+
+
+def entry_point(function: Function) -> Function:
+    """The compiled function, to be called from Python, with its machine code cached on disk.
+
+    Without a cache where no folder can be written, where the sources are not plain files, and where
+    they have changed since this process imported them.
+    """
+    if IMPORTED_SOURCES and source_digest() == IMPORTED_SOURCES:
+        for place in cache_places():
+            compiled = _compiled_with_cache(function, place / f"kernels-{IMPORTED_SOURCES}")
+            if compiled is not None:
+                return compiled
+    return njit(**WITHOUT_REFERENCE_COUNTS)(function)
+
+
+def cache_places() -> list[Path]:
+    """Parent folders for the cache, the first choice first: NUMBA_CACHE_DIR where it is set, else
+    beside the sources, then the user's cache folder.
+    """
+    if config.CACHE_DIR:
+        return [Path(config.CACHE_DIR)]
+    user = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    return [SOURCES / "__pycache__", user / "vibroimpact"]
+
+
+def _compiled_with_cache(function, folder):
+    """The compiled function with its cache in a folder; None where numba cannot write there."""
+    setting, config.CACHE_DIR = config.CACHE_DIR, str(folder)
+    try:
+        compiled = njit(cache=True, **WITHOUT_REFERENCE_COUNTS)(function)
+    except RuntimeError:  # numba found no folder at all that it can write to
+        return None
+    finally:
+        config.CACHE_DIR = setting
+    # numba falls back on a folder of its own choice, which sees edits of one file only.
+    return compiled if Path(compiled.stats.cache_path).is_relative_to(folder) else None

@@ -1,0 +1,225 @@
+"""One time step, and the march through a record.
+
+Modes q (mass-normalised) under the modal forces phi^T f, contact and element forces implicit. A
+step scheme that is linear in its state needs, in the form of modal_step.StepCoefficients, only the
+force f at the end of the step:
+
+    predictor    u_free = Phi q_free + G_d d              displacement of the rows without contact
+    contact      u      = u_free + G f(u)                 by fixed-point iteration
+    correction   q      = q_free + c p,  p = Phi^T f      end of the step
+    predictor    dq     = a dq + b (q + s p) + k p        increment of the next step
+                 q_free = (q + s p) + dq                  end of the next step, if no force acts there
+
+    symbol  in the code             meaning                                          unit
+    q       state.q                 modal displacement                               m kg^1/2
+    q_free  state.q_next_free       the same at the end of the step without a force  m kg^1/2
+    dq      state.dq                increment of the step that leads to q_free       m kg^1/2
+    u       work.u                  displacement of a row                            m
+    u_free  work.u_free             the same without contact and element forces      m
+    f, d    work.force, drive       force on a contact or element row, drive force   N
+    G f     work.deflection         displacement of the rows by the forces           m
+    G, G_d  modal.row_compliance    Phi c Phi^T, its columns of the drive            m/N
+    Phi     modal.shapes            mode shapes at the rows                          kg^-1/2
+    c       modal.mode_compliance   end-of-step displacement per modal force         s²
+    s       modal.force_shift       shift of the state that removes the old force    s²
+    a, b    modal.decay, restoring  increment per last increment, per displacement   1
+    k       modal.force_gain        increment per modal force                        s²
+"""
+
+from .compiled import entry_point, inlined
+from .contact_iteration import apply_compliance, solve_contact
+from .decimation import RATIO, filter_forces, filter_modes, finish_output
+from .force_laws import all_forces
+from .lanes import LANES, clear, fma, load, spread_from, store
+from .panels import (
+    PANEL,
+    load_panel,
+    panel_difference,
+    panel_plus_scaled,
+    panel_plus_vector,
+    panel_product,
+    panel_sum,
+    panel_zero,
+    store_panel,
+    vector_plus_dot,
+)
+from .subnormals import flush_subnormals, restore_mode
+from .tables import QUIET, STEPS_DONE, STEPS_WITHOUT_FORCE
+from .tallies import tally_contact, tally_displacement, tally_drive, tally_laws, tally_stress
+
+
+@inlined
+def add_panel_to_rows(modal, g, i, panel, rows):
+    """Add the displacement of group g's rows by one panel of its modes, from mode i on."""
+    width = modal.mode_start[g + 1] - modal.mode_start[g]
+    at = modal.shape_start[g] + i - modal.mode_start[g]
+    for r in range(modal.row_start[g], modal.row_start[g + 1]):
+        store(rows, r, vector_plus_dot(modal.shapes, at, panel, load(rows, r)))
+        at += width
+
+
+@inlined
+def predict_rows(modal, state, u_free):
+    """u_free = Phi q_free, (row, lane); every later step has it from correct_and_predict."""
+    clear(u_free)
+    for g in range(modal.mode_start.size - 1):
+        for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
+            add_panel_to_rows(modal, g, i, load_panel(state.q_next_free, i), u_free)
+
+
+@inlined
+def apply_drive(modal, drive, n, forces, work):
+    """Put the drive forces at the end of step n on their rows and add G_d d to u_free."""
+    for g in range(modal.row_start.size - 1):
+        row0, row1 = modal.row_start[g], modal.row_start[g + 1]
+        for f in range(modal.force_row_start[g], row1):
+            d = load(drive, n * forces + modal.row_force_channel[f])
+            store(work.force, f, d)
+            at = modal.compliance_start[g] + f - row0
+            for r in range(row0, row1):
+                u_free = fma(spread_from(modal.row_compliance, at), d, load(work.u_free, r))
+                store(work.u_free, r, u_free)
+                at += row1 - row0
+
+
+@inlined
+def correct_and_predict(modal, state, tally, work, in_contact, phase):
+    """Correct the modes by the row forces at the end of the step, predict the end of the next and
+    project it on the rows: work.u_free. Adds the energy dissipated.
+    """
+    modes = modal.mode_start[-1]
+    before, after = ((phase + RATIO - 1) % RATIO) * modes, phase * modes
+    dissipated = load(tally.dissipated, 0)
+    clear(work.u_free)
+    for g in range(modal.mode_start.size - 1):
+        if state.group_active[g] == 0:
+            continue
+        first = modal.mode_start[g]
+        width = modal.mode_start[g + 1] - first
+        row0, row1 = modal.row_start[g], modal.row_start[g + 1]
+        first_row = row0 if in_contact else modal.force_row_start[g]
+        for i in range(first, first + width, PANEL):
+            at = modal.shape_start[g] + i - first
+            p = panel_zero()
+            for r in range(first_row, row1):
+                p = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(work.force, r), p)
+            q = panel_plus_scaled(modal.mode_compliance, i, p, load_panel(state.q_next_free, i))
+            step = panel_difference(q, load_panel(state.q, before + i))
+            dissipated = vector_plus_dot(
+                modal.damping_over_dt, i, panel_product(step, step), dissipated
+            )
+            store_panel(state.q, after + i, q)
+            shifted = panel_plus_scaled(modal.force_shift, i, p, q)
+            dq = panel_plus_scaled(modal.force_gain, i, p, panel_zero())
+            dq = panel_plus_scaled(modal.decay, i, load_panel(state.dq, i), dq)
+            dq = panel_plus_scaled(modal.restoring, i, shifted, dq)
+            store_panel(state.dq, i, dq)
+            q_next_free = panel_sum(shifted, dq)
+            store_panel(state.q_next_free, i, q_next_free)
+            add_panel_to_rows(modal, g, i, q_next_free, work.u_free)
+    store(tally.dissipated, 0, dissipated)
+
+
+@inlined
+def store_rows(modal, special, state, trace, u, work, quiet):
+    """Make the end of the step the start of the next on contact and element rows, and record it on
+    the trace. quiet: no force, neither now nor before.
+    """
+    n = state.counter[STEPS_DONE]
+    for g in range(modal.row_start.size - 1):
+        for r in range(modal.row_start[g], modal.force_row_start[g]):
+            ur, f = load(u, r), load(work.force, r)
+            if n < trace.steps:
+                store(trace.displacement, r * trace.steps + n, ur)
+                store(trace.force, r * trace.steps + n, f)
+            if special:
+                du = ur - load(state.row_displacement, r)
+                memory = modal.velocity_weights[3] * load(state.row_velocity, r)
+                store(state.row_velocity, r, fma(modal.velocity_weights[2], du, memory))
+            store(state.row_displacement, r, ur)
+            if not quiet:
+                store(state.row_force_before, r, load(state.row_force, r))
+                store(state.row_force, r, f)
+                store(state.row_deflection_before, r, load(state.row_deflection, r))
+                store(state.row_deflection, r, load(work.deflection, r))
+
+
+@entry_point
+def initial_forces(modal, contact, laws, state, work):
+    """Fill state.row_force, row_deflection and those of the step before with the forces of contacts
+    and elements at the initial state.row_displacement and row_velocity.
+    """
+    rows = state.row_velocity.size // LANES
+    memory_weight = modal.velocity_weights[1]
+    clear(work.new_force)
+    for r in range(rows):
+        store(work.u, r, load(state.row_displacement, r))
+        # so that row_velocity, with no increment, gives the velocity itself
+        store(state.row_velocity, r, load(state.row_velocity, r) / memory_weight)
+    all_forces(modal, contact, laws, state, work, work.u)
+    for r in range(rows):
+        store(state.row_velocity, r, load(state.row_velocity, r) * memory_weight)
+        store(state.row_force, r, load(work.new_force, r))
+        store(state.row_force_before, r, load(work.new_force, r))
+    apply_compliance(modal, state.row_force, state.row_deflection)
+    apply_compliance(modal, state.row_force_before, state.row_deflection_before)
+    state.counter[STEPS_WITHOUT_FORCE] = 0
+
+
+@entry_point
+def march(modal, contact, laws, state, tally, output, trace, work, drive):
+    """Integrate whole ticks of RATIO steps; the number of steps done, fewer where the run diverged.
+
+    drive (step, force_channel, lane) N: the force at the end of every step. Fills output.values
+    (one column per tick: the filter output centred BEHIND ticks before), adds to ``tally`` and
+    advances ``state`` in place.
+    """
+    mode = flush_subnormals()
+    forces = drive.shape[1]
+    special = laws.contact_point.size + laws.element_row.size > 0
+    predict_rows(modal, state, work.u_free)
+    for at_tick in range(drive.shape[0] // RATIO):
+        tick = state.counter[STEPS_DONE] // RATIO
+        for phase in range(RATIO):
+            n = at_tick * RATIO + phase
+            apply_drive(modal, drive, n, forces, work)
+            in_contact = solve_contact(modal, contact, laws, special, state, tally, work)
+            since = state.counter[STEPS_WITHOUT_FORCE]
+            quiet = not special and not in_contact and since >= QUIET
+            touched = False
+            if in_contact or since == 0:
+                touched = tally_contact(modal, contact, state, tally, work)
+                if special:
+                    tally_laws(modal, contact, laws, state, tally, work)
+                    touched = touched or laws.element_row.size > 0
+            if in_contact:
+                state.group_active[:] = 1
+            tally_drive(modal, state, tally, work, in_contact)
+            if quiet:
+                store_rows(modal, special, state, trace, work.u_free, work, True)
+            else:
+                store_rows(modal, special, state, trace, work.u, work, False)
+            correct_and_predict(modal, state, tally, work, in_contact, phase)
+            if output.stress_weight[phase] > 0.0:
+                tally_stress(modal, state, tally, output, phase, work.channels)
+            filter_forces(
+                modal,
+                state,
+                output,
+                work.resultant,
+                drive,
+                n * forces,
+                forces,
+                touched,
+                phase,
+                tick,
+            )
+            state.counter[STEPS_WITHOUT_FORCE] = 0 if touched else min(since + 1, QUIET)
+            state.counter[STEPS_DONE] += 1
+        if not tally_displacement(modal, state, contact, tally):
+            restore_mode(mode)
+            return (at_tick + 1) * RATIO
+        filter_modes(modal, state, output, tick)
+        finish_output(modal, state, output, tick, at_tick, work.channels)
+    restore_mode(mode)
+    return drive.shape[0]
