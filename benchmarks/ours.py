@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from benchmarks.problem import RATE, SENSORS, STRIDE
-from vibroimpact.integration.batch import ENERGY_TERMS, Schedule, march_lanes
+from vibroimpact.integration.batch import ENERGY_TERMS, Schedule, integrate_batch
 
 SAMPLING_HZ = RATE // STRIDE
 
@@ -35,7 +35,7 @@ def schedule_of(seconds, step=SAME_STEP):
 
 
 def march_ours(problem, forces, schedule, touching=True):
-    """Return [Lanes]: the runs of forces (step + 1, case) N, index k at step k, in as many batches
+    """Return [BatchResult]: the runs of forces (step + 1, case) N, index k at step k, in as many batches
     as the library asks for.
 
     A force that ends before the schedule's last step goes on as zero.
@@ -84,7 +84,7 @@ def _march(problem, forces, schedule, touching):
     cases = forces.shape[1]
     offset = np.repeat(problem.offset[:, :, None], cases, axis=2)
     gap = np.full(cases, problem.contact_gap(touching))
-    return march_lanes(
+    return integrate_batch(
         problem.model,
         schedule,
         gap,
@@ -98,6 +98,6 @@ def batch_width(cases):
     """Return how many of `cases` the library takes in one call: all, or a half, a quarter, ... of
     them.
     """
-    from vibroimpact.integration import kernels
+    from vibroimpact.integration.kernels.lanes import LANES
 
-    return cases if cases <= kernels.LANES else batch_width(-(-cases // 2))
+    return cases if cases <= LANES else batch_width(-(-cases // 2))

@@ -11,6 +11,7 @@ import vibroimpact
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "src" / "vibroimpact"
 FILES = sorted(LIBRARY.rglob("*.py"))
+KERNELS = LIBRARY / "integration" / "kernels"
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
 RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 
@@ -183,13 +184,18 @@ def module_of_figures(file):
 
 
 def test_compiled_code_stays_in_the_kernels():
-    # A cached kernel does not see an edit in a compiled function of another file: one file, so that
-    # it recompiles.
+    # The cache of compiled code sees edits in the files of this folder only.
     assert [
         file
         for file in [*FILES, *SCRIPTS]
-        if imported_tops(file) & {"numba", "llvmlite"} and file.name != "kernels.py"
+        if imported_tops(file) & {"numba", "llvmlite"} and file.parent != KERNELS
     ] == []
+    assert {
+        name
+        for file in KERNELS.glob("*.py")
+        for name in library_imports(file)
+        if name != "integration.kernels" and not name.startswith("integration.kernels.")
+    } == set()
 
 
 def test_the_library_knows_nothing_of_the_workflow():

@@ -9,9 +9,9 @@ from tests.oracle import exact_contact, newmark_contact
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.integration import batch as integrate
 from vibroimpact.integration import kernel_layout as layout
-from vibroimpact.integration.batch import ENERGY_TERMS, Schedule, march_lanes
+from vibroimpact.integration.batch import ENERGY_TERMS, Schedule, integrate_batch
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.kernels.lanes import LANES
 
 GAP = 2.8886e-4
 RATE = 51200
@@ -41,7 +41,7 @@ def march(model, schedule, force, gap=GAP, offset=1e-6, seed=0):
         * gap
     )
     return (
-        march_lanes(
+        integrate_batch(
             model, schedule, gap, imperfection, lambda first, count: force[first : first + count]
         ),
         imperfection,
@@ -86,7 +86,7 @@ def test_agrees_with_the_textbook_scheme(study_model, impacting, lane, scheme, m
     monkeypatch.setattr(
         layout, "FIXED_POINT_TOLERANCE", 1e-13
     )  # as the twin; impacts amplify any difference
-    lanes = march_lanes(
+    lanes = integrate_batch(
         study_model, short, gap, offset, lambda first, count: force[first : first + count]
     )
     u, f = twin(
@@ -115,7 +115,7 @@ def assert_same(one, lane, other, lane_of_other, factor=1.0):
 @pytest.mark.parametrize("lane", [0, 5])
 def test_a_case_does_not_depend_on_its_batch(study_model, short, impacting, lane):
     lanes, force, gap, offset = impacting
-    alone = march_lanes(
+    alone = integrate_batch(
         study_model,
         short,
         gap[lane : lane + 1],
@@ -131,7 +131,7 @@ def test_a_calm_neighbour_changes_no_bit(study_model, short, impacting):
     """
     lanes, force, gap, offset = impacting
     calm = np.where(np.arange(LANES) % 2 == 0, 1.0, 1e3) * gap
-    mixed = march_lanes(
+    mixed = integrate_batch(
         study_model, short, calm, offset, lambda first, count: force[first : first + count]
     )
     for lane in range(0, LANES, 2):
@@ -143,7 +143,7 @@ def test_a_calm_neighbour_changes_no_bit(study_model, short, impacting):
 def test_homogeneous_of_degree_one_bit_for_bit(study_model, short, impacting, power):
     lanes, force, gap, offset = impacting
     factor = 2.0**power
-    scaled = march_lanes(
+    scaled = integrate_batch(
         study_model,
         short,
         factor * gap,
@@ -156,7 +156,7 @@ def test_homogeneous_of_degree_one_bit_for_bit(study_model, short, impacting, po
 
 def test_reversing_the_force_mirrors_the_motion(study_model, short, impacting):
     lanes, force, gap, offset = impacting
-    mirrored = march_lanes(
+    mirrored = integrate_batch(
         study_model, short, gap, -offset, lambda first, count: -force[first : first + count]
     )
     for lane in range(LANES):

@@ -9,8 +9,8 @@ from scipy.special import ellipk
 from tests.oscillator import oscillator
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.integration.batch import Schedule, march_lanes
-from vibroimpact.integration.every_step import trace_lanes
+from vibroimpact.integration.batch import Schedule, integrate_batch
+from vibroimpact.integration.every_step import integrate_every_step
 
 RATE = 100_000
 RUN = {}  # the scheme of the test
@@ -25,7 +25,7 @@ def scheme(request, monkeypatch):
 def trace(model, seconds, rate=RATE, gap=1.0):
     """The step-by-step run of one case without a force."""
     points = model.support_of_point.size
-    return trace_lanes(
+    return integrate_every_step(
         model,
         rate,
         round(seconds * rate),
@@ -185,7 +185,7 @@ def test_friction_takes_energy_and_gives_none(study_model):
         np.random.default_rng(9).uniform(-1e-5, 1e-5, (study_model.support_of_point.size, 2, 2))
         + np.array([7e-5, 0.0])[:, None]
     )
-    run = trace_lanes(
+    run = integrate_every_step(
         replace(study_model, contact_laws=laws),
         rate,
         steps,
@@ -220,7 +220,7 @@ def impacting(model):
         -1,
     )[:, None]
     offset = np.random.default_rng(9).uniform(-1e-5, 1e-5, (model.support_of_point.size, 2, 4))
-    return march_lanes(
+    return integrate_batch(
         model, schedule, np.full(4, 1e-4), offset, lambda first, count: force[first : first + count]
     )
 

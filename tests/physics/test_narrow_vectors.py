@@ -12,8 +12,9 @@ from llvmlite import binding
 from numba.core.registry import cpu_target
 
 from vibroimpact.config.reading import load_config
-from vibroimpact.integration import kernels
-from vibroimpact.integration.batch import Schedule, march_lanes
+from vibroimpact.integration.batch import Schedule, integrate_batch
+from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.march import march
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.variant import changed
 
@@ -31,10 +32,10 @@ NARROW = {
 
 def short_run():
     """All that a short run with impacts leaves behind: {name: array}."""
-    force = 200.0 * np.random.default_rng(0).standard_normal((2000, 1, kernels.LANES))
-    gap = np.linspace(2e-5, 4e-5, kernels.LANES)
-    offset = 0.05 * gap * np.random.default_rng(1).uniform(-1.0, 1.0, (10, 2, kernels.LANES))
-    lanes = march_lanes(
+    force = 200.0 * np.random.default_rng(0).standard_normal((2000, 1, LANES))
+    gap = np.linspace(2e-5, 4e-5, LANES)
+    offset = 0.05 * gap * np.random.default_rng(1).uniform(-1.0, 1.0, (10, 2, LANES))
+    lanes = integrate_batch(
         build_model(changed(load_config(CONFIG), SMALL)),
         Schedule(20480, 2048, 0.0, 0.02, "exact"),
         gap,
@@ -55,8 +56,8 @@ def main(path):
     a 512-bit register.
     """
     found = short_run()
-    fresh = not kernels.march.stats.cache_hits  # what comes out of the cache has no listing
-    wide = fresh and "zmm" in "".join(kernels.march.inspect_asm().values())
+    fresh = not march.stats.cache_hits  # what comes out of the cache has no listing
+    wide = fresh and "zmm" in "".join(march.inspect_asm().values())
     np.savez(
         path, processor=cpu_target.target_context.codegen().magic_tuple()[1], wide=wide, **found
     )

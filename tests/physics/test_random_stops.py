@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 from tests.oscillator import oscillator
-from vibroimpact.integration.batch import Schedule, march_lanes
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.batch import Schedule, integrate_batch
+from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.study.simulation import statistics
 from vibroimpact.validation.reference.random_stops import (
     exact_law,
@@ -51,7 +51,7 @@ def records(sigma, ratio, damping_ratio, batches=1):
     found = []
     for _ in range(batches):
         force = rms * generator.standard_normal((schedule.steps + 2, 1, LANES))
-        lanes = march_lanes(
+        lanes = integrate_batch(
             model,
             schedule,
             np.ones(LANES),

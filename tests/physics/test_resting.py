@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.discrepancy.forward import Forces, simulate_records
-from vibroimpact.integration.batch import Schedule, resting
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.batch import Schedule, rest_state
+from vibroimpact.integration.kernels.lanes import LANES
 
 GAP = 2.8886e-4
 RATE = 20480
@@ -42,13 +42,13 @@ def offset(model, metres):
 def at_rest(model, schedule, gap=GAP):
     """Modal amplitudes (mode,) at rest, and the contact displacements (contact_point, 2)."""
     nowhere = np.zeros((len(model.support_of_point), 2, 1))
-    rest = resting(model, schedule, np.array([gap]), nowhere)[:, 0]
+    rest = rest_state(model, schedule, np.array([gap]), nowhere)[:, 0]
     return rest, np.einsum("mpd,m->pd", model.contact_shapes.reshape(model.modes, -1, 2), rest)
 
 
 def test_a_centred_tube_without_load_rests_at_zero(study_model, schedule):
     assert (
-        resting(
+        rest_state(
             study_model,
             schedule,
             np.array([GAP]),

@@ -13,7 +13,7 @@ from vibroimpact.discrepancy.survivors import of_survivors
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.reduction.reduced_model import build_model
 
 RATE, FAR = 20480, 1.0

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from vibroimpact.config import checks as config_checks
-from vibroimpact.integration.kernels import RATIO
+from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.modal_step import step_coefficients
 
 STEP = 1.0 / 20480
@@ -18,14 +18,14 @@ def march(scheme, q, v, force):
     mode).
     """
     step = step_coefficients(scheme, OMEGA, DAMPING, STEP)
-    ahead, change = step.start(q, v, force[0])
+    q_next_free, dq = step.start(q, v, force[0])
     out = []
     for f in force[1:]:
-        q = ahead + step.push * f
-        shifted = q + step.shift * f
-        change = step.decay * change + step.restore * shifted + step.kick * f
-        ahead = shifted + change
-        out.append((q, step.velocity(ahead, change, f)))
+        q = q_next_free + step.mode_compliance * f
+        shifted = q + step.force_shift * f
+        dq = step.decay * dq + step.restoring * shifted + step.force_gain * f
+        q_next_free = shifted + dq
+        out.append((q, step.velocity(q_next_free, dq, f)))
     return np.array(out).transpose(1, 0, 2)
 
 
@@ -76,9 +76,9 @@ def test_exact_is_the_solution_for_a_force_linear_in_the_step(start):
 def test_a_constant_force_is_answered_by_the_static_displacement(scheme):
     step = step_coefficients(scheme, OMEGA[1:4], DAMPING[1:4], STEP)
     still = 1.0 / OMEGA[1:4] ** 2
-    ahead, change = step.start(still, np.zeros(3), np.ones(3))
-    assert ahead + step.push == pytest.approx(still, rel=1e-12)
-    assert step.velocity(ahead, change, np.ones(3)) == pytest.approx(
+    q_next_free, dq = step.start(still, np.zeros(3), np.ones(3))
+    assert q_next_free + step.mode_compliance == pytest.approx(still, rel=1e-12)
+    assert step.velocity(q_next_free, dq, np.ones(3)) == pytest.approx(
         np.zeros(3), abs=1e-12 * still.max() / STEP
     )
 
@@ -88,7 +88,7 @@ def test_the_free_step_has_its_determinant_and_distance_from_one(scheme):
     step = step_coefficients(scheme, OMEGA, DAMPING, STEP)
     determinant = step.A[0, 0] * step.A[1, 1] - step.A[0, 1] * step.A[1, 0]
     assert step.decay == pytest.approx(determinant, rel=1e-10)
-    assert step.restore == pytest.approx(
+    assert step.restoring == pytest.approx(
         -(1.0 - step.A[0, 0] - step.A[1, 1] + determinant), abs=1e-12
     )
 

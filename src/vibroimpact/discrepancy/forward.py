@@ -8,9 +8,10 @@ from functools import lru_cache
 import numpy as np
 
 from vibroimpact.excitation.random_force import resample_measured
-from vibroimpact.integration.batch import Schedule, march_lanes, resting
+from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.integration.kernels import LANES, RATIO, SLOTS
+from vibroimpact.integration.kernels.decimation import RATIO, SLOTS
+from vibroimpact.integration.kernels.lanes import LANES
 
 IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
 LOST = (
@@ -76,7 +77,7 @@ def simulate_records(model, schedule, forces, runs, kinds):
             axis=-1,
         )
 
-        initial = resting(model, schedule, gaps, offsets)
+        initial = rest_state(model, schedule, gaps, offsets)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
 
         lost = set()
@@ -100,7 +101,7 @@ def simulate_records(model, schedule, forces, runs, kinds):
 
         while True:
             try:
-                march_lanes(model, led, gaps, offsets, drive, receive, initial)
+                integrate_batch(model, led, gaps, offsets, drive, receive, initial)
                 break
             except IntegrationError as error:  # again, with no force on what was thrown off
                 if error.case is None or error.case in lost or len(lost) + 1 > LOST * len(batch):

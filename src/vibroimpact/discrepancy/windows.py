@@ -4,7 +4,7 @@ enough, and every second is simulated a thousand times.
 
 from math import ceil
 
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.kernels.lanes import LANES
 
 from . import priors
 

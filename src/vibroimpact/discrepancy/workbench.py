@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.kernels.lanes import LANES
 
 from . import nuisance as linear
 from .attach import attach, with_channel_points

@@ -27,7 +27,7 @@ ROOM, SETTLED = (
 
 
 @dataclass
-class Lanes:
+class BatchResult:
     """What a batch of up to LANES cases leaves behind; the last axis of every sum is the case.
 
     displacement (case, channel, sample) m: sensors, then the shape line; acceleration (case,
@@ -106,16 +106,16 @@ class Schedule:
         return ticks * RATIO
 
 
-def march_lanes(
+def integrate_batch(
     model: ModalModel, schedule: Schedule, gap, imperfection, drive, receive=None, initial=None
-) -> Lanes:
+) -> BatchResult:
     """Integrate up to LANES cases side by side.
 
     gap (case,) m; imperfection (contact_point, 2, case) m, added to the obstacles' centres; drive:
     function (first, count) -> (count, force_channel, case) force in N at steps first, first + 1,
     ... (0 to schedule.steps). receive: function (first, displacement, acceleration, force) that
-    takes the time series as they come: those of Lanes, float32, from sample first on, in arrays
-    that are used again; Lanes then holds none, and no array grows with the duration. initial:
+    takes the time series as they come: those of BatchResult, float32, from sample first on, in arrays
+    that are used again; BatchResult then holds none, and no array grows with the duration. initial:
     (mode, LANES) modal amplitudes in which every lane starts at rest, see `resting`; the model's
     initial state when left out. Raises IntegrationError: the contact is too stiff for the step
     (before anything runs), or the run diverged.
@@ -133,9 +133,9 @@ def march_lanes(
     ).finish(receive)
 
 
-def resting(model: ModalModel, schedule: Schedule, gap, imperfection):
+def rest_state(model: ModalModel, schedule: Schedule, gap, imperfection):
     """Return (mode, LANES) modal amplitudes in which each case rests under its dead loads, against
-    its supports where it must; arguments as of march_lanes.
+    its supports where it must; arguments as of integrate_batch.
 
     None where it rests at zero: no dead load, all supports centred; or nowhere: a mode is free.
     Found by a march with the modes damped to ROOM of critical.
@@ -225,7 +225,7 @@ class _Run:
         self.energies, self.times = [], []
         self.take_energies()
 
-    def finish(self, receive=None) -> Lanes:
+    def finish(self, receive=None) -> BatchResult:
         """Start-up, filling of the filter, record."""
         schedule, layout_output = self.schedule, self.output
         for ticks in _chunks(schedule.start_ticks, self.chunk):
@@ -268,7 +268,7 @@ class _Run:
             else:
                 receive(first, outputs[:, :shapes], acceleration, outputs[:, shapes:])
             first += count
-        return Lanes(
+        return BatchResult(
             displacement=whole and whole[0][:, :shapes],
             acceleration=whole and whole[1],
             force=whole and whole[0][:, shapes:],

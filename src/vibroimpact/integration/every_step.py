@@ -39,7 +39,7 @@ class Traces:
     slip_work: np.ndarray
 
 
-def trace_lanes(
+def integrate_every_step(
     model: ModalModel,
     steps_per_second: float,
     steps: int,

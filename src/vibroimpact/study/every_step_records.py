@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.excitation.force_stream import normalised_force
-from vibroimpact.integration.every_step import Traces, trace_lanes
-from vibroimpact.integration.kernels import LANES
+from vibroimpact.integration.every_step import Traces, integrate_every_step
+from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -38,7 +38,7 @@ def trace_cases(
             axis=-1,
         )[:, None]
         offset = np.zeros((model.support_of_point.size, 2, len(batch)))
-        traces = trace_lanes(
+        traces = integrate_every_step(
             model,
             rate,
             steps,

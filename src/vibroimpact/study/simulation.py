@@ -10,8 +10,9 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.excitation.force_stream import ForceStream
-from vibroimpact.integration.batch import ENERGY_TERMS, Lanes, Schedule, march_lanes
-from vibroimpact.integration.kernels import LANES, RATIO
+from vibroimpact.integration.batch import ENERGY_TERMS, BatchResult, Schedule, integrate_batch
+from vibroimpact.integration.kernels.decimation import RATIO
+from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
@@ -61,7 +62,7 @@ def simulate_cases(
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
         with nullcontext() if writer is None else writer(schedule, batch) as put:
-            lanes = march_lanes(
+            lanes = integrate_batch(
                 model,
                 schedule,
                 gap=np.array([case.gap_m for case in batch]),
@@ -125,7 +126,7 @@ def time_series(
 ) -> dict[str, np.ndarray]:
     """Return the time series of a record by variable, (..., sample) each.
 
-    displacement, acceleration, force (..., channel, sample): as in batch.Lanes.
+    displacement, acceleration, force (..., channel, sample): as in batch.BatchResult.
     """
     sensors, supports = model.sensor_shapes.shape[1], len(model.support_names)
     on_structure = force[..., : 2 * supports, :]
@@ -139,7 +140,7 @@ def time_series(
 
 
 def record_dataset(
-    config: Any, model: ModalModel, schedule: Schedule, lanes: Lanes, lane: int, case: Case
+    config: Any, model: ModalModel, schedule: Schedule, lanes: BatchResult, lane: int, case: Case
 ) -> xr.Dataset:
     """Return the record of one lane of a batch, without time series where the lanes hold none."""
     series: dict[str, np.ndarray] = {}
@@ -184,7 +185,7 @@ def case_attributes(config: Any, schedule: Schedule, case: Case) -> dict:
     }
 
 
-def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:
+def statistics(lanes: BatchResult, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:
     """Return contact, wear and stress statistics of one lane over the recorded steps, by name."""
     tally = {name: np.asarray(value[..., lane]) for name, value in lanes.tally.items()}
     steps, dt = lanes.steps, 1.0 / schedule.steps_per_second
@@ -212,7 +213,7 @@ def statistics(lanes: Lanes, lane: int, schedule: Schedule) -> dict[str, np.ndar
     }
 
 
-def energy_balance(lanes: Lanes, lane: int, conservative: bool) -> dict[str, np.ndarray]:
+def energy_balance(lanes: BatchResult, lane: int, conservative: bool) -> dict[str, np.ndarray]:
     """Return the energies of one lane and the residuals of its energy balance.
 
     Residuals are relative to the largest energy supplied, by work or at the start.

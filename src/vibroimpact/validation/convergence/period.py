@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.integration.batch import Schedule, march_lanes
+from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.check import Check
 
@@ -78,7 +78,7 @@ def frequency_shift(model, started, rate):
     free = replace(model, damping=np.zeros(model.modes), initial_displacement=amplitude)
     schedule = Schedule(rate, SAMPLING_HZ, 0.1, DURATION_S)
     points = model.contact_weight.size
-    lanes = march_lanes(
+    lanes = integrate_batch(
         free,
         schedule,
         gap=np.array([LARGE_GAP_M]),

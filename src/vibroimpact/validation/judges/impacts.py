@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.integration.every_step import trace_lanes
+from vibroimpact.integration.every_step import integrate_every_step
 from vibroimpact.integration.kernel_layout import FIXED_POINT_TOLERANCE
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.check import Check
@@ -90,7 +90,7 @@ def our_impacts(config, force, gap, free_modes_to_Hz):
     model = build_model(config.model_copy(update={"basis": basis}))
     rate, steps = config.integration.steps_per_second, len(force) - 1
     padded = np.append(force, np.zeros(40))[:, None, None]
-    traces = trace_lanes(
+    traces = integrate_every_step(
         model,
         rate,
         steps,
