@@ -1,7 +1,6 @@
-"""Marching a batch of cases through time: checks before, the kernel, statistics and energies
-after.
-"""
+"""Integration of a batch of cases: checks before, the kernel, statistics and energies after."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,31 +13,38 @@ from .kernel_layout import ModalLayout
 from .kernels.decimation import BEHIND, RATIO, decimate
 from .kernels.lanes import LANES
 from .kernels.march import initial_forces, march
+from .kernels.tables import Contact, Laws, Modal, State, Work
 from .output_filter import OutputFilter, output_filter
 from .stored_energy import stored_energy
 
-CHUNK_TICKS = (
-    2000  # steps between visits to Python, in units of RATIO: its forces fit the second-level cache
-)
-ROOM, SETTLED = (
-    0.7,
-    12.0,
-)  # damping ratio under which a structure comes to rest, and by how much: exp(-SETTLED)
+# Ticks (RATIO steps) integrated in one call: their forces fit the second-level cache.
+CHUNK_TICKS = 2000
+REST_DAMPING = 0.7  # damping ratio under which a structure comes to rest
+REST_DECAY = 12.0  # the transient falls by exp(-REST_DECAY)
+
+Drive = Callable[[int, int], np.ndarray]  # (first, count) -> (count, force_channel, case) N
+# (first sample, displacement, acceleration, force), the last three as in BatchResult
+Receive = Callable[[int, np.ndarray, np.ndarray, np.ndarray], None]
 
 
 @dataclass
 class BatchResult:
-    """What a batch of up to LANES cases leaves behind; the last axis of every sum is the case.
+    """Records and sums of a batch of up to LANES cases; the last axis of every sum is the case.
 
-    displacement (case, channel, sample) m: sensors, then the shape line; acceleration (case,
-    sensor, sample) m/s²; force (case, channel, sample) N: two resultants per support (on the
-    structure), then the drive forces. None, all three, where they were handed over piece by piece.
-    stopwatch: CPU seconds of kernel and output filter. tally: sums over the recorded steps (see
-    kernels.tables.Tally); steps: how many; energy (case, term, chunk) J at energy_time (chunk,) s; terms
-    ENERGY_TERMS, all accumulated from the start of the simulation. fixed_point_residual (case,):
-    largest relative change of the contact forces in the last pass of a step; times contraction it
-    bounds the error left. contact_rows (contact_point, 2), element_rows (element,): rows in the
-    tally.
+    displacement (case, channel, sample) m: sensors, then the shape line. None, as the next two,
+        where the time series were handed over piece by piece.
+    acceleration (case, sensor, sample) m/s².
+    force (case, channel, sample) N: two resultants per support, on the structure, then the drive
+        forces.
+    tally: sums over the recorded steps, see kernels.tables.Tally.
+    steps: number of recorded steps.
+    energy (case, term, chunk) J: ENERGY_TERMS, accumulated from the start of the run.
+    energy_time (chunk,) s.
+    fixed_point_residual (case,): largest relative change of the contact forces in the last pass of
+        a step; times contraction it bounds their error.
+    contraction: factor by which one pass shrinks the error, at most.
+    contact_rows (contact_point, 2), element_rows (element,): rows in the tally.
+    stopwatch: CPU seconds of kernel and output filter.
     """
 
     displacement: np.ndarray | None
@@ -67,9 +73,7 @@ ENERGY_TERMS = (
 
 @dataclass(frozen=True)
 class Schedule:
-    """Rates [Hz] and durations [s] of a run, its scheme (see schemes.py), and the output filter
-    between the two rates.
-    """
+    """Rates [Hz], durations [s] and scheme of a run (see modal_step), and its output filter."""
 
     steps_per_second: float
     sampling_frequency: float
@@ -78,7 +82,7 @@ class Schedule:
     scheme: str = "newmark"
     filter: OutputFilter = field(init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(
             self, "filter", output_filter(self.steps_per_second, self.sampling_frequency)
         )
@@ -107,69 +111,63 @@ class Schedule:
 
 
 def integrate_batch(
-    model: ModalModel, schedule: Schedule, gap, imperfection, drive, receive=None, initial=None
+    model: ModalModel,
+    schedule: Schedule,
+    gap: np.ndarray,
+    imperfection: np.ndarray,
+    drive: Drive,
+    receive: Receive | None = None,
+    initial: np.ndarray | None = None,
 ) -> BatchResult:
     """Integrate up to LANES cases side by side.
 
-    gap (case,) m; imperfection (contact_point, 2, case) m, added to the obstacles' centres; drive:
-    function (first, count) -> (count, force_channel, case) force in N at steps first, first + 1,
-    ... (0 to schedule.steps). receive: function (first, displacement, acceleration, force) that
-    takes the time series as they come: those of BatchResult, float32, from sample first on, in arrays
-    that are used again; BatchResult then holds none, and no array grows with the duration. initial:
-    (mode, LANES) modal amplitudes in which every lane starts at rest, see `resting`; the model's
-    initial state when left out. Raises IntegrationError: the contact is too stiff for the step
-    (before anything runs), or the run diverged.
+    gap (case,): m.
+    imperfection (contact_point, 2, case): offset added to the centres of the obstacles, m.
+    drive: gives the force at steps first, first + 1, ... (0 to schedule.steps).
+    receive: takes the time series as they come, float32, from a sample on, in arrays that are used
+        again. The result then holds none, and no array grows with the duration.
+    initial (mode, LANES): modal amplitudes at which every lane starts without velocity, see
+        `rest_state`; by default the model's initial state.
+
+    Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the
+    run diverged.
     """
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
-    return _Run(
-        model,
-        schedule,
-        to_lanes(gap, 1.0),
-        to_lanes(imperfection, 0.0),
-        drive,
-        np.size(gap),
-        contraction,
-        initial,
-    ).finish(receive)
+    return _Run(model, schedule, gap, imperfection, drive, contraction, initial).finish(receive)
 
 
-def rest_state(model: ModalModel, schedule: Schedule, gap, imperfection):
-    """Return (mode, LANES) modal amplitudes in which each case rests under its dead loads, against
-    its supports where it must; arguments as of integrate_batch.
+def rest_state(
+    model: ModalModel, schedule: Schedule, gap: np.ndarray, imperfection: np.ndarray
+) -> np.ndarray | None:
+    """Modal amplitudes (mode, LANES) at which each case rests under its dead loads, against its
+    supports where it must; gap, imperfection as of integrate_batch.
 
-    None where it rests at zero: no dead load, all supports centred; or nowhere: a mode is free.
-    Found by a march with the modes damped to ROOM of critical.
+    None where it rests at zero (no dead load, all supports centred) or nowhere (a mode is free).
+    Found by integration with the modes damped to REST_DAMPING of critical.
     """
-    if (
-        not (model.constant_force.any() or model.centre_offset.any())
-        or not (model.omega > 0.0).all()
-    ):
+    loaded = model.constant_force.any() or model.centre_offset.any()
+    if not loaded or not (model.omega > 0.0).all():
         return None
     damped = replace(
         model,
-        damping=2.0 * ROOM * model.omega,
+        damping=2.0 * REST_DAMPING * model.omega,
         initial_displacement=np.zeros(model.modes),
         initial_velocity=np.zeros(model.modes),
     )
     contraction = checked_contraction(damped, schedule.steps_per_second, schedule.scheme)
     channels = model.drive_shapes.shape[1]
-    run = _Run(
-        damped,
-        schedule,
-        to_lanes(gap, 1.0),
-        to_lanes(imperfection, 0.0),
-        lambda first, count: np.zeros((count, channels, np.size(gap))),
-        np.size(gap),
-        contraction,
-    )
-    for ticks in _chunks(
-        round(SETTLED / (ROOM * model.omega.min()) * schedule.steps_per_second / RATIO), run.chunk
-    ):
+
+    def no_force(first: int, count: int) -> np.ndarray:
+        return np.zeros((count, channels, np.size(gap)))
+
+    run = _Run(damped, schedule, gap, imperfection, no_force, contraction)
+    time = REST_DECAY / (REST_DAMPING * model.omega.min())
+    for ticks in _chunks(round(time * schedule.steps_per_second / RATIO), run.chunk):
         run.advance(ticks, 0, recorded=False)
     return run.state.q[-1][run.layout.place]
 
 
-def to_lanes(values, padding):
+def to_lanes(values: np.ndarray, padding: float) -> np.ndarray:
     """values (..., case) padded to LANES along the last axis."""
     values = np.asarray(values, float)
     out = np.full((*values.shape[:-1], LANES), padding)
@@ -178,30 +176,29 @@ def to_lanes(values, padding):
 
 
 class _Run:
-    """One batch on its way: the kernel's arrays and the sums carried from chunk to chunk."""
+    """A batch in progress: the kernel's arrays and the sums carried from chunk to chunk."""
 
-    def __init__(self, model, schedule, gap, imperfection, drive, cases, contraction, initial=None):
-        self.model, self.schedule, self.drive, self.cases, self.contraction = (
-            model,
-            schedule,
-            drive,
-            cases,
-            contraction,
-        )
-        self.layout = ModalLayout(model, schedule.scheme)
+    def __init__(
+        self,
+        model: ModalModel,
+        schedule: Schedule,
+        gap: np.ndarray,
+        imperfection: np.ndarray,
+        drive: Drive,
+        contraction: float,
+        initial: np.ndarray | None = None,
+    ):
+        self.model, self.schedule, self.drive = model, schedule, drive
+        self.cases, self.contraction = np.size(gap), contraction
         self.dt = 1.0 / schedule.steps_per_second
-        self.modal = self.layout.modal(self.dt)
-        self.contact, self.laws = (
-            self.layout.contact(gap, imperfection, contraction),
-            self.layout.laws(gap),
-        )
-        self.state, self.tally, self.work = (
-            self.layout.state(),
-            self.layout.tally(),
-            self.layout.work(),
-        )
+        self.layout = layout = ModalLayout(model, schedule.scheme)
+        self.modal = layout.modal(self.dt)
+        lane_gap = to_lanes(gap, 1.0)
+        self.contact = layout.contact(lane_gap, to_lanes(imperfection, 0.0), contraction)
+        self.laws = layout.laws(lane_gap)
+        self.state, self.tally, self.work = layout.state(), layout.tally(), layout.work()
         start_state(
-            self.layout,
+            layout,
             self.modal,
             self.contact,
             self.laws,
@@ -210,70 +207,79 @@ class _Run:
             self.forces(0, 1)[0],
             None if initial is None else (initial, np.zeros_like(initial)),
         )
-        tail = schedule.filter.second.size - schedule.filter.step
+        # The second filter stage needs this many ticks before the first of a chunk.
+        self.history = schedule.filter.second.size - schedule.filter.step
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
-        self.output = self.layout.output(
-            schedule.filter.phase_weights(), tail + self.chunk, schedule.steps_per_second
+        self.output = layout.output(
+            schedule.filter.phase_weights(), self.history + self.chunk, schedule.steps_per_second
         )
-        self.tail = tail
         self.done, self.stopwatch = 0, Stopwatch()
         self.totals = {
             name: np.zeros(LANES) for name in ("input_work", "dissipated", "contact_work")
         }
-        self.sums = None
+        self.sums = {name: np.zeros_like(array) for name, array in self.tally._asdict().items()}
         self.residual = np.zeros(LANES)
-        self.energies, self.times = [], []
+        self.energies: list[np.ndarray] = []
+        self.times: list[float] = []
         self.take_energies()
 
-    def finish(self, receive=None) -> BatchResult:
+    def finish(self, receive: Receive | None = None) -> BatchResult:
         """Start-up, filling of the filter, record."""
-        schedule, layout_output = self.schedule, self.output
+        schedule, output = self.schedule, self.output
         for ticks in _chunks(schedule.start_ticks, self.chunk):
             self.advance(ticks, 0, recorded=False)
         at_rest = max(-schedule.start_ticks, 0)
-        layout_output.values[:, :at_rest] = 0.0
-        self.advance(self.tail - at_rest, at_rest, recorded=False)
-        sensors = self.model.sensor_shapes.shape[1]
-        samples, shapes = schedule.samples, layout_output.stress_start
-        pieces = [
-            np.empty((self.cases, channels, self.chunk // schedule.filter.step), np.float32)
-            for channels in (layout_output.values.shape[0], sensors)
-        ]
-        whole = (
-            [np.empty((*piece.shape[:2], samples), np.float32) for piece in pieces]
-            if receive is None
-            else None
+        output.values[:, :at_rest] = 0.0
+        self.advance(self.history - at_rest, at_rest, recorded=False)
+        sensors, shapes = self.model.sensor_shapes.shape[1], output.stress_start
+        whole: tuple[np.ndarray, np.ndarray] | None = None
+        if receive is None:
+            whole = (
+                self._series(output.values.shape[0], schedule.samples),
+                self._series(sensors, schedule.samples),
+            )
+        pieces = tuple(
+            self._series(channels, self.chunk // schedule.filter.step)
+            for channels in (output.values.shape[0], sensors)
         )
-        taps, curvature_taps = (
-            np.pad(taps, 3 * schedule.filter.step)
-            for taps in (schedule.filter.second, schedule.filter.second_derivative)
-        )
-        first, buffer = 0, np.zeros((4, LANES))
-        for ticks in _chunks(samples * schedule.filter.step, self.chunk):
-            self.advance(ticks, self.tail, recorded=True)
-            with self.stopwatch("output filter"):
-                values = np.ascontiguousarray(layout_output.values[:, : self.tail + ticks])
-                decimate(values, taps, pieces[0], 0, schedule.filter.step, buffer)
-                decimate(
-                    values[:sensors], curvature_taps, pieces[1], 0, schedule.filter.step, buffer
-                )
-                layout_output.values[:, : self.tail] = values[:, ticks : ticks + self.tail]
+        first = 0
+        for ticks in _chunks(schedule.samples * schedule.filter.step, self.chunk):
+            self.advance(ticks, self.history, recorded=True)
+            self._filter(ticks, *pieces)
             count = ticks // schedule.filter.step
             outputs, acceleration = (piece[..., :count] for piece in pieces)
-            if receive is None:
-                whole[0][..., first : first + count], whole[1][..., first : first + count] = (
-                    outputs,
-                    acceleration,
-                )
-            else:
+            if whole is not None:
+                whole[0][..., first : first + count] = outputs
+                whole[1][..., first : first + count] = acceleration
+            if receive is not None:
                 receive(first, outputs[:, :shapes], acceleration, outputs[:, shapes:])
             first += count
+        return self._result(whole)
+
+    def _series(self, channels: int, samples: int) -> np.ndarray:
+        return np.empty((self.cases, channels, samples), np.float32)
+
+    def _filter(self, ticks: int, outputs: np.ndarray, acceleration: np.ndarray) -> None:
+        """Second filter stage of a chunk, of all channels and of the sensors' acceleration."""
+        stage, values = self.schedule.filter, self.output.values
+        with self.stopwatch("output filter"):
+            chunk = np.ascontiguousarray(values[:, : self.history + ticks])
+            buffer = np.zeros((4, LANES))
+            for taps, channels, out in (
+                (stage.second, chunk, outputs),
+                (stage.second_derivative, chunk[: acceleration.shape[1]], acceleration),
+            ):
+                decimate(channels, np.pad(taps, 3 * stage.step), out, 0, stage.step, buffer)
+            values[:, : self.history] = chunk[:, ticks : ticks + self.history]
+
+    def _result(self, series: tuple[np.ndarray, np.ndarray] | None) -> BatchResult:
+        shapes = self.output.stress_start
         return BatchResult(
-            displacement=whole and whole[0][:, :shapes],
-            acceleration=whole and whole[1],
-            force=whole and whole[0][:, shapes:],
+            displacement=None if series is None else series[0][:, :shapes],
+            acceleration=None if series is None else series[1],
+            force=None if series is None else series[0][:, shapes:],
             tally={name: value[..., : self.cases] for name, value in self.sums.items()},
-            steps=samples * schedule.filter.step * RATIO,
+            steps=self.schedule.samples * self.schedule.filter.step * RATIO,
             energy=np.array(self.energies).transpose(2, 1, 0)[: self.cases],
             energy_time=np.array(self.times),
             fixed_point_residual=self.residual[: self.cases],
@@ -283,12 +289,14 @@ class _Run:
             stopwatch=self.stopwatch,
         )
 
-    def advance(self, ticks, column, recorded):
-        """March ``ticks`` ticks, their outputs to ``column`` on; keep the sums when recorded."""
+    def advance(self, ticks: int, column: int, recorded: bool) -> None:
+        """Integrate a number of ticks, their outputs from a column on; add to the sums when
+        recorded. Raises IntegrationError when the run diverged.
+        """
         for array in self.tally:
             array[...] = 0.0
         force = self.forces(self.done + 1, ticks * RATIO)
-        output = self.output._replace(column=column)
+        output, trace = self.output._replace(column=column), self.layout.trace(0)
         with self.stopwatch("kernel"):
             steps = march(
                 self.modal,
@@ -297,7 +305,7 @@ class _Run:
                 self.state,
                 self.tally,
                 output,
-                self.layout.trace(0),
+                trace,
                 self.work,
                 force,
             )
@@ -306,23 +314,22 @@ class _Run:
         self.done += steps
         self.account(recorded)
 
-    def forces(self, first, count):
+    def forces(self, first: int, count: int) -> np.ndarray:
         """Drive forces (count, force_channel, LANES) N at steps first, first + 1, ..."""
         channels, total = self.model.drive_shapes.shape[1], self.layout.drive_shapes.shape[1]
         given = self.drive(first, count)
         if given.shape == (count, total, LANES):
             return np.ascontiguousarray(given)
         out = np.zeros((count, total, LANES))
+        # Long strided copies are many times faster than one copy of blocks of a few lanes.
         for channel in range(channels):
-            for lane in range(
-                self.cases
-            ):  # long strided copies: many times faster than one of blocks of a few lanes
+            for lane in range(self.cases):
                 out[:, channel, lane] = given[:, channel, lane]
         out[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
         return out
 
-    def account(self, recorded):
-        """Add the chunk's tally to the totals and take the energies."""
+    def account(self, recorded: bool) -> None:
+        """Add the chunk's tally to the totals, to the sums when recorded, and take the energies."""
         tally = self.tally
         self.totals["input_work"] += tally.input_work[0]
         self.totals["contact_work"] += tally.contact_work[0]
@@ -330,16 +337,13 @@ class _Run:
         self.residual = np.maximum(self.residual, tally.residual[0])
         self.take_energies()
         if recorded:
-            if self.sums is None:
-                self.sums = {name: np.zeros_like(array) for name, array in tally._asdict().items()}
             for name, array in tally._asdict().items():
                 largest = name.startswith(("peak", "impact_velocity_peak", "residual"))
-                self.sums[name] = (
-                    np.maximum(self.sums[name], array) if largest else self.sums[name] + array
-                )
+                combine = np.maximum if largest else np.add
+                self.sums[name] = combine(self.sums[name], array)
 
-    def take_energies(self):
-        """Note the energies of the present state."""
+    def take_energies(self) -> None:
+        """Append the energies of the present state."""
         kinetic, elastic = modal_energies(self.layout, self.dt, self.state)
         stored = {
             "kinetic": kinetic,
@@ -350,8 +354,8 @@ class _Run:
         self.energies.append(np.array([terms[name] for name in ENERGY_TERMS]))
         self.times.append((self.done - 1) * self.dt - self.schedule.start_up)
 
-    def fail(self, steps):
-        """Say where the run diverged."""
+    def fail(self, steps: int) -> None:
+        """Raise IntegrationError with the time and place at which the run diverged."""
         displacement = np.abs(self.state.row_displacement)
         displacement[~np.isfinite(displacement)] = np.inf
         row, lane = np.unravel_index(np.argmax(displacement), displacement.shape)
@@ -368,27 +372,34 @@ class _Run:
 
 
 def start_state(
-    layout: ModalLayout, modal, contact, laws, state, work, drive, initial=None
+    layout: ModalLayout,
+    modal: Modal,
+    contact: Contact,
+    laws: Laws,
+    state: State,
+    work: Work,
+    drive: np.ndarray,
+    initial: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> None:
-    """Put the initial displacement and velocity, and the force drive (force_channel, LANES) N of
-    that time, into the state.
+    """Put the initial displacement, velocity and force into the state.
 
-    initial: (displacement, velocity), modal amplitudes (mode, LANES) each; the model's own, the
-    same in every lane, when left out.
+    drive (force_channel, LANES): force at that time, N.
+    initial: (displacement, velocity), modal amplitudes (mode, LANES) each; by default the model's,
+        the same in every lane.
     """
     model, shapes = layout.model, layout.row_shapes
-    q, v = initial or (
-        np.outer(values, np.ones(LANES))
-        for values in (model.initial_displacement, model.initial_velocity)
-    )
+    if initial is None:
+        ones = np.ones(LANES)
+        initial = np.outer(model.initial_displacement, ones), np.outer(model.initial_velocity, ones)
+    q, v = initial
     if np.any(q) or np.any(v):
         state.q[-1] = layout.per_mode(q)
         state.row_displacement[...], state.row_velocity[...] = shapes @ q, shapes @ v
         initial_forces(modal, contact, laws, state, work)
     driven = modal.row_force_channel >= 0
     state.row_force[driven] = drive[modal.row_force_channel[driven]]
-    ahead, change = layout.step(modal.dt).start(q, v, shapes.T @ state.row_force)
-    state.q_next_free[...], state.dq[...] = layout.per_mode(ahead), layout.per_mode(change)
+    q_next_free, dq = layout.step(modal.dt).start(q, v, shapes.T @ state.row_force)
+    state.q_next_free[...], state.dq[...] = layout.per_mode(q_next_free), layout.per_mode(dq)
     moves = np.any(state.q_next_free, axis=1) | np.any(state.dq, axis=1)
     state.group_active[...] |= [
         np.any(moves[first:last])
@@ -396,18 +407,18 @@ def start_state(
     ]
 
 
-def modal_energies(layout: ModalLayout, dt: float, state) -> tuple[np.ndarray, np.ndarray]:
-    """Kinetic and elastic energy of the modes, each (lane,) J."""
+def modal_energies(layout: ModalLayout, dt: float, state: State) -> tuple[np.ndarray, np.ndarray]:
+    """Kinetic and elastic energy of the modes, each (lane,) J; dt in s."""
     force = layout.row_shapes.T @ state.row_force
     velocity = layout.step(dt).velocity(
         state.q_next_free[layout.place], state.dq[layout.place], force
     )
+    kinetic = 0.5 * (velocity**2).sum(axis=0)
     displacement = state.q[-1][layout.place]
-    return 0.5 * (velocity**2).sum(axis=0), 0.5 * (
-        (layout.model.omega[:, None] * displacement) ** 2
-    ).sum(axis=0)
+    elastic = 0.5 * ((layout.model.omega[:, None] * displacement) ** 2).sum(axis=0)
+    return kinetic, elastic
 
 
-def _chunks(total, size):
+def _chunks(total: int, size: int) -> list[int]:
     """total cut into pieces of at most size; none when it is not positive."""
     return [min(size, total - start) for start in range(0, total, size)]

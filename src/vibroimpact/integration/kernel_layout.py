@@ -1,5 +1,6 @@
 """The reduced model laid out for the kernel: uncoupled groups of modes, panels, rows and lanes."""
 
+from collections.abc import Sequence
 from functools import cache, cached_property
 
 import numpy as np
@@ -13,22 +14,31 @@ from .kernels.tables import QUIET, Contact, Laws, Modal, Output, State, Tally, T
 from .modal_step import StepCoefficients, step_coefficients
 
 FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
-FIXED_POINT_ERROR = (
-    1e-6  # relative error that may be left in them: the change times the contraction
-)
+FIXED_POINT_ERROR = 1e-6  # relative error left in them: the change times the contraction
 FIXED_POINT_PASSES = 40
 DIVERGED_DISPLACEMENT = 1e3  # m
 STRESS_RATE = 1e4  # Hz at least, of the stresses behind RMS and peak
+MODE_COEFFICIENTS = (
+    "mode_compliance",
+    "force_shift",
+    "decay",
+    "restoring",
+    "force_gain",
+    "damping_over_dt",
+)
+
+RowKey = tuple[int, int] | int  # (contact point, direction) of a contact row, or a local element
 
 
 class ModalLayout:
     """Where the modes, contact rows and force rows of a ModalModel sit in the kernel's flat arrays.
 
-    groups: list of (mode indices, force rows); padded: modes after padding every group to whole
-    panels; place (mode,) position of each mode; implicit_shapes: for each group {row key: (mode of
-    the group,)} with the key (contact_point, direction) of a contact or the index of an element, in
-    the order of their rows; drive_shapes (mode, force_channel): the model's channels, then, where
-    there is one, the dead load as a channel of constant 1.
+    groups: list of (mode indices, force channels) of each uncoupled group.
+    implicit_shapes: for each group {RowKey: shape (mode of the group,)}, in the order of its rows.
+    drive_shapes (mode, force_channel): the model's, then, where there is a dead load, that as a
+        channel of constant force 1.
+    padded: number of modes after padding every group to whole panels.
+    place (mode,): index of each mode among the padded ones.
     """
 
     def __init__(self, model: ModalModel, scheme: str):
@@ -36,16 +46,27 @@ class ModalLayout:
         self.drive_shapes = model.drive_shapes
         if np.any(model.constant_force):
             self.drive_shapes = np.column_stack([model.drive_shapes, model.constant_force])
-        self.groups, self.implicit_shapes = [], []
-        shapes = {
+        self.groups: list[tuple[np.ndarray, list[int]]] = []
+        self.implicit_shapes: list[dict[RowKey, np.ndarray]] = []
+        self._make_groups()
+        widths = [-(-len(modes) // PANEL) * PANEL for modes, _ in self.groups]
+        self.mode_start = np.concatenate([[0], np.cumsum(widths)]).astype(np.int64)
+        self.padded = int(self.mode_start[-1])
+        self.place = np.zeros(model.omega.size, np.int64)
+        for g, (modes, _) in enumerate(self.groups):
+            self.place[modes] = self.mode_start[g] + np.arange(len(modes))
+
+    def _make_groups(self) -> None:
+        """Distribute the contact directions, elements and force channels over the groups."""
+        model = self.model
+        points, elements = model.contact_shapes.shape[1], len(model.element_names)
+        shapes: dict[RowKey, np.ndarray] = {
             (point, direction): model.contact_shapes[:, point, direction]
-            for point in range(model.contact_shapes.shape[1])
+            for point in range(points)
             for direction in range(2)
         }
-        shapes |= {
-            element: model.element_shapes[:, element] for element in range(len(model.element_names))
-        }
-        taken = set()
+        shapes.update({element: model.element_shapes[:, element] for element in range(elements)})
+        taken: set[RowKey] = set()
         for modes, _ in model.blocks:
             moved = {key: shape[modes] for key, shape in shapes.items() if np.any(shape[modes])}
             driven = [
@@ -54,24 +75,14 @@ class ModalLayout:
             self.groups.append((np.asarray(modes), driven))
             self.implicit_shapes.append(moved)
             taken |= set(moved)
-        # A direction that nothing moves, as the second one of a point on a line, still needs a row
-        # to read.
+        # A direction that no mode moves, as the second one of a point on a line, still needs a row.
         still = {key: np.zeros(len(self.groups[0][0])) for key in shapes if key not in taken}
-        self.implicit_shapes[0] = dict(
-            sorted(
-                (self.implicit_shapes[0] | still).items(),
-                key=lambda item: (isinstance(item[0], int), item[0]),
-            )
-        )
-        widths = [-(-len(modes) // PANEL) * PANEL for modes, _ in self.groups]
-        self.mode_start = np.concatenate([[0], np.cumsum(widths)]).astype(np.int64)
-        self.padded = int(self.mode_start[-1])
-        self.place = np.zeros(model.omega.size, np.int64)
-        for g, (modes, _) in enumerate(self.groups):
-            self.place[modes] = self.mode_start[g] + np.arange(len(modes))
+        first = self.implicit_shapes[0] | still
+        order = sorted(first, key=lambda key: (isinstance(key, int), key))
+        self.implicit_shapes[0] = {key: first[key] for key in order}
 
     def per_mode(self, values: np.ndarray) -> np.ndarray:
-        """values (mode, ...) moved to the padded order, zeros between: (padded mode, ...)."""
+        """values (mode, ...) in the padded order, zeros between: (padded mode, ...)."""
         out = np.zeros((self.padded, *values.shape[1:]))
         out[self.place] = values
         return out
@@ -80,22 +91,19 @@ class ModalLayout:
         """The kernel's Modal for a step of dt [s]."""
         step = self.step(dt)
         row_start, force_row_start, channels = [0], [], []
-        shapes, shape_start, compliance, compliance_start = [], [], [], []
+        shapes: list[np.ndarray] = []
+        compliance: list[np.ndarray] = []
         for g, (modes, driven) in enumerate(self.groups):
-            implicit = list(self.implicit_shapes[g].values())
-            rows = np.zeros(
-                (len(implicit) + len(driven), self.mode_start[g + 1] - self.mode_start[g])
-            )
-            for r, shape in enumerate([*implicit, *self.drive_shapes[np.ix_(modes, driven)].T]):
-                rows[r, : len(modes)] = shape
-            moved = rows[:, : len(modes)]
-            shape_start.append(sum(map(np.size, shapes)))
-            compliance_start.append(sum(map(np.size, compliance)))
+            implicit = len(self.implicit_shapes[g])
+            moved = self._group_row_shapes(g)
+            rows = np.zeros((len(moved), self.mode_start[g + 1] - self.mode_start[g]))
+            rows[:, : len(modes)] = moved
             shapes.append(rows.ravel())
+            moved = rows[:, : len(modes)]
             compliance.append(((moved * step.mode_compliance[modes]) @ moved.T).ravel())
-            force_row_start.append(row_start[-1] + len(implicit))
+            force_row_start.append(row_start[-1] + implicit)
             row_start.append(row_start[-1] + len(rows))
-            channels += [-1] * len(implicit) + driven
+            channels += [-1] * implicit + driven
         return Modal(
             dt=float(dt),
             mode_start=self.mode_start,
@@ -103,35 +111,32 @@ class ModalLayout:
             force_row_start=np.array(force_row_start, np.int64),
             row_force_channel=np.array(channels, np.int64),
             shapes=np.concatenate(shapes),
-            shape_start=np.array(shape_start, np.int64),
+            shape_start=_starts(shapes),
             row_compliance=np.concatenate([*compliance, np.zeros(1)]),
-            compliance_start=np.array(compliance_start, np.int64),
+            compliance_start=_starts(compliance),
             velocity_weights=step.velocity_weights,
-            **{
-                name: self.per_mode(getattr(step, name))
-                for name in (
-                    "mode_compliance",
-                    "force_shift",
-                    "decay",
-                    "restoring",
-                    "force_gain",
-                    "damping_over_dt",
-                )
-            },
+            **{name: self.per_mode(getattr(step, name)) for name in MODE_COEFFICIENTS},
         )
 
     @cache  # noqa: B019 (a layout lives as long as its run)
     def step(self, dt: float) -> StepCoefficients:
-        """The step of the model's modes."""
+        """The step of the model's modes, dt in s."""
         return step_coefficients(self.scheme, self.model.omega, self.model.damping, dt)
+
+    def _group_row_shapes(self, g: int) -> np.ndarray:
+        """Shape of every row of group g over its modes: (row, mode of the group)."""
+        modes, driven = self.groups[g]
+        drive = self.drive_shapes[modes][:, driven].T
+        implicit = list(self.implicit_shapes[g].values())
+        return np.array([*implicit, *drive]).reshape(-1, len(modes))
 
     @cached_property
     def row_shapes(self) -> np.ndarray:
         """Shape of every row over the model's modes: (row, mode)."""
-        out = np.zeros((self._sizes()[0], self.model.omega.size))
+        out = np.zeros((self._rows_and_supports()[0], self.model.omega.size))
         row = 0
-        for (modes, driven), implicit in zip(self.groups, self.implicit_shapes, strict=True):
-            for shape in [*implicit.values(), *self.drive_shapes[np.ix_(modes, driven)].T]:
+        for g, (modes, _) in enumerate(self.groups):
+            for shape in self._group_row_shapes(g):
                 out[row, modes] = shape
                 row += 1
         return out
@@ -153,26 +158,28 @@ class ModalLayout:
         )
 
     def partner_rows(self) -> np.ndarray:
-        """Row of the element whose rate counts in the speed of each local element's drag, -1 for
-        none: (element,) int.
+        """Row of the element whose velocity counts in each local element's drag, -1 for none:
+        (element,) int.
         """
         partner = np.asarray(self.model.local_laws.drag_partner, np.int64)
         rows = self.element_rows()
         return np.array([rows[other] if other >= 0 else -1 for other in partner], np.int64)
 
-    def _rows(self):
-        rows, row = {}, 0
+    def _rows(self) -> dict[RowKey, int]:
+        rows: dict[RowKey, int] = {}
+        row = 0
         for keys, (_, driven) in zip(self.implicit_shapes, self.groups, strict=True):
-            rows |= {key: row + r for r, key in enumerate(keys)}
+            rows.update({key: row + r for r, key in enumerate(keys)})
             row += len(keys) + len(driven)
         return rows
 
     def contact(self, gap: np.ndarray, imperfection: np.ndarray, contraction: float) -> Contact:
-        """The kernel's Contact: gap (lane,) nominal gap [m]; imperfection (contact_point, 2, lane)
-        [m] added to the centres; contraction of the fixed point (contraction.contact_contraction),
-        which sets how far it is followed.
+        """The kernel's Contact. Points with special laws are never touched in it, see laws().
 
-        Points with special laws are out of reach here, see laws().
+        gap (lane,): nominal gap, m.
+        imperfection (contact_point, 2, lane): offset added to the centres of the obstacles, m.
+        contraction: factor of the contact iteration (contact_convergence.contact_contraction); it
+            sets the tolerance at which the iteration ends.
         """
         model, rows = self.model, self.contact_rows()
         ones, plain = np.ones(LANES), model.contact_laws.plain
@@ -194,72 +201,52 @@ class ModalLayout:
         )
 
     def gaps(self, gap: np.ndarray) -> np.ndarray:
-        """Gap [m] of each contact point, (contact_point, lane): its own where it has one, else the
-        case's times its factor.
+        """Gap of each contact point, (contact_point, lane) m: the law's where it gives one, else
+        the nominal gap (lane,) m times the point's factor.
         """
-        own = self.model.contact_laws.gap
-        return np.where(np.isnan(own)[:, None], np.outer(self.model.gap_factor, gap), own[:, None])
+        given = self.model.contact_laws.gap[:, None]
+        return np.where(np.isnan(given), np.outer(self.model.gap_factor, gap), given)
 
     def laws(self, gap: np.ndarray) -> Laws:
         """The kernel's Laws: every contact point that is not plain (once per land), then the local
-        elements.
+        elements. gap (lane,): nominal gap, m.
         """
-        model, own, local = self.model, self.model.contact_laws, self.model.local_laws
-        round_points = [
-            point for point in np.flatnonzero(~own.plain) if point not in set(own.land_point)
-        ]
+        model, special = self.model, self.model.contact_laws
+        round_points = self._round_points()
         point = np.concatenate(
-            [np.array(round_points, np.int64), np.asarray(own.land_point, np.int64)]
+            [np.array(round_points, np.int64), np.asarray(special.land_point, np.int64)]
         )
-        normal = np.concatenate([np.zeros((len(round_points), 2)), own.land_normal])
-        contact = {
-            "lobe_depth": own.lobe_depth,
-            "lobe_cosine": np.cos(own.lobe_angle),
-            "lobe_sine": np.sin(own.lobe_angle),
-            "stiffness": np.where(own.hertz != 0.0, 0.0, model.contact_stiffness),
-            "hertz": own.hertz,
-            "hunt_crossley": own.hunt_crossley,
-            "damping": own.damping,
-            "friction": own.friction,
-            "stick_stiffness": np.where(own.friction != 0.0, own.stick_stiffness, 0.0),
-            "stick_flexibility": _inverse(np.where(own.friction != 0.0, own.stick_stiffness, 0.0)),
-        }
-        slider = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)
-        element = {
-            "element_stiffness": local.stiffness,
-            "quadratic": local.quadratic,
-            "cubic": local.cubic,
-            "element_damping": local.damping,
-            "drag": local.drag,
-            "slider_stiffness": slider,
-            "slider_flexibility": _inverse(slider),
-            "slip_limit": local.slip_limit,
-            "saturation_stiffness": local.saturation_stiffness,
-            "saturation_limit": local.saturation_limit,
-        }
+        normal = np.concatenate([np.zeros((len(round_points), 2)), special.land_normal])
+        columns = {name: values[point] for name, values in _contact_columns(model).items()}
+        columns |= _element_columns(model)
         return Laws(
             contact_point=point,
-            flat=np.repeat([0, 1], [len(round_points), len(own.land_point)]).astype(np.int64),
+            flat=np.repeat([0, 1], [len(round_points), len(special.land_point)]).astype(np.int64),
             normal_1=normal[:, 0].copy(),
             normal_2=normal[:, 1].copy(),
-            lobes=own.lobes[point].astype(np.int64),
+            lobes=special.lobes[point].astype(np.int64),
             gap=np.ascontiguousarray(self.gaps(gap)[point]),
             element_row=self.element_rows(),
             partner_row=self.partner_rows(),
-            **{name: np.outer(values[point], np.ones(LANES)) for name, values in contact.items()},
-            **{name: np.outer(values, np.ones(LANES)) for name, values in element.items()},
+            **{name: np.outer(values, np.ones(LANES)) for name, values in columns.items()},
         )
 
+    def _round_points(self) -> list[int]:
+        """The contact points with a special law round the centre, without flat lands."""
+        laws = self.model.contact_laws
+        lands = set(laws.land_point)
+        return [int(point) for point in np.flatnonzero(~laws.plain) if point not in lands]
+
     def trace(self, steps: int) -> Trace:
-        """Room for `steps` steps of every row, none for 0."""
-        rows, _ = self._sizes()
+        """Room for a number of steps of every row, none for 0."""
+        rows, _ = self._rows_and_supports()
         return Trace(_aligned((rows, steps, LANES)), _aligned((rows, steps, LANES)), int(steps))
 
     def state(self) -> State:
         """A structure at rest."""
-        rows, supports = self._sizes()
-        laws, elements = self._law_sizes()
-        extras = 2 * supports + self.drive_shapes.shape[1]
+        rows, supports = self._rows_and_supports()
+        laws, elements = self._laws_and_elements()
+        other_channels = 2 * supports + self.drive_shapes.shape[1]
         return State(
             q=_aligned((RATIO, self.padded, LANES)),
             q_next_free=_aligned((self.padded, LANES)),
@@ -274,13 +261,13 @@ class ModalLayout:
             friction_force=_aligned((laws, LANES)),
             slider_force=_aligned((elements, LANES)),
             touching=_aligned((supports, LANES)),
-            filter_sums=_aligned((SLOTS, self.padded + extras, LANES)),
+            filter_sums=_aligned((SLOTS, self.padded + other_channels, LANES)),
             counter=np.array([QUIET, 0], np.int64),
         )
 
     def tally(self) -> Tally:
         """Sums at zero."""
-        rows, supports = self._sizes()
+        rows, supports = self._rows_and_supports()
         sections, elements = self.model.stress_shapes.shape[1], len(self.model.element_names)
         counts = {
             "element_work": elements,
@@ -299,19 +286,12 @@ class ModalLayout:
         )
 
     def work(self) -> Work:
-        """Scratch space."""
-        rows, _ = self._sizes()
-        laws, elements = self._law_sizes()
-        model = self.model
-        channels = (
-            model.sensor_shapes.shape[1]
-            + model.line_shapes.shape[1]
-            + 2 * model.stress_shapes.shape[1]
-            + 1
-        )
+        """Work space of a step."""
+        rows, supports = self._rows_and_supports()
+        laws, elements = self._laws_and_elements()
         counts = {
-            "channels": channels,
-            "resultant": 2 * len(model.support_names),
+            "channels": self._channel_shapes().shape[1] + 1,
+            "resultant": 2 * supports,
             "friction_force": laws,
             "frozen_friction_force": laws,
             "slider_force": elements,
@@ -322,66 +302,62 @@ class ModalLayout:
     def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
         """Output buffers: displacement channels are the sensors, then the shape line; then the
         stresses of each section.
+
+        weights (RATIO, SLOTS): first stage of the output filter.
+        columns: ticks that the buffers hold.
+        steps_per_second: Hz.
         """
-        model = self.model
-        sections = model.stress_shapes.shape[1]
-        channels = np.concatenate(
-            [
-                model.sensor_shapes,
-                model.line_shapes,
-                model.stress_shapes.reshape(model.omega.size, 2 * sections),
-            ],
-            axis=1,
-        )
-        stress_start = channels.shape[1] - 2 * sections
-        start, stress_entry, entries, shapes, shape_start = [0], [], [], [], []
+        channels = self._channel_shapes()
+        stress_start = channels.shape[1] - 2 * self.model.stress_shapes.shape[1]
+        start, stress_entry = [0], []
+        entries: list[int] = []
+        shapes: list[np.ndarray] = []
         for g, (modes, _) in enumerate(self.groups):
-            width = self.mode_start[g + 1] - self.mode_start[g]
+            padding = self.mode_start[g + 1] - self.mode_start[g] - len(modes)
             seen = np.flatnonzero(np.any(channels[modes], axis=0))
-            for part in (seen[seen < stress_start], seen[seen >= stress_start]):
-                for c in [int(c) for c in part] + [-1] * (
-                    -len(part) % CHANNEL_BLOCK
-                ):  # whole blocks; a filler adds zeros to a spare channel
-                    entries.append(c if c >= 0 else channels.shape[1])
-                    shape_start.append(sum(map(np.size, shapes)))
-                    shapes.append(
-                        np.pad(
-                            channels[modes, c] if c >= 0 else np.zeros(len(modes)),
-                            (0, width - len(modes)),
-                        )
-                    )
-                stress_entry.append(len(entries))
+            displacements = _whole_blocks(seen[seen < stress_start], channels.shape[1])
+            stresses = _whole_blocks(seen[seen >= stress_start], channels.shape[1])
+            stress_entry.append(len(entries) + len(displacements))
+            for channel in displacements + stresses:
+                filler = channel == channels.shape[1]
+                shape = np.zeros(len(modes)) if filler else channels[modes, channel]
+                entries.append(channel)
+                shapes.append(np.pad(shape, (0, padding)))
             start.append(len(entries))
-        _, supports = self._sizes()
-        extras = 2 * supports + self.drive_shapes.shape[1]
+        _, supports = self._rows_and_supports()
+        other_channels = 2 * supports + self.drive_shapes.shape[1]
         return Output(
             weights=weights,
             channel_start=np.array(start, np.int64),
-            stress_entry=np.array(stress_entry[::2], np.int64),  # behind the first of the two parts
+            stress_entry=np.array(stress_entry, np.int64),
             channel=np.array(entries, np.int64),
             shapes=np.concatenate([*shapes, np.zeros(1)]),
-            shape_start=np.array(shape_start, np.int64),
+            shape_start=_starts(shapes),
             stress_start=int(stress_start),
             stress_weight=stress_weight(steps_per_second),
             supports=supports,
-            values=_aligned((stress_start + extras, columns, LANES)),
+            values=_aligned((stress_start + other_channels, columns, LANES)),
             columns=int(columns),
             column=0,
         )
 
-    def _sizes(self):
+    def _channel_shapes(self) -> np.ndarray:
+        """Shapes of the sensors, the shape line and the stresses: (mode, channel)."""
+        model = self.model
+        sections = model.stress_shapes.shape[1]
+        stresses = model.stress_shapes.reshape(model.omega.size, 2 * sections)
+        return np.concatenate([model.sensor_shapes, model.line_shapes, stresses], axis=1)
+
+    def _rows_and_supports(self) -> tuple[int, int]:
         rows = sum(
             len(keys) + len(driven)
             for keys, (_, driven) in zip(self.implicit_shapes, self.groups, strict=True)
         )
         return rows, len(self.model.support_names)
 
-    def _law_sizes(self):
-        own = self.model.contact_laws
-        at_lands = np.isin(np.arange(len(own.gap)), own.land_point)
-        return int(np.sum(~own.plain & ~at_lands)) + len(own.land_point), len(
-            self.model.element_names
-        )
+    def _laws_and_elements(self) -> tuple[int, int]:
+        laws = len(self._round_points()) + len(self.model.contact_laws.land_point)
+        return laws, len(self.model.element_names)
 
 
 def stress_weight(steps_per_second: float) -> np.ndarray:
@@ -394,12 +370,58 @@ def stress_weight(steps_per_second: float) -> np.ndarray:
     return weights
 
 
-def _inverse(values):
+def _contact_columns(model: ModalModel) -> dict[str, np.ndarray]:
+    """Parameters of the special contact laws in the kernel's terms, each (contact_point,)."""
+    laws = model.contact_laws
+    stick = np.where(laws.friction != 0.0, laws.stick_stiffness, 0.0)
+    return {
+        "lobe_depth": laws.lobe_depth,
+        "lobe_cosine": np.cos(laws.lobe_angle),
+        "lobe_sine": np.sin(laws.lobe_angle),
+        "stiffness": np.where(laws.hertz != 0.0, 0.0, model.contact_stiffness),
+        "hertz": laws.hertz,
+        "hunt_crossley": laws.hunt_crossley,
+        "damping": laws.damping,
+        "friction": laws.friction,
+        "stick_stiffness": stick,
+        "stick_flexibility": _inverse(stick),
+    }
+
+
+def _element_columns(model: ModalModel) -> dict[str, np.ndarray]:
+    """Parameters of the local elements in the kernel's terms, each (element,)."""
+    laws = model.local_laws
+    slider = np.where(laws.slip_limit != 0.0, laws.stick_stiffness, 0.0)
+    return {
+        "element_stiffness": laws.stiffness,
+        "quadratic": laws.quadratic,
+        "cubic": laws.cubic,
+        "element_damping": laws.damping,
+        "drag": laws.drag,
+        "slider_stiffness": slider,
+        "slider_flexibility": _inverse(slider),
+        "slip_limit": laws.slip_limit,
+        "saturation_stiffness": laws.saturation_stiffness,
+        "saturation_limit": laws.saturation_limit,
+    }
+
+
+def _whole_blocks(channels: np.ndarray, filler: int) -> list[int]:
+    """The channels, filled up to a multiple of CHANNEL_BLOCK."""
+    return [int(channel) for channel in channels] + [filler] * (-len(channels) % CHANNEL_BLOCK)
+
+
+def _starts(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Index of the first value of each part when they are put end to end."""
+    return np.concatenate([[0], np.cumsum([part.size for part in parts])[:-1]]).astype(np.int64)
+
+
+def _inverse(values: np.ndarray) -> np.ndarray:
     """1 / values, 0 where they are 0."""
     return np.divide(1.0, values, out=np.zeros(np.shape(values)), where=values != 0.0)
 
 
-def _aligned(shape):
+def _aligned(shape: tuple[int, ...]) -> np.ndarray:
     """Zeros that start on a cache line, so that no vector straddles two."""
     count = int(np.prod(shape))
     raw = np.zeros(count + 8)
