@@ -1,3 +1,1 @@
-"""Time integration: the compiled kernel, the step of a mode, batches of cases, energies and the
-output filter.
-"""
+"""Time integration: compiled kernels, the step of a mode, batches of cases, the output filter."""

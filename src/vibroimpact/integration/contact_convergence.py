@@ -1,6 +1,4 @@
-"""The contact iteration of a step: how fast it contracts, and the error of a step too large for
-it.
-"""
+"""Convergence of the contact iteration of a step, and the error raised where it is too slow."""
 
 import numpy as np
 
@@ -12,27 +10,28 @@ CONTRACTION_LIMIT = 0.5
 
 
 class IntegrationError(Exception):
-    """A run that can not be done or that diverged; the message names the place and the remedy, case
-    (None: all) the case of the batch.
+    """A run that cannot be done, or that diverged; the message names the place and the remedy.
+
+    case: number of the case in the batch, None for all.
     """
 
-    def __init__(self, message, case=None):
+    def __init__(self, message: str, case: int | None = None):
         super().__init__(message)
         self.case = case
 
 
 def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -> float:
-    """Upper bound of the factor by which one pass of the contact fixed point shrinks its error.
+    """Upper bound of the factor by which one pass of the contact iteration shrinks its error.
 
-    The largest eigenvalue of the tangent stiffness of all contacts and elements, dampers counting
-    by the scheme's velocity, times the compliance of one step, all of them engaged at once. Terms
-    that grow with the motion (cubic, drag, Hunt-Crossley) are left out: the residual of the fixed
-    point, kept with every record, tells of them.
+    The largest eigenvalue of the step's compliance times the tangent stiffness of all contacts and
+    elements, all engaged at once; a damper counts by its velocity per displacement. Terms that grow
+    with the motion (cubic, drag, Hunt-Crossley) are left out: for them see the residual of the
+    iteration in every record. dt in s.
     """
     layout = ModalLayout(model, scheme)
     modal, own, local = layout.modal(dt), model.contact_laws, model.local_laws
     stiffness = np.zeros(modal.row_force_channel.size)
-    rate = modal.velocity_weights[0]  # of the velocity with the displacement
+    rate = modal.velocity_weights[0]  # velocity per displacement
     radial = np.where(own.hertz > 0.0, 0.0, model.contact_stiffness) + rate * own.damping
     tangential = np.where(own.friction > 0.0, own.stick_stiffness, 0.0)
     for direction in range(2):
@@ -58,9 +57,12 @@ def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -
     return float(largest)
 
 
-def checked_contraction(model, steps_per_second, scheme="newmark"):
-    """The contraction factor of the contact iteration; raises IntegrationError when it is too slow
-    to rely on.
+def checked_contraction(
+    model: ModalModel, steps_per_second: float, scheme: str = "newmark"
+) -> float:
+    """The contraction factor of the contact iteration.
+
+    Raises IntegrationError above CONTRACTION_LIMIT, with the steps per second that are needed.
     """
     contraction = contact_contraction(model, 1.0 / steps_per_second, scheme)
     if contraction > CONTRACTION_LIMIT:

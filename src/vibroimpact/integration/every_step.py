@@ -1,6 +1,4 @@
-"""Every step of a short run, unfiltered: displacement and force of each contact point and local
-element.
-"""
+"""Every step of a short run, unfiltered, at each contact point and local element."""
 
 from dataclasses import dataclass
 
@@ -8,7 +6,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .batch import modal_energies, start_state, to_lanes
+from .batch import Drive, modal_energies, start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
@@ -21,11 +19,13 @@ from .stored_energy import stored_energy
 class Traces:
     """A batch of up to LANES short runs, step by step; step 0 is the initial state.
 
-    time (step,) s; contact_displacement, contact_force (case, contact_point, 2, step): m, and N on
-    the structure; element_displacement, element_force (case, element, step): m, and N on the
-    structure; energy {term: (case,)} J over the whole run: input_work, dissipated by modal damping,
-    contact_work done by contacts and elements, change of the mechanical energy of the modes and of
-    that stored in contacts and elements. sliding_work (case, support) J: normal force times slip;
+    time (step,) s.
+    contact_displacement (case, contact_point, 2, step) m, contact_force: N on the structure.
+    element_displacement (case, element, step) m, element_force: N on the structure.
+    energy {term: (case,)} J over the whole run: input_work; dissipated by modal damping;
+        contact_work done by contacts and elements; mechanical, the change of the energy of the
+        modes; stored, the change of that in contacts and elements.
+    sliding_work (case, support) J: normal force times slip.
     slip_work (case, element) J: slider force times slip.
     """
 
@@ -43,16 +43,19 @@ def integrate_every_step(
     model: ModalModel,
     steps_per_second: float,
     steps: int,
-    gap,
-    imperfection,
-    drive,
+    gap: np.ndarray,
+    imperfection: np.ndarray,
+    drive: Drive,
     scheme: str = "newmark",
 ) -> Traces:
-    """Integrate up to LANES cases side by side from their initial state and keep every step.
+    """Integrate up to LANES cases side by side from their initial state and record every step.
 
-    steps: rounded up to a multiple of RATIO; gap (case,) m; imperfection (contact_point, 2, case)
-    m; drive: function (first, count) -> (count, force_channel, case) N at the times first /
-    steps_per_second, ...; index 0 is the initial state's. Raises IntegrationError.
+    steps: rounded up to a multiple of RATIO.
+    gap (case,): m.
+    imperfection (contact_point, 2, case): offset added to the centres of the obstacles, m.
+    drive: gives the force at the times first / steps_per_second, ...; index 0 is the initial state.
+
+    Raises IntegrationError: the contact is too stiff for the step, or the run diverged.
     """
     contraction = checked_contraction(model, steps_per_second, scheme)
     cases, ticks = np.size(gap), -(-steps // RATIO)
@@ -66,8 +69,9 @@ def integrate_every_step(
     force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
     start_state(layout, modal, contact, laws, state, work, force[0])
-    start = state.row_displacement.copy(), state.row_force.copy()
-    before = sum(modal_energies(layout, modal.dt, state)), stored_energy(contact, laws, state)
+    start_displacement, start_force = state.row_displacement.copy(), state.row_force.copy()
+    mechanical_before = np.sum(modal_energies(layout, modal.dt, state), axis=0)
+    stored_before = stored_energy(contact, laws, state)
     trace = layout.trace(ticks * RATIO)
     output = layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
     done = march(
@@ -78,24 +82,29 @@ def integrate_every_step(
             f"diverged at t = {done / steps_per_second:.4f} s: raise integration.steps_per_second"
             " or check forces and stiffnesses"
         )
-    displacement, pushed = (
+    displacement, force_on_rows = (
         np.concatenate([first[:, None], rest], axis=1)[..., :cases].transpose(2, 0, 1)
-        for first, rest in zip(start, (trace.displacement, trace.force), strict=True)
+        for first, rest in (
+            (start_displacement, trace.displacement),
+            (start_force, trace.force),
+        )
     )
     contacts, elements = layout.contact_rows(), layout.element_rows()
-    energy = {
-        name: getattr(tally, name)[0, :cases]
-        for name in ("input_work", "dissipated", "contact_work")
-    }
-    energy["mechanical"] = (sum(modal_energies(layout, modal.dt, state)) - before[0])[:cases]
-    energy["stored"] = (stored_energy(contact, laws, state) - before[1])[:cases]
+    mechanical = np.sum(modal_energies(layout, modal.dt, state), axis=0) - mechanical_before
+    stored = stored_energy(contact, laws, state) - stored_before
     return Traces(
         time=np.arange(ticks * RATIO + 1) / steps_per_second,
         contact_displacement=displacement[:, contacts],
-        contact_force=pushed[:, contacts],
+        contact_force=force_on_rows[:, contacts],
         element_displacement=displacement[:, elements],
-        element_force=pushed[:, elements],
-        energy=energy,
+        element_force=force_on_rows[:, elements],
+        energy={
+            "input_work": tally.input_work[0, :cases],
+            "dissipated": tally.dissipated[0, :cases],
+            "contact_work": tally.contact_work[0, :cases],
+            "mechanical": mechanical[:cases],
+            "stored": stored[:cases],
+        },
         sliding_work=tally.sliding_work[:, :cases].T,
         slip_work=tally.slip_work[:, :cases].T,
     )

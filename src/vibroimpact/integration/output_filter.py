@@ -1,9 +1,9 @@
 """The output filter: from the integration step to the sampling of the records, without aliasing.
 
-Two linear-phase stages. The first divides the rate by ``decimation.RATIO`` inside the integration; it
-only has to stop what would fold into the final band (images of it around the multiples of its
-output rate). The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05
-dB below 0.78 of it (800 Hz at 2048 Hz).
+Two linear-phase stages. The first divides the rate by ``RATIO`` inside the integration; it only has
+to stop what would fold into the final band (images of it around the multiples of its output rate).
+The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05 dB below 0.78
+of it (800 Hz at 2048 Hz).
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,19 @@ from .kernels.decimation import BEHIND, RATIO, SLOTS
 
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
-DIFFERENCE_ERROR = 1e-6  # of the second derivative, relative, up to the end of the passband
-LONGEST_DIFFERENCE = 30  # with which a middle rate near the sampling frequency has to do
-DROOP_TERMS = 5  # of the polynomial in 1 - cos that undoes the first stage's droop
+DIFFERENCE_ERROR = 1e-6  # relative, of the second derivative up to the end of the passband
+LONGEST_DIFFERENCE = 30  # order at most, even where DIFFERENCE_ERROR asks for more
+DROOP_TERMS = 5  # of the polynomial in 1 - cos that compensates the first stage's droop
 
 
 @dataclass(frozen=True)
 class OutputFilter:
-    """Both stages, and where they sit in time.
+    """The taps of both stages.
 
-    first (2 * half + 1,) taps at the step rate; second and second_derivative (tap,) taps at rate /
-    RATIO, the latter [1/s²] gives acceleration from displacement; step: second-stage decimation.
+    first (2 * half + 1,): at the step rate.
+    second (tap,): at the step rate / RATIO.
+    second_derivative (tap,): the same with two time derivatives, 1/s².
+    step: decimation of the second stage.
     """
 
     first: np.ndarray
@@ -50,8 +52,8 @@ class OutputFilter:
                     weights[phase, slot] = self.first[half + lag]
         return weights
 
-    def response(self, frequency, steps_per_second):
-        """Amplitude response of both stages together, before decimation: (frequency,)."""
+    def response(self, frequency: np.ndarray, steps_per_second: float) -> np.ndarray:
+        """Amplitude response of both stages before decimation, (frequency,); arguments in Hz."""
         frequency = np.asarray(frequency, float)
         first = _amplitude(self.first, frequency / steps_per_second)
         return first * _amplitude(self.second, frequency * RATIO / steps_per_second)
@@ -73,7 +75,9 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
     stop = 0.5 * sampling_frequency
     first = _first_stage(stop / steps_per_second)
     passband = PASS_FRACTION * stop / middle_rate
-    second = np.convolve(_kaiser_lowpass(passband, stop / middle_rate), _lift(first, passband))
+    second = np.convolve(
+        _kaiser_lowpass(passband, stop / middle_rate), _droop_compensation(first, passband)
+    )
     order = next(
         (
             order
@@ -91,12 +95,12 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
     )
 
 
-def _first_stage(band):
-    """Taps that stop the images of 0..band around multiples of 1 / RATIO (cycles per step) and pass
-    about 1 below.
+def _first_stage(band: float) -> np.ndarray:
+    """Taps with a gain of about 1 up to band (cycles per step) that stop its images around
+    multiples of 1 / RATIO.
 
-    A polynomial in x = cos(2 pi f) with Chebyshev-spaced zeros in each image band, the nearest band
-    one more. Its length is the largest that SLOTS outputs can share.
+    A polynomial in x = cos(2 pi f) with Chebyshev-spaced zeros in each image band, one more in the
+    nearest. Its length is the largest that SLOTS outputs can share.
     """
     pairs = (RATIO * SLOTS - 2) // 2
     images = RATIO // 2
@@ -109,9 +113,9 @@ def _first_stage(band):
     return taps
 
 
-def _lift(first, passband):
-    """Taps at the middle rate that undo the first stage's droop up to passband (cycles per middle
-    sample); exactly 1 at 0.
+def _droop_compensation(first: np.ndarray, passband: float) -> np.ndarray:
+    """Taps at the middle rate that compensate the first stage's droop up to passband (cycles per
+    middle sample); gain exactly 1 at 0.
     """
     frequency = np.linspace(0.0, passband, 200)[1:]
     x = 1.0 - np.cos(2 * np.pi * frequency)
@@ -126,7 +130,7 @@ def _lift(first, passband):
     return taps
 
 
-def _kaiser_lowpass(passband, stopband):
+def _kaiser_lowpass(passband: float, stopband: float) -> np.ndarray:
     """Odd-length windowed-sinc low-pass, band edges in cycles per sample (Kaiser 1974)."""
     width = 2 * np.pi * (stopband - passband)
     count = int(np.ceil((KAISER_ATTENUATION_DB - 8.0) / (2.285 * width)))
@@ -137,7 +141,7 @@ def _kaiser_lowpass(passband, stopband):
     return taps / taps.sum()
 
 
-def _second_difference(order):
+def _second_difference(order: int) -> np.ndarray:
     """Central-difference weights of the second derivative at unit spacing, 2 * order + 1 points
     (Fornberg).
     """
@@ -147,7 +151,7 @@ def _second_difference(order):
     return np.concatenate([side[::-1], [-2.0 * side.sum()], side])
 
 
-def _difference_error(order, passband):
+def _difference_error(order: int, passband: float) -> float:
     """Relative error of the second difference at the end of the passband (cycles per sample)."""
     return abs(
         _amplitude(_second_difference(order), np.array([passband]))[0] / (2 * np.pi * passband) ** 2
@@ -155,6 +159,7 @@ def _difference_error(order, passband):
     )
 
 
-def _amplitude(taps, frequency):
+def _amplitude(taps: np.ndarray, frequency: np.ndarray) -> np.ndarray:
+    """Amplitude response of symmetric taps; frequency in cycles per sample."""
     half = (taps.size - 1) // 2
     return np.cos(2 * np.pi * np.outer(frequency, np.arange(-half, half + 1))) @ taps

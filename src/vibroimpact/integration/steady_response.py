@@ -1,14 +1,15 @@
-"""The steady response of a model with local elements to a periodic force: its elements' motion and
-force over one period.
+"""The steady response to a periodic force of a model with local elements.
 
-The elements are integrated by the kernel of every other simulation, through some periods that let
-the transient die out and then one that is kept; the response anywhere follows at the lines of the
-spectrum from the force and the elements' forces, without a further error.
+The elements are integrated by the kernel of every other simulation, first through some periods in
+which the transient dies out, then through one that is recorded. The response anywhere follows at
+the lines of the spectrum from the drive force and the elements' forces, without a further error.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
@@ -16,23 +17,28 @@ from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
 from .kernels.lanes import LANES
 from .kernels.march import march
-from .kernels.tables import STEPS_DONE
+from .kernels.tables import STEPS_DONE, Trace
 
 SCHEME = "exact"
 
 
 @dataclass(frozen=True, eq=False)
 class PeriodicDrive:
-    """A force for each of up to LANES cases with one period: period s; lines (case, line) complex
-    amplitudes from line 0; steps a period.
+    """A force for each of up to LANES cases, all of one period.
+
+    period: s.
+    lines (case, line): complex amplitudes from line 0, N.
+    steps: time steps per period.
+
+    Raises ValueError where the kernel cannot step through it: steps that are not a multiple of
+    RATIO or fewer than twice the lines, more than LANES cases.
     """
 
     period: float
     lines: np.ndarray
     steps: int
 
-    def __post_init__(self):
-        """Refuse what the kernel can not step through."""
+    def __post_init__(self) -> None:
         if self.steps % RATIO or self.steps < 2 * self.lines.shape[1] or len(self.lines) > LANES:
             raise ValueError(
                 f"{self.steps} steps a period for {self.lines.shape[1]} lines and {len(self.lines)}"
@@ -41,12 +47,12 @@ class PeriodicDrive:
             )
 
     @property
-    def omega(self):
-        """Return (line,) rad/s."""
+    def omega(self) -> np.ndarray:
+        """Angular frequency of each line: (line,) rad/s."""
         return 2.0 * np.pi / self.period * np.arange(self.lines.shape[1])
 
-    def samples(self):
-        """Return (step, 1, LANES) the force at the steps 0, 1, ... of a period."""
+    def samples(self) -> np.ndarray:
+        """The force at the steps 0, 1, ... of a period: (step, 1, LANES) N."""
         out = np.zeros((self.steps, 1, LANES))
         spectrum = np.zeros((len(self.lines), self.steps // 2 + 1), complex)
         spectrum[:, : self.lines.shape[1]] = self.lines * self.steps
@@ -54,70 +60,83 @@ class PeriodicDrive:
         return out
 
 
-def steady_elements(model, drive, samples=None, periods_before=1):
-    """Return (displacement, force): complex lines (element, case, line) m and N on the structure of
-    every local element, in the steady state.
+def steady_elements(
+    model: ModalModel,
+    drive: PeriodicDrive,
+    samples: np.ndarray | None = None,
+    periods_before: int = 1,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement (m) and force on the structure (N) of every local element in the steady state:
+    complex amplitudes (element, case, line) each.
 
-    Starts in the linear steady state without elements, so that few periods_before are needed.
-    samples: drive.samples(), when at hand. Raises IntegrationError: too stiff for the step, or
-    diverged.
+    samples: drive.samples(), where they are at hand.
+    periods_before: periods before the one recorded. The start is the linear steady state without
+        elements, so that few are needed.
+
+    Raises IntegrationError: an element is too stiff for the step, or the run diverged.
     """
     samples = drive.samples() if samples is None else samples
     rate = drive.steps / drive.period
     contraction = checked_contraction(model, rate, SCHEME)
     layout = ModalLayout(model, SCHEME)
     gap = to_lanes(np.ones(1), 1.0)
-    modal = layout.modal(1.0 / rate)
-    state = layout.state()
-    tally = layout.tally()
-    work = layout.work()
     contact = layout.contact(gap, np.zeros((*model.centre_offset.shape, LANES)), contraction)
-    laws = layout.laws(gap)
-    initial = _linear_steady(model, drive)
-    local = model.local_laws
-    stuck = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)[:, None] * (
-        model.element_shapes.T @ initial[0]
-    )
-    state.slider_force[...] = np.clip(
-        -stuck, -local.slip_limit[:, None], local.slip_limit[:, None]
-    )  # as if loaded from nothing: no preload is left
-    start_state(
-        layout, modal, contact, laws, state, work, _with_dead_load(samples[:1], layout)[0], initial
-    )
-    ahead = _with_dead_load(np.roll(samples, -1, axis=0), layout)
+    modal, laws = layout.modal(1.0 / rate), layout.laws(gap)
+    state, tally, work = layout.state(), layout.tally(), layout.work()
+    initial = _linear_steady_state(model, drive)
+    state.slider_force[...] = _slider_force(model, initial[0])
+    force = _with_dead_load(samples, layout)
+    start_state(layout, modal, contact, laws, state, work, force[0], initial)
+    force = np.ascontiguousarray(np.roll(force, -1, axis=0))
     output = layout.output(np.zeros((RATIO, SLOTS)), drive.steps // RATIO, rate)
     for period in range(periods_before + 1):
         trace = layout.trace(drive.steps if period == periods_before else 0)
         state.counter[STEPS_DONE] = 0  # the trace starts at step 0
-        if march(modal, contact, laws, state, tally, output, trace, work, ahead) < drive.steps:
+        done = march(modal, contact, laws, state, tally, output, trace, work, force)
+        if done < drive.steps:
             raise IntegrationError(
                 f"the steady response diverged in period {period}: the element's law has no bounded"
                 " motion under this force"
             )
-    rows, cases, count = layout.element_rows(), len(drive.lines), drive.lines.shape[1]
+    return _element_lines(trace, layout.element_rows(), drive)
+
+
+def _element_lines(
+    trace: Trace, rows: np.ndarray, drive: PeriodicDrive
+) -> tuple[np.ndarray, np.ndarray]:
+    """Complex amplitudes (element, case, line) of displacement and force over one period."""
+    cases, count = drive.lines.shape
     # Step j of the kernel ends at time (j + 1) dt.
-    turned = np.exp(-2j * np.pi * np.arange(count) / drive.steps)
-    return tuple(
-        np.fft.rfft(kept[rows][..., :cases], axis=1)[:, :count].transpose(0, 2, 1)
-        * turned
+    delay = np.exp(-2j * np.pi * np.arange(count) / drive.steps)
+    displacement, force = (
+        np.fft.rfft(values[rows][..., :cases], axis=1)[:, :count].transpose(0, 2, 1)
+        * delay
         / drive.steps
-        for kept in (trace.displacement, trace.force)
+        for values in (trace.displacement, trace.force)
     )
+    return displacement, force
 
 
-def _with_dead_load(samples, layout):
-    """(step, force_channel, LANES): the force, and 1 for the dead load where the model has one."""
-    extra = layout.drive_shapes.shape[1] - 1
-    return np.ascontiguousarray(
-        np.concatenate([samples, np.ones((len(samples), extra, LANES))], axis=1)
-        if extra
-        else samples
-    )
+def _slider_force(model: ModalModel, displacement: np.ndarray) -> np.ndarray:
+    """Force of each slider at modal displacements (mode, LANES), loaded from zero displacement, so
+    that no preload is left: (element, LANES) N.
+    """
+    local = model.local_laws
+    stiffness = np.where(local.slip_limit != 0.0, local.stick_stiffness, 0.0)
+    trial = stiffness[:, None] * (model.element_shapes.T @ displacement)
+    return np.clip(-trial, -local.slip_limit[:, None], local.slip_limit[:, None])
 
 
-def _linear_steady(model, drive):
-    """Return (displacement, velocity), (mode, LANES) each: modal amplitudes at time 0 in the steady
-    state without elements.
+def _with_dead_load(samples: np.ndarray, layout: ModalLayout) -> np.ndarray:
+    """The force (step, force_channel, LANES), with 1 for the dead load where the model has one."""
+    dead_loads = layout.drive_shapes.shape[1] - 1
+    ones = np.ones((len(samples), dead_loads, LANES))
+    return np.ascontiguousarray(np.concatenate([samples, ones], axis=1))
+
+
+def _linear_steady_state(model: ModalModel, drive: PeriodicDrive) -> tuple[np.ndarray, np.ndarray]:
+    """Modal displacement and velocity (mode, LANES) at time 0 in the steady state without
+    elements.
     """
     laplace = 1j * drive.omega
     response = model.drive_shapes[:, :1] / (

@@ -1,3 +1,3 @@
-"""Every compiled function of vibroimpact. `march` states the equations of a step and holds the loop
-over the steps; `compiled` says how the machine code is cached.
+"""The compiled functions: `march` states the equations of a step and loops over the steps;
+`compiled` says how machine code is cached.
 """

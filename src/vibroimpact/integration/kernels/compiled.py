@@ -12,8 +12,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from numba import config, njit
+from numba import njit
+from numba.core import config as numba_config
 
+config: Any = numba_config  # its settings are made at run time
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SOURCES = Path(__file__).parent
@@ -40,10 +42,10 @@ def inlined(function: Function) -> Function:
 
 
 def entry_point(function: Function) -> Function:
-    """The compiled function, to be called from Python, with its machine code cached on disk.
+    """The compiled function, for calls from Python, its machine code cached on disk.
 
-    Without a cache where no folder can be written, where the sources are not plain files, and where
-    they have changed since this process imported them.
+    There is no cache where no folder can be written, where the sources are not plain files, and
+    where they have changed since this process imported them.
     """
     if IMPORTED_SOURCES and source_digest() == IMPORTED_SOURCES:
         for place in cache_places():

@@ -5,6 +5,7 @@ from .force_laws import all_forces, elastic_circle_force, penetration, radial_of
 from .lanes import (
     any_lane,
     fma,
+    in_every_lane,
     load,
     magnitude,
     raise_to,
@@ -76,7 +77,7 @@ def lanes_in_contact(contact, laws, work):
     """Mask of the lanes in which a force may act: a point penetrates at u_free, or there is an
     element.
     """
-    near = spread(1.0 if laws.element_row.size > 0 else 0.0) > 0.5
+    near = in_every_lane(laws.element_row.size > 0)
     for p in range(contact.row_1.size):
         u1, u2 = load(work.u_free, contact.row_1[p]), load(work.u_free, contact.row_2[p])
         _, _, r_squared = radial_offset(contact, p, u1, u2)

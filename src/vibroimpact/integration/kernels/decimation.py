@@ -35,7 +35,7 @@ def filter_modes(modal, state, output, tick):
 
 
 @inlined
-def filter_forces(modal, state, output, resultant, drive, first, forces, touched, phase, tick):
+def filter_forces(modal, state, output, work, drive, first, forces, touched, phase, tick):
     """Add the supports' resultants and the drive forces of a step (``forces`` of them, from vector
     ``first`` of drive) to the first filter stage.
     """
@@ -46,7 +46,7 @@ def filter_forces(modal, state, output, resultant, drive, first, forces, touched
         w = spread(output.weights[phase, slot])
         if touched:
             for c in range(2 * output.supports):
-                store(sums, a + c, fma(w, load(resultant, c), load(sums, a + c)))
+                store(sums, a + c, fma(w, load(work.resultant, c), load(sums, a + c)))
         a += 2 * output.supports
         for c in range(forces):
             store(sums, a + c, fma(w, load(drive, first + c), load(sums, a + c)))

@@ -1,4 +1,4 @@
-"""The force laws of contacts and local elements, and the forces of all of them at a displacement."""
+"""The force laws of contacts and local elements, and all forces at given displacements."""
 
 from .compiled import inlined
 from .lanes import (

@@ -7,8 +7,8 @@ the same code on narrower ones.
 
 Arithmetic (+ - * /), unary minus and the comparisons < and > work on lane vectors and on a lane
 vector with a float. -a is 0 - a, so that the negative of 0 is 0. A comparison gives a mask, one bit
-per lane, for `where`, `any_lane`, & and |. No two operations are fused: a fused multiply-add is
-written `fma`.
+per lane, for `where`, `any_lane`, `all_lanes`, & and |. No two operations are fused: a fused
+multiply-add is written `fma`.
 """
 
 import operator
@@ -28,6 +28,7 @@ INT32 = ir.IntType(32)
 VECTOR = ir.VectorType(DOUBLE, LANES)
 MASK = ir.VectorType(ir.IntType(1), LANES)
 _SINGLE = ir.VectorType(ir.FloatType(), LANES)
+_BITS = ir.IntType(LANES)  # a mask as one number
 
 
 class LaneVector(types.Type):
@@ -259,12 +260,34 @@ def where(typing_context, mask, a, b):
 
 
 @intrinsic
+def in_every_lane(typing_context, condition):
+    """The mask that is set in every lane where the condition holds, in none where it does not."""
+
+    def code(context, builder, sig, args):
+        every, none = (ir.Constant(MASK, [bit] * LANES) for bit in (1, 0))
+        return builder.select(args[0], every, none)
+
+    return lane_mask(types.boolean), code
+
+
+@intrinsic
 def any_lane(typing_context, mask):
     """True when the mask is set in at least one lane."""
 
     def code(context, builder, sig, args):
-        bits = builder.bitcast(args[0], ir.IntType(LANES))
-        return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
+        bits = builder.bitcast(args[0], _BITS)
+        return builder.icmp_unsigned("!=", bits, ir.Constant(_BITS, 0))
+
+    return types.boolean(lane_mask), code
+
+
+@intrinsic
+def all_lanes(typing_context, mask):
+    """True when the mask is set in every lane."""
+
+    def code(context, builder, sig, args):
+        bits = builder.bitcast(args[0], _BITS)
+        return builder.icmp_unsigned("==", bits, ir.Constant(_BITS, 2**LANES - 1))
 
     return types.boolean(lane_mask), code
 

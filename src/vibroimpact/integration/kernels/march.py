@@ -1,29 +1,27 @@
 """One time step, and the march through a record.
 
-Modes q (mass-normalised) under the modal forces phi^T f, contact and element forces implicit. A
-step scheme that is linear in its state needs, in the form of modal_step.StepCoefficients, only the
-force f at the end of the step:
+The structure is a set of mass-normalised modes; contact and element forces act on it at rows. In
+the form of modal_step.StepCoefficients a step of a mode needs only the force at its end:
 
-    predictor    u_free = Phi q_free + G_d d              displacement of the rows without contact
-    contact      u      = u_free + G f(u)                 by fixed-point iteration
-    correction   q      = q_free + c p,  p = Phi^T f      end of the step
-    predictor    dq     = a dq + b (q + s p) + k p        increment of the next step
-                 q_free = (q + s p) + dq                  end of the next step, if no force acts there
+    predictor    u_free = Phi q_free + G_d d           displacement of the rows without contact
+    contact      u      = u_free + G f(u)              implicit, by fixed-point iteration
+    correction   q      = q_free + c p,  p = Phi^T f   end of the step; f with the drive forces d
+    next step    dq     = a dq + b (q + s p) + k p     its increment if no force acts at its end
+                 q_free = (q + s p) + dq               its end
 
-    symbol  in the code             meaning                                          unit
-    q       state.q                 modal displacement                               m kg^1/2
-    q_free  state.q_next_free       the same at the end of the step without a force  m kg^1/2
-    dq      state.dq                increment of the step that leads to q_free       m kg^1/2
-    u       work.u                  displacement of a row                            m
-    u_free  work.u_free             the same without contact and element forces      m
-    f, d    work.force, drive       force on a contact or element row, drive force   N
-    G f     work.deflection         displacement of the rows by the forces           m
-    G, G_d  modal.row_compliance    Phi c Phi^T, its columns of the drive            m/N
-    Phi     modal.shapes            mode shapes at the rows                          kg^-1/2
-    c       modal.mode_compliance   end-of-step displacement per modal force         s²
-    s       modal.force_shift       shift of the state that removes the old force    s²
-    a, b    modal.decay, restoring  increment per last increment, per displacement   1
-    k       modal.force_gain        increment per modal force                        s²
+    symbol   in the code              meaning                                           unit
+    q        state.q                  modal displacement                                m kg^1/2
+    q_free   state.q_next_free        q at the end of the step, no force acting there   m kg^1/2
+    dq       state.dq                 increment of the step that leads to q_free        m kg^1/2
+    u        work.u                   displacement of a row                             m
+    u_free   work.u_free              u without contact and element forces              m
+    f, d     work.force, drive        force on a contact or element row, drive force    N
+    G f      work.deflection          displacement of the rows by f                     m
+    G, G_d   modal.row_compliance     Phi c Phi^T; G_d its columns of the drive         m/N
+    Phi      modal.shapes             mode shapes at the rows                           kg^-1/2
+    c, k     modal.mode_compliance, .force_gain   q and dq per modal force              s²
+    s        modal.force_shift        shift of q that replaces the force at the start   s²
+    a, b     modal.decay, .restoring  dq per last dq, per shifted q                     1
 """
 
 from .compiled import entry_point, inlined
@@ -202,18 +200,8 @@ def march(modal, contact, laws, state, tally, output, trace, work, drive):
             correct_and_predict(modal, state, tally, work, in_contact, phase)
             if output.stress_weight[phase] > 0.0:
                 tally_stress(modal, state, tally, output, phase, work.channels)
-            filter_forces(
-                modal,
-                state,
-                output,
-                work.resultant,
-                drive,
-                n * forces,
-                forces,
-                touched,
-                phase,
-                tick,
-            )
+            first = n * forces
+            filter_forces(modal, state, output, work, drive, first, forces, touched, phase, tick)
             state.counter[STEPS_WITHOUT_FORCE] = 0 if touched else min(since + 1, QUIET)
             state.counter[STEPS_DONE] += 1
         if not tally_displacement(modal, state, contact, tally):

@@ -1,7 +1,7 @@
 """The tables that the compiled functions work on: parameters, state, sums and work space.
 
-Shapes are given in axis names. Every array with a lane axis is contiguous and ends in it. A *row* is
-one scalar generalised displacement of a group of modes: a direction of a contact point, the
+Shapes are given in axis names. Every array with a lane axis is contiguous and ends in it. A *row*
+is one scalar generalised displacement of a group of modes: a direction of a contact point, the
 direction of a local element, or a force channel.
 """
 

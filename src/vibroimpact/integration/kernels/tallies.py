@@ -6,8 +6,10 @@ from .force_laws import normal_force, penetration, penetration_rate, tangential_
 from .lanes import (
     LANES,
     add_to,
+    all_lanes,
     any_lane,
     fma,
+    in_every_lane,
     larger,
     load,
     magnitude,
@@ -192,10 +194,10 @@ def tally_displacement(modal, state, contact, tally):
     """Add the squares of the row displacements; False when a lane has diverged: a row is beyond
     the limit or not a number.
     """
-    limit, diverged = spread(contact.limit), spread(0.0)
+    within = in_every_lane(True)
     for g in range(modal.row_start.size - 1):
         for r in range(modal.row_start[g], modal.force_row_start[g]):
             u = load(state.row_displacement, r)
             store(tally.square_displacement, r, fma(u, u, load(tally.square_displacement, r)))
-            diverged = diverged + where(limit > magnitude(u), 0.0, 1.0)
-    return not any_lane(diverged > 0.5)
+            within = within & (contact.limit > magnitude(u))
+    return all_lanes(within)
