@@ -14,7 +14,7 @@ from numba.core.registry import cpu_target
 from vibroimpact.config.reading import load_config
 from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.integration.march import march
+from vibroimpact.integration.kernels.march import march
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.variant import changed
 
