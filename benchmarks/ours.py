@@ -35,8 +35,8 @@ def schedule_of(seconds, step=SAME_STEP):
 
 
 def march_ours(problem, forces, schedule, touching=True):
-    """Return [BatchResult]: the runs of forces (step + 1, case) N, index k at step k, in as many batches
-    as the library asks for.
+    """Return [BatchResult]: the runs of forces (step + 1, case) N, index k at step k, in as many
+    batches as the library asks for.
 
     A force that ends before the schedule's last step goes on as zero.
     """

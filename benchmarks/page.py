@@ -30,8 +30,8 @@ highest load, a plate bears a force half of the time.
 three sensors over {CHECK_S:g} s without contact,
   over the first impacts (to {FIRST_IMPACTS_S:g} s), and its RMS over all of it; obstacles moved \
 off the axis, so that both directions touch.
-- Ours goes through its public path (`integrate_batch`): set-up, output filter, statistics, energies \
-and records included. The peers keep three
+- Ours goes through its public path (`integrate_batch`): set-up, output filter, statistics, \
+energies and records included. The peers keep three
   displacements. Forces are made beforehand for all.
 - A time is CPU time of one core, compiled beforehand. Ours and a peer run in turns in one \
 process; a ratio belongs to a pair measured next
