@@ -38,13 +38,17 @@ def trace_cases(
             axis=-1,
         )[:, None]
         offset = np.zeros((model.support_of_point.size, 2, len(batch)))
+
+        def drive(at: int, count: int, forces: np.ndarray = forces) -> np.ndarray:
+            return forces[at : at + count]
+
         traces = integrate_every_step(
             model,
             rate,
             steps,
             np.array([case.gap_m for case in batch]),
             offset,
-            lambda at, count, forces=forces: forces[at : at + count],
+            drive,
             config.integration.scheme,
         )
         for lane, case in enumerate(batch):
