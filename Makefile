@@ -53,6 +53,7 @@ lint: $(READY) ## formatting, static checks and types
 	$(BIN)/ruff check
 	$(BIN)/snakefmt --check Snakefile workflow/rules
 	$(BIN)/mypy
+	@$(BIN)/python tests/test_typed.py
 
 format: $(READY) ## format Python files and rules
 	$(BIN)/ruff check --fix --select I

@@ -8,28 +8,20 @@ import pytest
 LIBRARY = Path(__file__).parents[1] / "src" / "vibroimpact"
 
 # Packages without complete type hints so far. One leaves this list when its test passes.
-NOT_YET_TYPED = (
-    "campaign",
-    "completion",
-    "config",
-    "discrepancy",
-    "effects",
-    "f16",
-    "figures",
-    "integration",
-    "least_squares",
-    "reports",
-    "study",
-    "validation",
-)
+NOT_YET_TYPED = ("completion", "discrepancy", "f16", "figures", "validation")
 PACKAGES = sorted(
     {path.relative_to(LIBRARY).parts[0].split(".")[0] for path in LIBRARY.rglob("*.py")}
 )
 
 
+# Compiled functions take arrays of lanes, whose types numba infers: hints would say nothing.
+COMPILED = LIBRARY / "integration" / "kernels"
+
+
 def files_of(package: str) -> list[Path]:
     """The source files of a package, or of a single module beside the packages."""
-    return sorted((LIBRARY / package).rglob("*.py")) or [LIBRARY / f"{package}.py"]
+    files = sorted((LIBRARY / package).rglob("*.py")) or [LIBRARY / f"{package}.py"]
+    return [file for file in files if COMPILED not in file.parents]
 
 
 def without_hints(source: str) -> list[str]:
@@ -49,10 +41,11 @@ def without_hints(source: str) -> list[str]:
 
 
 def is_annotated(function: ast.FunctionDef) -> bool:
-    """Whether the return and all arguments but self and cls have an annotation."""
+    """Whether all arguments but self and cls, and the return of all but __init__, are annotated."""
     given = function.args
     arguments = [*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg]
-    return function.returns is not None and all(
+    returns = function.returns is not None or function.name == "__init__"
+    return returns and all(
         argument.annotation is not None
         for argument in arguments
         if argument is not None and argument.arg not in ("self", "cls")
@@ -83,3 +76,7 @@ def test_public_functions_have_type_hints(package):
 )
 def test_a_missing_type_hint_is_found(source, missing):
     assert without_hints(source) == missing
+
+
+if __name__ == "__main__":
+    print(f"Packages without complete type hints: {', '.join(NOT_YET_TYPED)}")

@@ -48,7 +48,7 @@ class Path:
     features: np.ndarray
     seeds: np.ndarray
     readings: list
-    differences: np.ndarray = None
+    differences: np.ndarray | None = None
 
     def __post_init__(self):
         if self.differences is None:

@@ -90,7 +90,7 @@ def _finalist(run, name, chosen, quick, file):
 
 # {file: function}: inherited by forked processes, since what the functions hold is too large to be
 # sent
-SHARED = {}
+SHARED: dict = {}
 
 
 def _make(workers, makers):
