@@ -45,7 +45,7 @@ class Study:
     def __init__(self, folder):
         self.folder = folder
         ignore = shutil.ignore_patterns("__pycache__")
-        for name in ("src", "workflow", "config"):
+        for name in ("src", "workflow", "config", "examples"):
             shutil.copytree(ROOT / name, folder / name, ignore=ignore)
         shutil.copy(ROOT / "Snakefile", folder)
         (folder / "profiles").symlink_to(Path("workflow", "profiles"))
@@ -244,16 +244,35 @@ def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
 
 
 @pytest.mark.parametrize(
-    ("structure", "file", "jobs"),
-    [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)],
+    ("structure", "file", "table"),
+    [
+        ("f16", "F16Data_FullMSine_Level1.mat", "poles"),
+        ("silverbox", "SNJP_um_full_FNSI_5.mat", "published"),
+    ],
 )
-def test_a_measured_structure_is_planned_candidate_by_candidate(
-    study, tmp_path, structure, file, jobs
-):
+def test_an_example_goes_the_way_of_any_campaign(study, tmp_path, structure, file, table):
     (tmp_path / file).touch()
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data={tmp_path}")
     assert run.returncode == 0, run.stdout + run.stderr
-    assert re.search(rf"^total +{jobs}$", run.stdout + run.stderr, flags=re.M)
+    planned = re.findall(r"^(\w+) +1$", run.stdout + run.stderr, flags=re.M)
+    assert sorted(planned) == sorted(
+        [
+            structure,
+            f"_{structure}_records",
+            f"_{structure}_{table}",
+            "_completion_prepare",
+            "_completion_outcome",
+            "_completion_report",
+        ]
+    )
+
+
+def test_a_campaign_named_as_an_example_is_compared_with_a_model(study, tmp_path):
+    (tmp_path / "f16.nc").touch()
+    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/f16.nc")
+    told = run.stdout + run.stderr
+    assert run.returncode == 0, told
+    assert "_discrepancy_prepare" in told and "completion" not in told
 
 
 def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):

@@ -21,7 +21,9 @@ class StructureFile:
 
     band_Hz (low, high); drive: channel at the force; places {name: {channel: coefficient}};
     candidates and additions: names "law.place"; residual_modes (below, above) the band; mean:
-    whether the mean of the response counts; emphasis: see trial.Records.
+    whether the mean of the response counts; emphasis: see trial.Records; mounting: the place whose
+    equivalent stiffness and damping are tabled against level; peak_Hz (low, high): where its peak
+    lies.
     """
 
     band_Hz: tuple | None = None
@@ -32,6 +34,8 @@ class StructureFile:
     residual_modes: tuple | None = None
     mean: bool = False
     emphasis: float = 0.0
+    mounting: str | None = None
+    peak_Hz: tuple | None = None
     source: str = field(default="", compare=False)
 
 
@@ -167,6 +171,11 @@ def _flag(value):
         yield f" = {value!r} must be true or false"
 
 
+def _place(value):
+    if not isinstance(value, str):
+        yield f" = {value!r} must be the name of a place, such as joint"
+
+
 def _emphasis(value):
     if not _number(value) or not 0.0 <= value <= 2.0:
         yield f" = {value!r} must be between 0 (all levels alike) and 2"
@@ -181,4 +190,6 @@ CHECKS = {
     "residual_modes": _two_flags,
     "mean": _flag,
     "emphasis": _emphasis,
+    "mounting": _place,
+    "peak_Hz": _band,
 }

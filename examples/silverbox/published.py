@@ -1,6 +1,13 @@
-"""The coefficients of the Silverbox as the benchmark's authors write them, beside those
-published.
+"""The coefficients of the Silverbox beside those that the benchmark's authors publish.
+
+python examples/silverbox/published.py TABLE.csv VERDICT.json COMPLETED.json
 """
+
+import json
+import sys
+from pathlib import Path
+
+from vibroimpact.records import write_table
 
 # u = mass y'' + damping y' + stiffness y + quadratic y² + cubic y³, volts and seconds. Source: Noel
 # and Schoukens, Int. J. Control 2017.
@@ -32,3 +39,9 @@ def silverbox_table(verdict, completed):
         }
         for name, (value, low, high) in found.items()
     ]
+
+
+if __name__ == "__main__":
+    table_file, *value_files = sys.argv[1:]
+    values = (json.loads(Path(file).read_text(encoding="utf-8")) for file in value_files)
+    write_table(silverbox_table(*values), table_file)
