@@ -314,7 +314,6 @@ def test_examples_use_the_public_interface_only(example):
     private = [
         name
         for name in imports(example)
-        if name.startswith("vibroimpact")
-        and any(part.startswith("_") for part in name.split("."))
+        if name.startswith("vibroimpact") and any(part.startswith("_") for part in name.split("."))
     ]
     assert private == []

@@ -11,7 +11,7 @@ complete("f16", campaign="results/f16/f16.nc", model=f"{F16}/structure.yaml")
 
 
 rule f16:
-    """What an aircraft's payload mounting lacks in a linear model: --config f16_data=FOLDER."""
+    """Example: which effect makes an aircraft soften with the load, --config f16_data=FOLDER."""
     input:
         report="results/f16/report.html",
         model="results/f16/model_updated.yaml",

@@ -7,7 +7,7 @@ complete(
 
 
 rule silverbox:
-    """The nonlinear springs of an electronic oscillator: --config silverbox_data=FOLDER."""
+    """Example: the springs of an electronic oscillator, --config silverbox_data=FOLDER."""
     input:
         report="results/silverbox/report.html",
         model="results/silverbox/model_updated.yaml",

@@ -160,9 +160,7 @@ def test_the_oscillator_s_published_coefficients_come_back():
     campaign, study = real("silverbox", "silverbox", silverbox_campaign)
     linear = linear_models(campaign, study)
     assert modes_of(linear["base"]).frequency == pytest.approx([68.58], abs=0.02)
-    cubic = run_candidate(
-        campaign, study, linear, "cubic_stiffness.ground", told=lambda text: None
-    )
+    cubic = run_candidate(campaign, study, linear, "cubic_stiffness.ground", told=lambda text: None)
     both = run_candidate(
         campaign, study, linear, "quadratic_stiffness.ground", cubic, told=lambda text: None
     )

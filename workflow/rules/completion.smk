@@ -2,7 +2,11 @@
 # `snakemake -j2 discrepancy --config campaign=FILE model=FILE.yaml` with structure.kind identified and no modes, and the examples.
 
 
-ruleorder: _completion_outcome > _discrepancy_verdict
+if not QUICK:
+
+    ruleorder: _completion_outcome > _discrepancy_verdict
+
+
 ruleorder: _completion_report > _discrepancy_report
 
 

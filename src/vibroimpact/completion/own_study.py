@@ -6,10 +6,11 @@ from itertools import combinations
 import numpy as np
 
 from vibroimpact.campaign.file import PARALLEL, force_units
+from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.units import TIME_DERIVATIVES, si_unit
 
-from .study import ELSEWHERE, Study
+from .study import Study
 
 LAWS_TRIED = (
     "cubic_stiffness",

@@ -4,8 +4,6 @@ places for local laws, and the candidates.
 
 from dataclasses import dataclass, field
 
-ELSEWHERE = "elsewhere"  # a place that no channel shows: its participation in the modes is fitted
-
 
 @dataclass(frozen=True)
 class Study:
