@@ -102,6 +102,31 @@ Law_at_place = Annotated[
     ),
 ]
 A_LIST = "must be a list of names law.place, as in [cubic_stiffness.joint]"
+Laws = Annotated[
+    tuple[Law_at_place, ...], only(lambda value: isinstance(value, list) and bool(value), A_LIST)
+]
+Laws_or_none = Annotated[
+    tuple[Law_at_place, ...], only(lambda value: isinstance(value, list), A_LIST)
+]
+Two_flags = Annotated[
+    tuple[bool, bool],
+    only(
+        _are_two_flags,
+        "must be two of true and false, for modes below and above the band, as in [true, true]",
+    ),
+]
+Flag = Annotated[bool, only(lambda value: isinstance(value, bool), "must be true or false")]
+Emphasis = Annotated[
+    float,
+    only(
+        lambda value: _is_number(value) and 0.0 <= value <= 2.0,
+        "must be between 0 (all levels alike) and 2",
+    ),
+]
+Place = Annotated[
+    str,
+    only(lambda value: isinstance(value, str), "must be the name of a place, such as joint"),
+]
 
 
 class MeasuredStructure(Section):
@@ -131,13 +156,7 @@ class MeasuredStructure(Section):
         " against the ground.",
         examples=[{"joint": {"a1": -1, "a2": 1}}],
     )
-    candidates: (
-        Annotated[
-            tuple[Law_at_place, ...],
-            only(lambda value: isinstance(value, list) and bool(value), A_LIST),
-        ]
-        | None
-    ) = Field(
+    candidates: Laws | None = Field(
         None,
         description="Laws that are tried, each at a place: `law.place`. Laws: `cubic_stiffness`,"
         " `quadratic_stiffness`, `quadratic_drag`, `saturation_stiffness`, `clearance`,"
@@ -146,61 +165,32 @@ class MeasuredStructure(Section):
         " level and at others that explain it nearly as well.",
         examples=[["cubic_stiffness.joint", "clearance.joint"]],
     )
-    additions: (
-        Annotated[tuple[Law_at_place, ...], only(lambda value: isinstance(value, list), A_LIST)]
-        | None
-    ) = Field(
+    additions: Laws_or_none | None = Field(
         None,
         description="Laws that are tried as second effect beside the best candidate; an empty list"
         f" for none. The place `{ELSEWHERE}` stands for one that no channel shows. Default: four"
         " laws at the best place.",
         examples=[["quadratic_stiffness.joint"]],
     )
-    residual_modes: (
-        Annotated[
-            tuple[bool, bool],
-            only(
-                _are_two_flags,
-                "must be two of true and false, for modes below and above the band, as in [true,"
-                " true]",
-            ),
-        ]
-        | None
-    ) = Field(
+    residual_modes: Two_flags | None = Field(
         None,
         description="Whether a mode below and a mode above the band stand for those outside it."
         " Default: where they lower the error at the lowest level.",
         examples=[[True, True]],
     )
-    mean: Annotated[bool, only(lambda value: isinstance(value, bool), "must be true or false")] = (
-        Field(
-            False,
-            description="Whether the mean of the response is compared as well. An even law shifts it.",
-            examples=[True],
-        )
+    mean: Flag = Field(
+        False,
+        description="Whether the mean of the response is compared as well. An even law shifts it.",
+        examples=[True],
     )
-    emphasis: Annotated[
-        float,
-        only(
-            lambda value: _is_number(value) and 0.0 <= value <= 2.0,
-            "must be between 0 (all levels alike) and 2",
-        ),
-    ] = Field(
+    emphasis: Emphasis = Field(
         0.0,
         description="How much more a strong level counts in the fit than a weak one: its relative"
         " error is multiplied by the RMS of its response over that of the largest level, to this"
         " power. Between 0 (all levels alike) and 2.",
         examples=[1],
     )
-    mounting: (
-        Annotated[
-            str,
-            only(
-                lambda value: isinstance(value, str), "must be the name of a place, such as joint"
-            ),
-        ]
-        | None
-    ) = Field(
+    mounting: Place | None = Field(
         None,
         description="Place whose equivalent stiffness and damping are tabled against the level."
         " Default: the place that explains the change with the level best.",
