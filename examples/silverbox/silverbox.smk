@@ -1,4 +1,5 @@
-# The Silverbox, an electronic Duffing oscillator: `snakemake -j2 silverbox --config silverbox_data=FOLDER`
+# The Silverbox, an electronic Duffing oscillator:
+# `snakemake -j2 silverbox --config silverbox_data=FOLDER`
 
 SILVERBOX = f"{EXAMPLES}/silverbox"
 complete(

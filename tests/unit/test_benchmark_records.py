@@ -11,11 +11,12 @@ from scipy.io import savemat
 from examples.f16.records import f16_campaign
 from examples.silverbox.published import silverbox_table
 from examples.silverbox.records import silverbox_campaign
-from vibroimpact.campaign.file import Channel, Level, campaign_dataset
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
 from vibroimpact.completion.candidate import run_candidate
 from vibroimpact.completion.levels import levels_of, naming_split
 from vibroimpact.completion.linear_models import linear_errors, linear_models
 from vibroimpact.completion.mounting import mounting_table
+from vibroimpact.completion.own_records import own_records
 from vibroimpact.completion.own_study import own_study
 from vibroimpact.completion.store import modes_of, trial_of
 from vibroimpact.completion.structure_file import StructureFile, read_structure
@@ -202,3 +203,17 @@ def test_coefficients_stand_beside_the_published_ones():
     assert found["cubic"]["published"] == 3.97
     assert found["cubic"]["relative_difference"] == pytest.approx(0.03 / 3.97)
     assert found["frequency_Hz"]["relative_difference"] == 0.0
+
+
+def test_records_with_periods_of_their_own_reach_the_levels(tmp_path):
+    write_f16(tmp_path, "Level1", 9)
+    write_f16(tmp_path, "Level3", 9)
+    write_f16(tmp_path, "Level2_Validation", 4, period=16384)
+    campaign = f16_campaign(tmp_path.glob("*.mat"))
+    campaign["force"].values[1] *= 2.0
+    campaign["response"].values[1] *= 2.0
+    campaign["load_rms"].values[1] *= 2.0
+    write_campaign(campaign, tmp_path / "f16.nc")
+    usable, _, measured = own_records(str(tmp_path / "f16.nc"))
+    assert measured.period_samples == 0 and "whole_records" not in usable.attrs
+    assert sorted(level.periods for level in levels_of(usable)[0]) == [3, 8, 8]

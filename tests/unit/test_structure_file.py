@@ -10,6 +10,7 @@ import pytest
 from vibroimpact.completion.local_laws import LAWS
 from vibroimpact.completion.own_study import check_names, default_places
 from vibroimpact.completion.structure_file import StructureFile, read_structure
+from vibroimpact.completion.study import laws_to_fit
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import ConfigError
 
@@ -168,3 +169,20 @@ def test_places_are_pairs_along_one_direction_and_every_channel_to_the_ground():
 def test_the_key_reference_names_every_law():
     described = MeasuredStructure.model_fields["candidates"].description
     assert set(LAWS) <= set(re.findall(r"`(\w+)`", described))
+
+
+def test_no_law_is_fitted_to_a_refused_campaign():
+    study = {
+        "name": "x",
+        "band_Hz": [5, 60],
+        "drive": "a1",
+        "residual_modes": [True, True],
+        "mean": False,
+        "places": {"joint": {"a1": 1.0}},
+        "candidates": ["clearance.joint"],
+        "additions": [],
+    }
+    prepared = {"study": study, "refused": None}
+    assert laws_to_fit(prepared, "candidates") == ("clearance.joint",)
+    assert laws_to_fit(prepared | {"refused": "Too noisy."}, "candidates") == ()
+    assert laws_to_fit({"study": None, "refused": "No channel."}, "additions") == ()

@@ -249,8 +249,8 @@ def jobs_of_study():
     return jobs
 
 
-# Campaigns whose structure is identified from their records, by the name of their folder of results:
-# (campaign file, StructureFile).
+# Campaigns whose structure is identified from their records: {name of the folder of results:
+# (campaign file, StructureFile)}.
 COMPLETED = {LOOKED_AT: (REQUEST.get("campaign", ""), OWN)} if OWN is not None else {}
 
 

@@ -1,5 +1,7 @@
-# A structure identified from its own records: linear models, a job per candidate effect, verdict, prediction and report.
-# `snakemake -j2 discrepancy --config campaign=FILE model=FILE.yaml` with structure.kind identified and no modes, and the examples.
+# A structure identified from its own records: linear models, a job per candidate effect, verdict,
+# prediction, report. It serves the examples and
+# `snakemake -j2 discrepancy --config campaign=FILE model=FILE.yaml`, where the model is of kind
+# identified and has no modes.
 
 
 if not QUICK:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
-from .quantities import Section
+from .quantities import Section, Unit
 
 ELSEWHERE = "elsewhere"  # stands for a place that no channel shows
 PLACE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -80,7 +80,7 @@ Place_name = Annotated[
     ),
 ]
 Coefficients = Annotated[
-    dict[str, float],
+    dict[str, Annotated[float, Unit("1")]],
     only(
         _are_coefficients,
         "must give a coefficient, not all 0, to each channel that counts, as in {a1: -1, a2: 1}",
@@ -118,6 +118,7 @@ Two_flags = Annotated[
 Flag = Annotated[bool, only(lambda value: isinstance(value, bool), "must be true or false")]
 Emphasis = Annotated[
     float,
+    Unit("1"),
     only(
         lambda value: _is_number(value) and 0.0 <= value <= 2.0,
         "must be between 0 (all levels alike) and 2",
