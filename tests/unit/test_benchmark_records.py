@@ -3,6 +3,7 @@ and the real records where they are at hand.
 """
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from vibroimpact.completion.own_records import own_records
 from vibroimpact.completion.own_study import own_study
 from vibroimpact.completion.store import modes_of, trial_of
 from vibroimpact.completion.structure_file import StructureFile, read_structure
+from vibroimpact.verdict.content import Estimate, FoundEffect
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT.parent / "shared" / "data"
@@ -194,10 +196,12 @@ def electronic(force, response):
 
 def test_coefficients_stand_beside_the_published_ones():
     modes = {"frequency": [68.58], "damping_ratio": [0.05]}
-    told = {"value": 4.0, "low": 3.9, "high": 4.1}
-    rows = silverbox_table(
-        {"effects": [{"parameters": {"cubic_stiffness": told}}]}, {"trial": {"modes": modes}}
+    cubic = FoundEffect(
+        id="cubic_stiffness",
+        location="ground",
+        parameters={"cubic_stiffness": Estimate(value=4.0, unit="V-2", low=3.9, high=4.1)},
     )
+    rows = silverbox_table(SimpleNamespace(effects=[cubic]), {"trial": {"modes": modes}})
     found = {row["quantity"]: row for row in rows}
     assert list(found) == ["frequency_Hz", "damping_ratio", "cubic"]
     assert found["cubic"]["published"] == 3.97
