@@ -51,14 +51,14 @@ test-all: $(READY) ## every test
 lint: $(READY) ## formatting, static checks and types
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/snakefmt --check Snakefile workflow/rules
+	$(BIN)/snakefmt --check Snakefile workflow/rules examples
 	$(BIN)/mypy
 	@$(BIN)/python tests/test_typed.py
 
 format: $(READY) ## format Python files and rules
 	$(BIN)/ruff check --fix --select I
 	$(BIN)/ruff format
-	$(BIN)/snakefmt Snakefile workflow/rules
+	$(BIN)/snakefmt Snakefile workflow/rules examples
 
 judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
 	.venv-judges/bin/python -m pytest tests/judges -rs

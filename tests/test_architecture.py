@@ -14,6 +14,7 @@ FILES = sorted(LIBRARY.rglob("*.py"))
 KERNELS = LIBRARY / "integration" / "kernels"
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
 RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
+EXAMPLES = sorted((ROOT / "examples").glob("*/*.py"))
 
 # From the lowest package up: a package, or a module beside them, imports only from those above it
 # in this list. docs/architecture.md says what each is for.
@@ -44,7 +45,6 @@ PACKAGES = (
     "effects",
     "discrepancy",
     "completion",
-    "f16",
     "validation",
     "reports",
     "figures",
@@ -295,3 +295,25 @@ def test_rules_hold_no_physics():
         code = re.sub(r"#.*|\"\"\".*?\"\"\"|r?f?\"[^\"]*\"", "", file.read_text())
         assert re.findall(r"\b\d+\.\d*\b|\b\d+e-?\d+\b", code) == [], file
         assert not re.search(r"^ +(run|shell):", file.read_text(), flags=re.M), file
+
+
+def test_the_library_and_its_rules_know_no_example():
+    names = "|".join(sorted({file.parent.name for file in EXAMPLES}))
+    files = [*LIBRARY.rglob("*.*"), *(ROOT / "workflow").rglob("*.*")]
+    named = [
+        file
+        for file in files
+        if file.suffix in (".py", ".smk", ".html", ".css")
+        and re.search(rf"{names}|f-16", file.name + file.read_text(encoding="utf-8"), flags=re.I)
+    ]
+    assert names == "f16|silverbox" and named == []
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda file: f"{file.parent.name}/{file.stem}")
+def test_examples_use_the_public_interface_only(example):
+    private = [
+        name
+        for name in imports(example)
+        if name.startswith("vibroimpact") and any(part.startswith("_") for part in name.split("."))
+    ]
+    assert private == []

@@ -62,7 +62,7 @@ def judged(law, folder, periodic=True):
     changes.
     """
     values, campaign, linear, _ = prepared_of(_campaign(law, periodic), folder)
-    linear, study = plain_values(linear), study_of("", values)
+    linear, study = plain_values(linear), study_of(values)
     singles = [
         plain_values(
             run_candidate(campaign, study, linear, f"{name}.{study.mounting}", told=silent)
@@ -92,7 +92,7 @@ def masses():
 def test_the_modes_of_the_masses_come_out_of_periodic_and_of_random_records(tmp_path, periodic):
     values, campaign, linear, _ = prepared_of(_campaign("nothing", periodic), tmp_path)
     frequency, shapes = masses()
-    base, study = modes_of(linear["base"]), study_of("", values)
+    base, study = modes_of(linear["base"]), study_of(values)
     assert (
         values["refused"] is None
         and study.drive == "upper"

@@ -3,24 +3,28 @@ and the real records where they are at hand.
 """
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.io import savemat
 
-from vibroimpact.completion.benchmark_records import (
-    benchmark_campaign,
-    f16_campaign,
-    silverbox_campaign,
-)
+from examples.f16.records import f16_campaign
+from examples.silverbox.published import silverbox_table
+from examples.silverbox.records import silverbox_campaign
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
 from vibroimpact.completion.candidate import run_candidate
 from vibroimpact.completion.levels import levels_of, naming_split
 from vibroimpact.completion.linear_models import linear_errors, linear_models
 from vibroimpact.completion.mounting import mounting_table
+from vibroimpact.completion.own_records import own_records
+from vibroimpact.completion.own_study import own_study
 from vibroimpact.completion.store import modes_of, trial_of
-from vibroimpact.completion.study import F16, SILVERBOX
+from vibroimpact.completion.structure_file import StructureFile, read_structure
+from vibroimpact.verdict.content import Estimate, FoundEffect
 
 ROOT = Path(__file__).resolve().parents[2]
+DATA = ROOT.parent / "shared" / "data"
 PERIOD = 8192
 
 
@@ -113,37 +117,39 @@ def test_the_output_beside_the_input_is_read(tmp_path):
 def test_files_that_are_not_the_benchmarks_are_named(tmp_path):
     savemat(tmp_path / "other.mat", {"Force": 1.0})
     with pytest.raises(ValueError, match="must hold the level"):
-        benchmark_campaign("f16", [tmp_path / "other.mat"])
+        f16_campaign([tmp_path / "other.mat"])
     savemat(tmp_path / "F16Data_FullMSine_Level1.mat", {"Force": 1.0})
     with pytest.raises(ValueError, match="has no variable Acceleration, Fs"):
-        benchmark_campaign("f16", [tmp_path / "F16Data_FullMSine_Level1.mat"])
+        f16_campaign([tmp_path / "F16Data_FullMSine_Level1.mat"])
     savemat(tmp_path / "SNJP_um_full_FNSI_5.mat", {"um": np.ones((10, 1)), "fs": 1.0})
     with pytest.raises(ValueError, match="belong together"):
-        benchmark_campaign("silverbox", [tmp_path / "SNJP_um_full_FNSI_5.mat"])
+        silverbox_campaign([tmp_path / "SNJP_um_full_FNSI_5.mat"])
 
 
-def real(config, key, pattern, name):
-    """The campaign of the real records, or a skip that says where to get them."""
-    files = sorted((ROOT / getattr(config, key)).glob(pattern))
+def real(name, folder, campaign_of):
+    """(campaign, Study) of the real records by the example's file, or a skip that says where to get
+    them.
+    """
+    files = sorted((DATA / folder).glob("*.mat"))
     if not files:
-        pytest.skip(
-            f"no records in {getattr(config, key)}: download the {name} from nonlinearbenchmark.org"
-        )
-    return benchmark_campaign(name, files)
+        pytest.skip(f"no records in {DATA / folder}: download them from nonlinearbenchmark.org")
+    campaign = campaign_of(files)
+    asked = read_structure(str(ROOT / "examples" / name / "structure.yaml"))
+    return campaign, own_study(name, asked, campaign, 0, asked.band_Hz)
 
 
-def test_the_aircraft_s_mounting_softens_and_two_methods_agree(study_config):
-    campaign = real(study_config, "f16_data", "F16Data_FullMSine_Level*.mat", "f16")
-    linear = linear_models(campaign, F16)
+def test_the_aircraft_s_mounting_softens_and_two_methods_agree():
+    campaign, study = real("f16", "f16_ground_vibration", f16_campaign)
+    linear = linear_models(campaign, study)
     base, levels = modes_of(linear["base"]), levels_of(campaign)[0]
     assert base.frequency[~base.residual][:6] == pytest.approx(
         [3.47, 3.97, 5.19, 6.61, 7.32, 9.17], abs=0.02
     )
     assert (
-        np.max(linear_errors(base, levels[0], F16.band_Hz)) < 0.11
-        and np.min(linear_errors(base, levels[-1], F16.band_Hz)) > 0.8
+        np.max(linear_errors(base, levels[0], study.band_Hz)) < 0.11
+        and np.min(linear_errors(base, levels[-1], study.band_Hz)) > 0.8
     )
-    rows, _ = mounting_table(levels, F16, linear)
+    rows, _ = mounting_table(levels, study, linear)
     found = {
         method: [row["k_N_per_m"] for row in rows if row["method"] == method]
         for method in ("peak", "broadband")
@@ -153,16 +159,65 @@ def test_the_aircraft_s_mounting_softens_and_two_methods_agree(study_config):
     )
 
 
-def test_the_oscillator_s_published_coefficients_come_back(study_config):
-    campaign = real(study_config, "silverbox_data", "SNJP_?m_full_FNSI_*.mat", "silverbox")
-    linear = linear_models(campaign, SILVERBOX)
+def test_the_oscillator_s_published_coefficients_come_back():
+    campaign, study = real("silverbox", "silverbox", silverbox_campaign)
+    linear = linear_models(campaign, study)
     assert modes_of(linear["base"]).frequency == pytest.approx([68.58], abs=0.02)
-    cubic = run_candidate(
-        campaign, SILVERBOX, linear, "cubic_stiffness.ground", told=lambda text: None
-    )
+    cubic = run_candidate(campaign, study, linear, "cubic_stiffness.ground", told=lambda text: None)
     both = run_candidate(
-        campaign, SILVERBOX, linear, "quadratic_stiffness.ground", cubic, told=lambda text: None
+        campaign, study, linear, "quadratic_stiffness.ground", cubic, told=lambda text: None
     )
     third, second = (float(term.values[0]) for term in trial_of(both["trial"]).terms)
     assert third == pytest.approx(3.97, rel=0.02) and second == pytest.approx(-0.26, rel=0.06)
     assert both["errors"]["100 mV"][0] < 0.01 and both["errors"]["20 mV"][0] < 0.03
+
+
+def test_units_of_an_electronic_law_are_powers_of_volts():
+    campaign = electronic("V", "V")
+    found = own_study("circuit", StructureFile(), campaign, 0, (1.0, 2.0))
+    assert [found.unit(unit) for unit in ("N", "N/m", "N/m3", "kg")] == ["V", "1", "V-2", "kg"]
+    mixed = own_study("circuit", StructureFile(), electronic("mV", "A"), 0, (1.0, 2.0))
+    assert mixed.unit("N/m2") == "V/(A)2"  # laws are fitted in SI
+
+
+def electronic(force, response):
+    """A campaign of one generic channel and units of its own."""
+    place = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    signal = np.ones((1, 1, 4))
+    return campaign_dataset(
+        signal,
+        signal,
+        [Channel("output", *place, response, "generic")],
+        [Channel("input", *place, force, "generic")],
+        [Level("1", np.nan)],
+        1.0,
+    )
+
+
+def test_coefficients_stand_beside_the_published_ones():
+    modes = {"frequency": [68.58], "damping_ratio": [0.05]}
+    cubic = FoundEffect(
+        id="cubic_stiffness",
+        location="ground",
+        parameters={"cubic_stiffness": Estimate(value=4.0, unit="V-2", low=3.9, high=4.1)},
+    )
+    rows = silverbox_table(SimpleNamespace(effects=[cubic]), {"trial": {"modes": modes}})
+    found = {row["quantity"]: row for row in rows}
+    assert list(found) == ["frequency_Hz", "damping_ratio", "cubic"]
+    assert found["cubic"]["published"] == 3.97
+    assert found["cubic"]["relative_difference"] == pytest.approx(0.03 / 3.97)
+    assert found["frequency_Hz"]["relative_difference"] == 0.0
+
+
+def test_records_with_periods_of_their_own_reach_the_levels(tmp_path):
+    write_f16(tmp_path, "Level1", 9)
+    write_f16(tmp_path, "Level3", 9)
+    write_f16(tmp_path, "Level2_Validation", 4, period=16384)
+    campaign = f16_campaign(tmp_path.glob("*.mat"))
+    campaign["force"].values[1] *= 2.0
+    campaign["response"].values[1] *= 2.0
+    campaign["load_rms"].values[1] *= 2.0
+    write_campaign(campaign, tmp_path / "f16.nc")
+    usable, _, measured = own_records(str(tmp_path / "f16.nc"))
+    assert measured.period_samples == 0 and "whole_records" not in usable.attrs
+    assert sorted(level.periods for level in levels_of(usable)[0]) == [3, 8, 8]

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from examples.silverbox.records import silverbox_campaign
 from vibroimpact.campaign.checks.file_checks import (
     CHECKS,
     COLUMNS,
@@ -17,7 +18,6 @@ from vibroimpact.campaign.checks.file_checks import (
 )
 from vibroimpact.campaign.checks.signal_faults import clipped_share
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, read_campaign
-from vibroimpact.completion.benchmark_records import silverbox_campaign
 from vibroimpact.records import write_record
 
 DEVELOPMENT = Path(__file__).parents[2].parent / "shared" / "data" / "campaigns"

@@ -12,6 +12,7 @@ from pydantic import TypeAdapter
 from vibroimpact.config.declared_keys import declared_sections, meaning_of, unit_of
 from vibroimpact.config.json_schema import json_schema
 from vibroimpact.config.key_reference import markdown
+from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.problems import members
 from vibroimpact.config.quantities import Section
 from vibroimpact.config.schema import Config
@@ -34,7 +35,7 @@ def sections_of(section):
 
 FIELDS = [
     pytest.param(name, field, id=f"{section.__name__}.{name}")
-    for section in sorted(sections_of(Config), key=lambda each: each.__name__)
+    for section in sorted(sections_of(Config) | {MeasuredStructure}, key=lambda each: each.__name__)
     for name, field in section.model_fields.items()
 ]
 

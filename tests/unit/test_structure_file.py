@@ -2,10 +2,16 @@
 is told with place, value and remedy.
 """
 
+import re
+from dataclasses import fields
+
 import pytest
 
+from vibroimpact.completion.local_laws import LAWS
 from vibroimpact.completion.own_study import check_names, default_places
 from vibroimpact.completion.structure_file import StructureFile, read_structure
+from vibroimpact.completion.study import laws_to_fit
+from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import ConfigError
 
 
@@ -76,6 +82,13 @@ def test_other_models_are_left_to_the_study(tmp_path, text):
             "structure.residual_modes = 'yes please' must be two of true and false",
         ),
         ("emphasis: -1", "structure.emphasis = -1 must be between 0"),
+        ("mounting: [joint]", "structure.mounting = ['joint'] must be the name of a place"),
+        ("peak_Hz: 20", "structure.peak_Hz = 20 must be two frequencies in Hz"),
+        ("places: {joint: 3}", "structure.places.joint = 3 must give a coefficient"),
+        ("places: [joint]", "structure.places = ['joint'] must be a block of places"),
+        ("additions: {}", "structure.additions = {} must be a list of names law.place"),
+        ("mean: 1", "structure.mean = 1 must be true or false"),
+        ("drive: [a1]", "structure.drive = ['a1'] must be the name of a channel"),
     ],
 )
 def test_what_is_wrong_is_told(tmp_path, key, told):
@@ -86,11 +99,44 @@ def test_what_is_wrong_is_told(tmp_path, key, told):
     )
 
 
+def test_every_problem_of_a_file_is_told_at_once(tmp_path):
+    text = """
+study: x
+structure:
+  kind: identified
+  band_Hz: [60, 5]
+  candidates: [cubic.joint, clearance]
+  additions: [cleerance.joint]
+"""
+    with pytest.raises(ConfigError) as error:
+        read_structure(written(tmp_path, text))
+    assert [
+        problem.removeprefix(f"{tmp_path}/x.yaml: ").split(" ")[0]
+        for problem in error.value.problems
+    ] == [
+        "unknown",
+        "structure.band_Hz",
+        "structure.candidates[1]",
+        "structure.candidates[0]",
+        "structure.additions[0]",
+    ]
+
+
+def test_every_declared_key_is_used_and_has_an_example():
+    keys = MeasuredStructure.model_fields
+    assert set(keys) - {"kind"} == {each.name for each in fields(StructureFile)} - {"source"}
+    for name, key in keys.items():
+        assert key.description.endswith(".") and len(key.examples) == 1, name
+    examples = {name: key.examples[0] for name, key in keys.items()}
+    assert MeasuredStructure.model_validate(examples).emphasis == 1.0
+
+
 def test_names_that_the_campaign_lacks_are_told_with_those_it_has():
     asked = StructureFile(
         drive="b",
         places={"joint": {"a1": -1, "c": 1}},
         candidates=("clearance.root",),
+        mounting="root",
         source="x.yaml",
     )
     with pytest.raises(ConfigError) as error:
@@ -99,7 +145,12 @@ def test_names_that_the_campaign_lacks_are_told_with_those_it_has():
         problem.removeprefix("x.yaml: structure.").split(" is ")[0]
         for problem in error.value.problems
     ]
-    assert places == ["drive = 'b'", "places.joint.c", "candidates: 'clearance.root'"]
+    assert places == [
+        "drive = 'b'",
+        "places.joint.c",
+        "candidates: 'clearance.root'",
+        "mounting = 'root'",
+    ]
     assert "the usable channels are a1, a2" in str(error.value)
 
 
@@ -113,3 +164,25 @@ def test_places_are_pairs_along_one_direction_and_every_channel_to_the_ground():
         "top_left": {"top left": 1.0},
         "side": {"side": 1.0},
     }
+
+
+def test_the_key_reference_names_every_law():
+    described = MeasuredStructure.model_fields["candidates"].description
+    assert set(LAWS) <= set(re.findall(r"`(\w+)`", described))
+
+
+def test_no_law_is_fitted_to_a_refused_campaign():
+    study = {
+        "name": "x",
+        "band_Hz": [5, 60],
+        "drive": "a1",
+        "residual_modes": [True, True],
+        "mean": False,
+        "places": {"joint": {"a1": 1.0}},
+        "candidates": ["clearance.joint"],
+        "additions": [],
+    }
+    prepared = {"study": study, "refused": None}
+    assert laws_to_fit(prepared, "candidates") == ("clearance.joint",)
+    assert laws_to_fit(prepared | {"refused": "Too noisy."}, "candidates") == ()
+    assert laws_to_fit({"study": None, "refused": "No channel."}, "additions") == ()

@@ -45,7 +45,7 @@ class Study:
     def __init__(self, folder):
         self.folder = folder
         ignore = shutil.ignore_patterns("__pycache__")
-        for name in ("src", "workflow", "config"):
+        for name in ("src", "workflow", "config", "examples"):
             shutil.copytree(ROOT / name, folder / name, ignore=ignore)
         shutil.copy(ROOT / "Snakefile", folder)
         (folder / "profiles").symlink_to(Path("workflow", "profiles"))
@@ -244,16 +244,34 @@ def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
 
 
 @pytest.mark.parametrize(
-    ("structure", "file", "jobs"),
-    [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)],
+    ("structure", "file", "table"),
+    [
+        ("f16", "F16Data_FullMSine_Level1.mat", "poles"),
+        ("silverbox", "SNJP_um_full_FNSI_5.mat", "published"),
+    ],
 )
-def test_a_measured_structure_is_planned_candidate_by_candidate(
-    study, tmp_path, structure, file, jobs
-):
+def test_an_example_goes_the_way_of_any_campaign(study, tmp_path, structure, file, table):
     (tmp_path / file).touch()
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data={tmp_path}")
     assert run.returncode == 0, run.stdout + run.stderr
-    assert re.search(rf"^total +{jobs}$", run.stdout + run.stderr, flags=re.M)
+    planned = re.findall(r"^_?(\w+) +1$", run.stdout + run.stderr, flags=re.M)
+    completion = {"completion_prepare", "completion_outcome", "completion_report"}
+    assert set(planned) == {structure, f"{structure}_records", f"{structure}_{table}"} | completion
+
+
+def test_a_campaign_named_as_an_example_is_compared_with_a_model(study, tmp_path):
+    (tmp_path / "f16.nc").touch()
+    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/f16.nc")
+    assert run.returncode == 0, run.stdout + run.stderr
+    planned = re.findall(r"^_?(\w+) +\d+$", run.stdout + run.stderr, flags=re.M)
+    assert "discrepancy_prepare" in planned
+    assert [name for name in planned if re.match("completion|f16", name)] == []
+
+
+def test_an_example_in_quick_mode_is_planned_all_the_same(study, tmp_path):
+    (tmp_path / "F16Data_FullMSine_Level1.mat").touch()
+    run = study.snakemake("--dry-run", "f16", "--config", f"f16_data={tmp_path}", "quick=yes")
+    assert run.returncode == 0, run.stdout + run.stderr
 
 
 def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):

@@ -2,11 +2,15 @@
 # inputs and params.
 import os
 import re
+import shlex
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 SOURCE = os.path.relpath(Path(workflow.basedir, "src"))
 SCRIPTS = os.path.relpath(Path(workflow.basedir, "workflow", "scripts"))
+EXAMPLES = os.path.relpath(Path(workflow.basedir, "examples"))
+PYTHON = shlex.quote(sys.executable)
 sys.path.insert(0, SOURCE)
 # Jobs inherit these: the library needs no installation, and -j jobs use one thread each.
 os.environ.update(
@@ -27,7 +31,7 @@ from vibroimpact.study.cases import (
 )
 from vibroimpact.completion.store import read_values
 from vibroimpact.completion.structure_file import read_structure
-from vibroimpact.completion.study import STUDIES, study_of
+from vibroimpact.completion.study import laws_to_fit
 from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.discrepancy.dag import (
     NULL_PARTS,
@@ -89,6 +93,7 @@ REQUEST = {
         "seconds",
         "compared_s",
         "draw",
+        *(f"{folder.name}_data" for folder in sorted(Path(EXAMPLES).glob("*/"))),
     )
     if name in config
 }
@@ -181,7 +186,12 @@ CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
 
 def library(script):
     """The library files that a script imports; an edit reruns only the stages that import it."""
-    return [str(file) for file in imported_files(f"{SCRIPTS}/{script}.py", SOURCE)]
+    return library_of(f"{SCRIPTS}/{script}.py")
+
+
+def library_of(program):
+    """The library files that a program imports."""
+    return [str(file) for file in imported_files(program, SOURCE)]
 
 
 def settings(stage):
@@ -239,70 +249,60 @@ def jobs_of_study():
     return jobs
 
 
-COMPLETION_FIGURES = ("frf_overlay", "prediction", "mounting", "where", "restoring_force")
-MEASURED = {
-    "f16": (
-        "f16_data",
-        STUDY.f16_data,
-        "F16Data_FullMSine_Level*.mat",
-        "the F-16 ground vibration test (Noel and Schoukens, 2017)",
-    ),
-    "silverbox": (
-        "silverbox_data",
-        STUDY.silverbox_data,
-        "SNJP_?m_full_FNSI_*.mat",
-        "the Silverbox records (Noel and Schoukens, 2017)",
-    ),
-}
+# Campaigns whose structure is identified from their records: {name of the folder of results:
+# (campaign file, StructureFile)}.
+COMPLETED = {LOOKED_AT: (REQUEST.get("campaign", ""), OWN)} if OWN is not None else {}
 
 
-def measured_files(wildcards):
-    """The record files of wildcard {structure} in the configured folder."""
-    return files_of_structure(wildcards.structure)
+def complete(name, campaign, model):
+    """Complete a campaign file with the structure of a YAML file, in results/<name>/.
 
-
-def files_of_structure(structure):
-    """The record files of a structure in the configured folder."""
-    key, folder, pattern, what = MEASURED[structure]
-    found = sorted(Path(folder).glob(pattern))
-    if not found:
-        shown = pattern.replace("*", "<N>").replace("?", "u")
-        sys.exit(
-            f"{key} = '{folder}' holds no file {shown}: download {what} from nonlinearbenchmark.org and give its folder: --config {key}=FOLDER"
-        )
-    return [str(file) for file in found]
-
-
-def own_study_file(wildcards):
-    """What was prepared of a user's campaign; nothing for the structures that are built in."""
-    return [] if wildcards.structure in STUDIES else f"results/{wildcards.structure}/study.json"
-
-
-def study_of_structure(structure):
-    """The Study of a structure, None where a user's campaign is refused.
-
-    That of a user's campaign is available once it is prepared.
+    A campaign of that name given by --config goes first.
     """
-    if structure in STUDIES:
-        return study_of(structure)
-    prepared = read_values(checkpoints._completion_prepare.get().output.study)
-    return None if prepared["refused"] else study_of(structure, prepared)
+    if "campaign" not in REQUEST or name != LOOKED_AT:
+        COMPLETED[name] = (campaign, read_structure(model))
 
 
-# What is completed: the structures that are built in, and the campaign that is looked at where its own modes are asked for.
-STRUCTURES = [*STUDIES, *([re.escape(LOOKED_AT)] if OWN is not None else [])]
-if len(set(STRUCTURES)) < len(STRUCTURES):
-    sys.exit(
-        f"campaign = '{REQUEST['campaign']}': results/{STRUCTURES[-1]} belongs to the built-in structure of that name: rename the file"
-    )
+def downloaded(key, default, pattern, what):
+    """The files in the folder that --config key=FOLDER gives, as an input.
+
+    The run stops with a sentence where there are none.
+    """
+
+    def paths(wildcards):
+        folder = REQUEST.get(key, default)
+        found = sorted(Path(folder).glob(pattern))
+        if not found:
+            shown = pattern.replace("*", "<N>").replace("?", "u")
+            sys.exit(
+                f"{key} = '{folder}' holds no file {shown}: download {what} from"
+                f" nonlinearbenchmark.org and give its folder: --config {key}=FOLDER"
+            )
+        return [str(file) for file in found]
+
+    return paths
+
+
+def campaign_completed(wildcards):
+    """The campaign file of wildcard {structure}; a sentence where --config names one that is not
+    there.
+    """
+    if wildcards.structure == LOOKED_AT and OWN is not None:
+        return requested("campaign", "FILE")(wildcards)
+    return COMPLETED[wildcards.structure][0]
+
+
+def structure_completed(wildcards):
+    """What is stated of the structure of wildcard {structure}."""
+    return asdict(COMPLETED[wildcards.structure][1])
 
 
 def law_files(structure, kind):
     """The files of a structure's "candidates", or of "additions" to the best of them."""
-    study = study_of_structure(structure)
+    prepared = checkpoints._completion_prepare.get(structure=structure).output.study
     return [
         f"results/{structure}/{kind}/{name}.json"
-        for name in (getattr(study, kind) if study else ())
+        for name in laws_to_fit(read_values(prepared), kind)
     ]
 
 
@@ -314,24 +314,6 @@ def candidate_files(wildcards):
 def addition_files(wildcards):
     """The files of all second effects tried with the best candidate of wildcard {structure}."""
     return law_files(wildcards.structure, "additions")
-
-
-def completion_figure_files(structure):
-    """The figures of a completion; structure may be the wildcard in braces."""
-    return [
-        f"results/{structure}/figures/{name}.{suffix}"
-        for name in COMPLETION_FIGURES
-        for suffix in ("png", "pdf", "csv", "txt")
-    ]
-
-
-def completion_files(structure):
-    """What a completion of a measured structure holds."""
-    tables = ("campaign.nc", "mounting.csv", "prediction.csv", "verdict.json", "model_updated.yaml")
-    return [
-        *(f"results/{structure}/{name}" for name in tables),
-        *completion_figure_files(structure),
-    ]
 
 
 def path_files(wildcards):
@@ -376,7 +358,6 @@ def targets():
 
 
 wildcard_constraints:
-    structure="|".join(STRUCTURES),
     law=r"[a-z_]+\.[A-Za-z0-9_-]+",
     load=r"[0-9.e+-]+",
 

@@ -1,57 +1,52 @@
-# Measured structures (f16, silverbox): records by their lines, linear models, a job per candidate effect, verdict, prediction, figures.
+# A structure identified from its own records: linear models, a job per candidate effect, verdict,
+# prediction, report. It serves the examples and
+# `snakemake -j2 discrepancy --config campaign=FILE model=FILE.yaml`, where the model is of kind
+# identified and has no modes.
 
 
-rule _completion_records:
+if not QUICK:
+
+    ruleorder: _completion_outcome > _discrepancy_verdict
+
+
+ruleorder: _completion_report > _discrepancy_report
+
+
+wildcard_constraints:
+    structure="|".join(map(re.escape, COMPLETED)),
+
+
+checkpoint _completion_prepare:
     input:
-        library=library("completion_records"),
-        records=measured_files,
+        library=library("completion_prepare"),
+        campaign=campaign_completed,
     output:
         campaign="results/{structure}/campaign.nc",
-    log:
-        "results/{structure}/logs/completion_records.log",
-    benchmark:
-        "results/{structure}/benchmarks/completion_records.tsv"
-    threads: 1
-    resources:
-        mem_mb=1500,
-        runtime=30,
-    params:
-        config=settings("completion_records"),
-    message:
-        "Records of {wildcards.structure} as a campaign"
-    script:
-        "../scripts/completion_records.py"
-
-
-rule _completion_linear:
-    input:
-        library=library("completion_linear"),
-        campaign="results/{structure}/campaign.nc",
-    output:
+        study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
         mounting="results/{structure}/mounting.csv",
     log:
-        "results/{structure}/logs/completion_linear.log",
+        "results/{structure}/logs/completion_prepare.log",
     benchmark:
-        "results/{structure}/benchmarks/completion_linear.tsv"
+        "results/{structure}/benchmarks/completion_prepare.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=2000,
         runtime=30,
     params:
-        config=settings("completion"),
+        structure=structure_completed,
     message:
-        "Linear models of {wildcards.structure}, level by level"
+        "{wildcards.structure}: records, linear models, places"
     script:
-        "../scripts/completion_linear.py"
+        "../scripts/completion_prepare.py"
 
 
 rule _completion_candidate:
     input:
         library=library("completion_candidate"),
         campaign="results/{structure}/campaign.nc",
+        study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
-        study=own_study_file,
     output:
         candidate="results/{structure}/candidates/{law}.json",
     log:
@@ -63,7 +58,7 @@ rule _completion_candidate:
         mem_mb=1500,
         runtime=30,
     params:
-        config=settings("completion"),
+        law="{law}",
     message:
         "{wildcards.structure}: {wildcards.law}"
     script:
@@ -74,9 +69,9 @@ rule _completion_addition:
     input:
         library=library("completion_addition"),
         campaign="results/{structure}/campaign.nc",
+        study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
         singles=candidate_files,
-        study=own_study_file,
     output:
         candidate="results/{structure}/additions/{law}.json",
     log:
@@ -88,17 +83,18 @@ rule _completion_addition:
         mem_mb=1500,
         runtime=30,
     params:
-        config=settings("completion"),
+        law="{law}",
     message:
         "{wildcards.structure}: {wildcards.law} as second effect"
     script:
         "../scripts/completion_addition.py"
 
 
-rule _completion_verdict:
+rule _completion_outcome:
     input:
-        library=library("completion_verdict"),
+        library=library("completion_outcome"),
         campaign="results/{structure}/campaign.nc",
+        study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
         singles=candidate_files,
         additions=addition_files,
@@ -108,43 +104,46 @@ rule _completion_verdict:
         completed="results/{structure}/completed.json",
         model="results/{structure}/model_updated.yaml",
     log:
-        "results/{structure}/logs/completion_verdict.log",
+        "results/{structure}/logs/completion_outcome.log",
     benchmark:
-        "results/{structure}/benchmarks/completion_verdict.tsv"
+        "results/{structure}/benchmarks/completion_outcome.tsv"
     threads: 1
     resources:
         mem_mb=1500,
         runtime=30,
     params:
-        config=settings("completion"),
+        structure=structure_completed,
     message:
         "{wildcards.structure}: verdict and prediction of every level"
     script:
-        "../scripts/completion_verdict.py"
+        "../scripts/completion_outcome.py"
 
 
-rule _completion_figures:
+rule _completion_report:
     input:
-        library=library("completion_figures"),
+        library=library("completion_report"),
+        template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
         campaign="results/{structure}/campaign.nc",
+        study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
         mounting="results/{structure}/mounting.csv",
         prediction="results/{structure}/prediction.csv",
         verdict="results/{structure}/verdict.json",
         completed="results/{structure}/completed.json",
     output:
-        figures=completion_figure_files("{structure}"),
+        page="results/{structure}/report.html",
+        figures=directory("results/{structure}/figures"),
     log:
-        "results/{structure}/logs/completion_figures.log",
+        "results/{structure}/logs/completion_report.log",
     benchmark:
-        "results/{structure}/benchmarks/completion_figures.tsv"
+        "results/{structure}/benchmarks/completion_report.tsv"
     threads: 1
     resources:
         mem_mb=1500,
-        runtime=30,
+        runtime=10,
     params:
-        config=settings("completion"),
+        name="{structure}",
     message:
-        "{wildcards.structure}: figures"
+        "{wildcards.structure}: results/{wildcards.structure}/report.html"
     script:
-        "../scripts/completion_figures.py"
+        "../scripts/completion_report.py"

@@ -8,13 +8,10 @@ from vibroimpact.job_log import redirect_output
 
 redirect_output(snakemake.log[0])
 campaign = read_campaign(snakemake.input.campaign)
-study = study_of(
-    snakemake.wildcards.structure,
-    read_values(snakemake.input.study) if snakemake.input.study else None,
-)
+study = study_of(read_values(snakemake.input.study))
 linear = read_values(snakemake.input.linear)
 singles = [read_values(path) for path in snakemake.input.singles]
 write_values(
-    run_addition(campaign, study, linear, snakemake.wildcards.law, singles),
+    run_addition(campaign, study, linear, snakemake.params.law, singles),
     snakemake.output.candidate,
 )

@@ -8,11 +8,8 @@ from vibroimpact.job_log import redirect_output
 
 redirect_output(snakemake.log[0])
 campaign = read_campaign(snakemake.input.campaign)
-study = study_of(
-    snakemake.wildcards.structure,
-    read_values(snakemake.input.study) if snakemake.input.study else None,
-)
+study = study_of(read_values(snakemake.input.study))
 linear = read_values(snakemake.input.linear)
 write_values(
-    run_candidate(campaign, study, linear, snakemake.wildcards.law), snakemake.output.candidate
+    run_candidate(campaign, study, linear, snakemake.params.law), snakemake.output.candidate
 )

@@ -16,7 +16,7 @@ tables = read_table(files.mounting), read_table(files.prediction)
 shown = saved_sheets(
     snakemake.output.figures,
     read_kept(files.campaign),
-    study_of("", prepared),
+    study_of(prepared),
     linear,
     completed,
     verdict,

@@ -7,6 +7,7 @@ import time
 import numpy as np
 from scipy.stats import chi2
 
+from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.spectra.periodic_lines import line_power
 from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
 
@@ -18,7 +19,6 @@ from .misfit import CALIBRATION_DB, disagreement, misfit_summary, regions
 from .naming import believed, choose
 from .record_checks import check_periods
 from .store import modes_of, trial_of, trial_values
-from .study import ELSEWHERE
 from .trial import Fit, Records, with_offsets
 from .updated_model import is_relative
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.campaign.checks.file_checks import check_file, usable_signals
 from vibroimpact.campaign.file import PARALLEL, SAME_POINT_M, valid_count
-from vibroimpact.campaign.signals import campaign_signals, transfer_band
+from vibroimpact.campaign.signals import campaign_signals, common_period, transfer_band
 
 from .long_records import mean_coherences, quick_length
 
@@ -31,8 +31,9 @@ def own_records(path):
     file of any state.
 
     Channels that are unusable in some record, contact forces, and records without a usable force
-    are left out. Attributes of the Dataset: period_samples (0: records without period, cut to their
-    last stretch), transient_periods. Raises Unusable; its argument `rows` are the checks.
+    are left out. Attributes of the Dataset: period_samples (0: each record has a period of its own,
+    or whole_records says that they have none and are cut to their last stretch), transient_periods.
+    Raises Unusable; its argument `rows` are the checks.
     """
     campaign, rows = check_file(path)
     refusals = [row["message"] for row in rows if row["level"] == "refuse"]
@@ -60,10 +61,11 @@ def own_records(path):
     kept = _named_apart(campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown)))
     measured = campaign_signals(kept)
     _one_force(measured, rows)
-    if measured.period_samples:
+    periods = [measured.period_samples or common_period([signals[0]]) for signals in measured.force]
+    if all(periods):
         transient = max(
             int(kept.attrs.get("transient_periods", 0)),
-            *(unsettled_periods(signals, measured.period_samples) for signals in measured.response),
+            *map(unsettled_periods, measured.response, periods),
         )
         return (
             kept.assign_attrs(period_samples=measured.period_samples, transient_periods=transient),

@@ -6,10 +6,11 @@ from itertools import combinations
 import numpy as np
 
 from vibroimpact.campaign.file import PARALLEL, force_units
+from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.config.reading import ConfigError
-from vibroimpact.units import TIME_DERIVATIVES
+from vibroimpact.units import TIME_DERIVATIVES, si_unit
 
-from .study import ELSEWHERE, Study
+from .study import Study
 
 LAWS_TRIED = (
     "cubic_stiffness",
@@ -55,6 +56,11 @@ def check_names(asked, names):
                     f"structure.{key}: '{name}' is at no place: the places are"
                     f" {', '.join(places[:-1])}"
                 )
+    if asked.mounting is not None and asked.mounting not in places[:-1]:
+        problems.append(
+            f"structure.mounting = '{asked.mounting}' is no place: the places are"
+            f" {', '.join(places[:-1])}"
+        )
     if problems:
         raise ConfigError([f"{asked.source}: {problem}" for problem in problems])
 
@@ -107,8 +113,8 @@ def default_band(levels, kinds, excited_Hz, rate):
 
 
 def own_study(name, asked, campaign, drive, band_Hz):
-    """Return the Study of a campaign before its places are ranked: candidates and mounting may
-    still be empty.
+    """Return the Study of a campaign before its places are ranked: candidates, mounting and peak_Hz
+    may still be empty.
     """
     names = [str(each) for each in campaign["channel_name"].values]
     places = (
@@ -128,18 +134,29 @@ def own_study(name, asked, campaign, drive, band_Hz):
         candidates=tuple(asked.candidates or ()),
         additions=tuple(asked.additions or ()),
         emphasis=float(asked.emphasis),
+        mounting=asked.mounting or "",
+        peak_Hz=tuple(map(float, asked.peak_Hz or ())),
         units=_units(campaign, drive),
     )
 
 
 def _units(campaign, drive):
-    """The units of laws where forces or responses are not mechanical: as the file has them; {}
-    where they are.
+    """The units of laws where the response is no mechanical motion, from those of force and
+    response in SI; {} for a mechanical one.
     """
-    force, kind = force_units(campaign, 0), str(campaign["channel_kind"].values[drive])
+    kind, moved = (str(campaign[f"channel_{key}"].values[drive]) for key in ("kind", "units"))
     if kind != "generic":
         return {}
-    moved = str(campaign["channel_units"].values[drive])
+    force, moved = si_unit(force_units(campaign, 0), "excitation"), si_unit(moved, kind)
+    if force == moved:  # powers of one unit
+        return {
+            "N": force,
+            "m": force,
+            "N/m": "1",
+            "N/m2": f"{force}-1",
+            "N/m3": f"{force}-2",
+            "N s2/m2": f"s2 {force}-1",
+        }
     return {
         "N": force,
         "m": moved,

@@ -109,8 +109,8 @@ def prepared(name, path, asked, told=print):
         study,
         candidates=candidates,
         additions=additions,
-        mounting=tried[0],
-        peak_Hz=_peak(base, linear, levels, ranking[0]["place"], study),
+        mounting=study.mounting or tried[0],
+        peak_Hz=study.peak_Hz or _peak(base, linear, levels, ranking[0]["place"], study),
     )
     missed = linear_errors(base, levels[0], study.band_Hz)
     if np.median(missed) > MISSED:

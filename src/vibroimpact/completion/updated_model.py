@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.contact.local_elements import COLUMNS
 from vibroimpact.records import plain_values
 
 from .local_laws import LAWS
 from .store import trial_of
-from .study import ELSEWHERE
 
 AXIS, DIRECTION = (
     "x",

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+from .measured_structure import MeasuredStructure
 from .problems import kind_of, members
 from .quantities import Length, Pattern, Range, Section, Unit
 from .schema import Config
@@ -77,6 +78,11 @@ class DeclaredSection:
 def declared_sections() -> list[DeclaredSection]:
     """Return every section of the configuration, from the top level down, each place once."""
     return list(dict.fromkeys(_sections(Config, "")))
+
+
+def declared_measured_structure() -> DeclaredSection:
+    """Return the section of a file that states a structure to be identified from its campaign."""
+    return next(_sections(MeasuredStructure, "model.structure"))
 
 
 def _sections(section: type[Section], place: str) -> Iterator[DeclaredSection]:

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from .declared_keys import DeclaredKey, DeclaredSection, declared_sections, place_of
+from .declared_keys import (
+    DeclaredKey,
+    DeclaredSection,
+    declared_measured_structure,
+    declared_sections,
+    place_of,
+)
 
 INTRODUCTION = """\
 # Configuration keys
@@ -28,6 +34,13 @@ def markdown() -> str:
     parts = [INTRODUCTION]
     for place, sections in groupby(_by_place(), key=lambda section: section.place):
         parts += _at_place(place, list(sections))
+    measured = declared_measured_structure()
+    parts += [
+        f'<a id="{anchor(measured)}"></a>\n\n## `structure` without `modes`\n',
+        "The only section of the file that `--config model=FILE` gives beside a campaign.\n",
+        f"{_escaped(measured.meaning)}\n",
+        _table(measured),
+    ]
     return "\n".join(parts)
 
 

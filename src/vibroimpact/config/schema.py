@@ -41,9 +41,6 @@ from .quantities import (
 from .structure import Damping, ModalDamping, Structure
 from .supports import Initial, LocalElement, PointMass, Support
 
-F16_DATA = "../shared/data/f16_ground_vibration"
-SILVERBOX_DATA = "../shared/data/silverbox"
-
 
 class Basis(Section):
     """The vectors that span the reduced model of a tube, or of matrices with more than 400 degrees
@@ -353,14 +350,3 @@ class Config(Section):
         " statistics.",
     )
     overlay: Overlay = Field(Overlay(), description="The campaign of figure 5.")
-    f16_data: str = Field(
-        F16_DATA,
-        description="Folder with the records of the F-16 ground vibration test. Only the target"
-        " `f16` needs it.",
-        examples=[F16_DATA],
-    )
-    silverbox_data: str = Field(
-        SILVERBOX_DATA,
-        description="Folder with the Silverbox records. Only the target `silverbox` needs it.",
-        examples=[SILVERBOX_DATA],
-    )

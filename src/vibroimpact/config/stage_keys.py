@@ -126,10 +126,6 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
         "identification.stiffness_range_N_per_m",
     ),
     "timing": ("study",),
-    "f16": ("f16_data",),
-    "silverbox": ("silverbox_data",),
-    "completion_records": ("f16_data", "silverbox_data"),
-    "completion": (),
     "validation": tuple(Config.model_fields),
 }
 

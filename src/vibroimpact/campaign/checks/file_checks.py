@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.file import CampaignError, contract_problems, decode_texts, fill_missing
-from vibroimpact.campaign.signals import campaign_signals, transfer, transfer_band
+from vibroimpact.campaign.signals import campaign_signals, common_period, transfer, transfer_band
 from vibroimpact.records import RecordError, read_dataset
 
 from .linear_record import (
@@ -205,6 +205,7 @@ def _time(campaign, measured):
 def _signal_faults(measured):
     """Yield rows of faults of single signals, record by record."""
     for record, name in enumerate(measured.records):
+        period = measured.period_samples or common_period([measured.force[record][0]])
         forces = [
             (measured.forces[index], signal) for index, signal in enumerate(measured.force[record])
         ]
@@ -214,10 +215,10 @@ def _signal_faults(measured):
         ]
         for place, (channel, signal) in enumerate(forces + responses):
             what = "The record is left out" if place == 0 else "It is left out of this record"
-            yield from _faults_of(signal, measured, name, channel, what)
+            yield from _faults_of(signal, period, measured, name, channel, what)
 
 
-def _faults_of(signal, measured, record, channel, what):
+def _faults_of(signal, period, measured, record, channel, what):
     holes = missing_samples(signal)
     if signal.size == 0 or holes:
         count, first = holes or (0, 0)
@@ -240,9 +241,7 @@ def _faults_of(signal, measured, record, channel, what):
         )
         return
     # Only the last period of a periodic signal: every peak recurs in each period.
-    share = clipped_share(
-        signal[-measured.period_samples :] if 0 < measured.period_samples < signal.size else signal
-    )
+    share = clipped_share(signal[-period:] if 0 < period < signal.size else signal)
     if share is not None:
         yield _row(
             "clipping",

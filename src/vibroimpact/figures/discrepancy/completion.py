@@ -11,8 +11,8 @@ import numpy as np
 from vibroimpact.completion.levels import levels_of
 from vibroimpact.completion.local_laws import LAWS
 from vibroimpact.completion.store import modes_of, trial_of
-from vibroimpact.completion.study import ELSEWHERE
 from vibroimpact.completion.trial import Records
+from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, METHODS, ORANGE, RED, ordered_colours
 from vibroimpact.integration.steady_response import steady_elements

@@ -1,26 +1,28 @@
-"""The pole methods on real records: the ground vibration test of an F-16, whose wing carries a
-payload on a mounting with clearance.
+"""Poles and shapes of the F-16 near 7.3 Hz, where its wing carries a payload on a loose mounting.
+
+    python examples/f16/poles.py POLES.csv FILE.mat [FILE.mat ...]
 
 Source of the data: J.P. Noel, M. Schoukens, "F-16 aircraft benchmark based on ground vibration test
 data", Workshop on Nonlinear System Identification Benchmarks, 2017. The force is a random-phase
-multisine of whole periods, so that spectra at its lines need no window, and since the force was
-measured the methods work on frequency responses instead of output spectra. There is no model: no
-(k, c).
+multisine of whole periods: spectra at its lines need no window. Since the force was measured, the
+methods work on frequency responses instead of output spectra. There is no model: no (k, c).
 """
 
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from scipy.io import loadmat
 
-from .identify.lscf import NormalEquations
-from .identify.ods import deflection_shape
-from .identify.peak import LEVELS, find_peak, fit_peak
-from .identify.stabilisation import stabilisation_chart, stable_column
-from .linear.poles import frequency_of
-from .spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.lscf import NormalEquations
+from vibroimpact.identify.ods import deflection_shape
+from vibroimpact.identify.peak import LEVELS, find_peak, fit_peak
+from vibroimpact.identify.stabilisation import stabilisation_chart, stable_column
+from vibroimpact.linear.poles import frequency_of
+from vibroimpact.records import write_table
+from vibroimpact.spectra.window_leakage import spectral_kernel
 
 PERIOD_SAMPLES = 8192
 TRANSIENT_PERIODS = 1
@@ -209,3 +211,11 @@ def _quality(method, pole):
         if pole["damping_ratio_standard_error"] <= WEAK_ABOVE * pole["damping_ratio"]
         else "weak"
     )
+
+
+if __name__ == "__main__":
+    poles_file, *record_files = sys.argv[1:]
+    try:
+        write_table(pole_table(record_files), poles_file)
+    except ValueError as error:
+        sys.exit(str(error))
