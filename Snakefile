@@ -1,4 +1,5 @@
-# The study, end to end: `snakemake -j2`, another configuration with `--configfile config/smoke.yaml`.
+# The study, end to end: `snakemake -j2`, or with another configuration,
+# `snakemake -j2 --configfile config/smoke.yaml`.
 from snakemake.utils import min_version
 
 min_version("9.0")
@@ -8,7 +9,9 @@ if not workflow.configfiles:
     configfile: "config/study.yaml"
 
 
-include: "workflow/rules/common.smk"
+include: "workflow/rules/configuration.smk"
+include: "workflow/rules/study_files.smk"
+include: "workflow/rules/completed_campaigns.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/identify.smk"

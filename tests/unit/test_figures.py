@@ -154,8 +154,8 @@ def sheets(config, study, tmp_path_factory):
 
 
 def declared():
-    """The names of FIGURES in workflow/rules/common.smk."""
-    text = (ROOT / "workflow" / "rules" / "common.smk").read_text()
+    """The names of FIGURES in workflow/rules/study_files.smk."""
+    text = (ROOT / "workflow" / "rules" / "study_files.smk").read_text()
     groups = ast.literal_eval(re.search(r"^FIGURES = (\{.*?^\})", text, flags=re.M | re.S)[1])
     return [name for names in groups.values() for name in names]
 

@@ -1,4 +1,5 @@
 # A stand-in for the measured campaign of figure 5, where overlay.campaign names no file.
+from vibroimpact.study.cases import nearest_loads
 
 
 rule _synthetic_campaign:

@@ -1,4 +1,5 @@
-# The same in a hurry: `snakemake -j2 discrepancy --config campaign=FILE quick=yes`. One job: starting one per candidate would take as long as the candidates.
+# The quick mode: `snakemake -j2 discrepancy --config campaign=FILE quick=yes`. It is one job,
+# because starting a job per candidate would take as long as the candidates.
 
 
 rule _discrepancy_quick:

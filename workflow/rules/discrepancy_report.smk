@@ -1,4 +1,4 @@
-# The figures and the report page of a discrepancy run. `snakemake -j2 discrepancy_report --config campaign=FILE` once it has its verdict.
+# The figures and the report page of a discrepancy run.
 
 DISCREPANCY_FIGURES = (
     "discrepancy_map",
@@ -9,7 +9,7 @@ DISCREPANCY_FIGURES = (
 )
 
 
-# A full run after a quick one has the same products: by its mode it does not take those for its own.
+# The mode is a parameter: a full run does not take the products of a quick one for its own.
 rule _discrepancy_mode:
     input:
         library=library("discrepancy_mode"),

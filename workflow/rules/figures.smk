@@ -1,4 +1,4 @@
-# Every figure as PNG and PDF, its data as CSV, its caption as text; common.smk names them.
+# Every figure as PNG and PDF, its data as CSV, its caption as text; study_files.smk names them.
 
 
 rule _figures_model:

@@ -1,5 +1,9 @@
-# Equivalent stiffness and damping per case by every method, then the table that compares the methods. One identification for the loads
-# of a half decade, as rules _identify_from_0.316 and so on: starting and preparing the linear tube takes longer than the cases of one load.
+# Equivalent stiffness and damping per case by every method, and the table that compares the
+# methods. The loads of half a decade are identified in one job (rules _identify_from_0.316 and so
+# on), because a job needs longer to start and to prepare the linear tube than for the cases of one
+# load.
+from vibroimpact.study.cases import loads_by_half_decade
+
 for START, LOADS in loads_by_half_decade(STUDY.grid).items():
 
     rule _identify:
@@ -25,7 +29,10 @@ for START, LOADS in loads_by_half_decade(STUDY.grid).items():
         params:
             config=settings("identify"),
         message:
-            f"Identification at {' to '.join(dict.fromkeys((LOADS[0], LOADS[-1])))} N RMS: {len(LOADS) * CASES_PER_LOAD} of {len(CASES)} cases"
+            (
+                f"Identification at {' to '.join(dict.fromkeys((LOADS[0], LOADS[-1])))} N RMS:"
+                f" {len(LOADS) * CASES_PER_LOAD} of {len(CASES)} cases"
+            )
         script:
             "../scripts/identify.py"
 

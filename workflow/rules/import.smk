@@ -1,4 +1,4 @@
-# Measurements in. `snakemake -j2 import_campaign --config import=FOLDER`, `snakemake -j1 quicklook --config campaign=FILE`
+# Raw measurements to a campaign file, and a first look at one.
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
 
@@ -16,7 +16,7 @@ rule import_campaign:
         table=f"results/{IMPORTED}/import.csv",
         text=f"results/{IMPORTED}/import.txt",
         checks=f"results/{IMPORTED}/checks.csv",
-        figure=[f"results/{IMPORTED}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
+        figure=[f"results/{IMPORTED}/quicklook.{kind}" for kind in ("png", "pdf", "csv", "txt")],
     log:
         f"results/{IMPORTED}/logs/import_campaign.log",
     benchmark:
@@ -41,9 +41,7 @@ rule quicklook:
     output:
         checks=f"results/{LOOKED_AT}/quicklook_checks.csv",
         text=f"results/{LOOKED_AT}/quicklook_checks.txt",
-        figure=[
-            f"results/{LOOKED_AT}/quicklook.{suffix}" for suffix in ("png", "pdf", "csv", "txt")
-        ],
+        figure=[f"results/{LOOKED_AT}/quicklook.{kind}" for kind in ("png", "pdf", "csv", "txt")],
     log:
         f"results/{LOOKED_AT}/logs/quicklook.log",
     benchmark:

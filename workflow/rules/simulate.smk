@@ -1,6 +1,7 @@
-# One job per load: its gaps and seeds are integrated side by side; one file of each kind per case. Where the time series are kept the
-# spectra are made of those files, by a rule of their own; else in the simulation itself, which then writes no series. Without an
-# identification there are no spectra.
+# One job per load: its gaps and seeds are integrated side by side, with one file of each kind per
+# case. Where the time series are kept, spectra are made from those files by a rule of their own.
+# Otherwise the simulation makes them and writes no series. Without an identification there are no
+# spectra.
 if KEPT or STUDY.identification is None:
 
     ruleorder: _simulate > _simulate_to_spectra

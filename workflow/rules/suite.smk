@@ -1,6 +1,57 @@
-# The hidden-effect suite: `snakemake -j2 suite --config suite_seed=1 count=90 shard=0/1`. Shards add up; what is done is kept. Without a seed it is that of
-# the frozen thresholds. seconds=49 makes the same campaigns longer, draw=1 simulates with other seeds; `suite_difference` holds such a suite against the plain one.
-# count=judged: the page of what has a verdict so far; add=FILE,FILE: campaigns.csv of shards judged elsewhere, which are not judged again.
+# Campaigns in which another code hid an effect, judged:
+# `snakemake -j2 suite --config suite_seed=1 count=90 shard=0/1`.
+# Shards add up, and a rerun continues. Without suite_seed the seed comes from the file of
+# thresholds. seconds=49 makes the campaigns longer, draw=1 simulates with other seeds, and
+# suite_difference compares such a suite with the plain one. count=judged writes the page of the
+# campaigns that have a verdict; add=FILE,FILE adds the campaigns.csv of shards that were judged
+# elsewhere.
+from vibroimpact.discrepancy.dag import (
+    SUITE_NAME,
+    SUITE_S,
+    frozen_seed,
+    numbers_added,
+    numbers_judged,
+    shard_of,
+    suite_name,
+)
+
+
+def suite_campaigns(suite, added):
+    """The numbers of the campaigns to judge.
+
+    They are those of the shard that are not in the campaigns.csv files `added`; with count=judged,
+    those that have a verdict.
+    """
+    count = REQUEST.get("count", "12")
+    try:
+        known = numbers_added(added, Path(suite).name)
+        numbers = (
+            numbers_judged(suite)
+            if count == "judged"
+            else shard_of(count, REQUEST.get("shard", "0/1"))
+        )
+    except ValueError as problem:
+        sys.exit(str(problem))
+    return [number for number in numbers if number not in known]
+
+
+def plain_verdicts(seed, suite, campaigns):
+    """The verdicts of the plain suite of the same seed, as an input function.
+
+    Exits with a sentence where `suite` is the plain one itself.
+    """
+
+    def paths(wildcards):
+        plain = f"results/{suite_name(seed)}"
+        if suite == plain:
+            sys.exit(
+                "suite_difference compares with the plain suite: say what differs, as in --config"
+                " seconds=49 or draw=1"
+            )
+        return [f"{plain}/campaign_{number:04d}/verdict.json" for number in campaigns]
+
+    return paths
+
 
 SUITE_SEED = int(
     REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py"))
@@ -38,7 +89,7 @@ rule _suite_bank:
     params:
         config=MODEL.model_dump(mode="json"),
     message:
-        "Candidates simulated on a campaign with nothing hidden, for all campaigns of {wildcards.suite}"
+        "Candidates without a hidden effect, for all campaigns of {wildcards.suite}"
     script:
         "../scripts/suite_bank.py"
 
@@ -67,7 +118,7 @@ rule _suite_campaign:
 
 
 rule suite:
-    """Judge the discrepancy workflow on campaigns in which an effect is hidden: --config count=N."""
+    """Judge verdicts on campaigns in which an effect is hidden: --config count=N."""
     input:
         library=library("suite"),
         template=f"{SOURCE}/vibroimpact/reports/suite_page.html",

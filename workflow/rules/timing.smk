@@ -1,4 +1,4 @@
-# Where the time of a study went: `snakemake timing`, on request, since it is out of date after every job.
+# Where the time of a study went. On request only, since every job would make it out of date.
 
 
 rule timing:

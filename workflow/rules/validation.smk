@@ -1,4 +1,4 @@
-# Verification and validation: reference cases, convergence, the paper's claims, prediction; `snakemake -j2 validation`.
+# Verification and validation: reference cases, convergence, claims of the paper, prediction.
 VALIDATION = "results/validation"
 REFERENCE_GROUPS = ("frequencies", "impacts", "r11_stops_10", "r11_stops_100")
 PREDICTION_CASES = ("left_out", "gaps", "second_tube")

@@ -1,4 +1,5 @@
-# Convergence: frequencies with mesh and contact points, runs with step and modes, spectra with buffers. The default study's tube.
+# Convergence of the tube of the default study: frequencies with mesh and contact points, runs with
+# step and modes, spectra with averages.
 CONVERGENCE = {
     "frequencies": ("mesh", "contact_points", "contact_points_refined"),
     "statistics": ("period", "statistics"),

@@ -1,4 +1,5 @@
-# Third-party codes as judges; those that are not installed are named in judges_present.txt. `make judges` installs the Python ones.
+# Other codes as judges. `make judges` installs those in Python; judges_present.txt names the
+# absent.
 rule _validation_judges:
     input:
         library=library("validation_judges"),

@@ -1,0 +1,129 @@
+# What a run is asked for, and its checked configuration: every problem ends it before a job is
+# planned.
+import os
+import shlex
+import sys
+from pathlib import Path
+
+SOURCE = os.path.relpath(Path(workflow.basedir, "src"))
+SCRIPTS = os.path.relpath(Path(workflow.basedir, "workflow", "scripts"))
+EXAMPLES = os.path.relpath(Path(workflow.basedir, "examples"))
+PYTHON = shlex.quote(sys.executable)
+sys.path.insert(0, SOURCE)
+# Jobs inherit these: the library needs no installation, and -j jobs use one thread each.
+os.environ.update(
+    PYTHONPATH=os.path.abspath(SOURCE),
+    OMP_NUM_THREADS="1",
+    OPENBLAS_NUM_THREADS="1",
+    MKL_NUM_THREADS="1",
+    NUMBA_NUM_THREADS="1",
+)
+
+from vibroimpact.completion.structure_file import read_structure
+from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
+
+# Values of --config that are not keys of the study.
+REQUEST = {
+    name: str(config.pop(name))
+    for name in (
+        "import",
+        "campaign",
+        "model",
+        "quick",
+        "bank",
+        "suite_seed",
+        "count",
+        "shard",
+        "add",
+        "seconds",
+        "compared_s",
+        "draw",
+        *(f"{folder.name}_data" for folder in sorted(Path(EXAMPLES).glob("*/"))),
+    )
+    if name in config
+}
+
+
+def number_asked(name):
+    """The number of --config name=NUMBER, None where it is not given.
+
+    Exits with a sentence where it is not a positive number.
+    """
+    try:
+        value = float(REQUEST[name]) if name in REQUEST else None
+    except ValueError:
+        value = -1
+    if value is not None and not value > 0:
+        sys.exit(
+            f"{name} = '{REQUEST[name]}': give a positive number, as in"
+            f" --config {name}={1 if name == 'draw' else 49}"
+        )
+    return value
+
+
+LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
+DISCREPANCY = f"results/{LOOKED_AT}"
+COMPARED_S = number_asked("compared_s")
+DRAW = int(number_asked("draw") or 0)
+QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
+
+
+def requested(name, example):
+    """The path of --config name=PATH, as an input function.
+
+    Exits with a sentence where it is not given or does not exist.
+    """
+
+    def path(wildcards):
+        if not os.path.exists(REQUEST.get(name, "")):
+            sys.exit(
+                f"{name} = '{REQUEST.get(name, '')}' is not there: give it as in"
+                f" --config {name}={example}"
+            )
+        return REQUEST[name]
+
+    return path
+
+
+def checked_config():
+    """The Config of the files and --config values given to snakemake.
+
+    Exits with a sentence for every problem before any job is planned.
+    """
+    files = [os.path.relpath(file) for file in workflow.configfiles]
+    try:
+        for file in files:
+            read_yaml(file)
+        return check_config(config, " + ".join(files))
+    except ConfigError as error:
+        sys.exit(str(error))
+
+
+def checked_model():
+    """The Config of the model that a campaign is compared with.
+
+    It is that of --config model=FILE, or the study's where none is given.
+    """
+    try:
+        return load_config(REQUEST["model"]) if "model" in REQUEST and OWN is None else STUDY
+    except ConfigError as error:
+        sys.exit(str(error))
+
+
+def own_structure():
+    """The StructureFile of --config model=FILE if its modes are to be identified, else None."""
+    try:
+        return read_structure(REQUEST["model"]) if "model" in REQUEST else None
+    except ConfigError as error:
+        sys.exit(str(error))
+
+
+STUDY = checked_config()
+OWN = own_structure()
+if OWN is not None and QUICK:
+    sys.exit(
+        f"quick = '{REQUEST['quick']}': a structure that is identified from its campaign has no"
+        " quick mode: leave it out, or narrow band_Hz and candidates"
+    )
+MODEL = checked_model()
+RESULTS = f"results/{STUDY.study}"

@@ -1,0 +1,130 @@
+# The names of the files of a study, and the inputs and params that rules get from functions.
+from vibroimpact.config.stage_keys import stage_params
+from vibroimpact.provenance import imported_files
+from vibroimpact.study.cases import (
+    all_cases,
+    ids_of_load,
+    load_values,
+    loads_by_half_decade,
+    value_text,
+)
+
+FIGURES = {
+    "model": (
+        "figure_01_layout",
+        "figure_02_free_modes",
+        "figure_03_contact_law",
+        "figure_04_first_frequency",
+        "basis_quality",
+    ),
+    "response": (
+        "figure_05_overlay",
+        "figure_06_levels",
+        "figure_07_overlay_of_loads",
+        "figure_08_load_and_stiffness",
+        "in_plane_share",
+    ),
+    "identification": (
+        "figure_09_poles",
+        "figure_09_stabilisation",
+        "figure_10_shapes",
+        "figure_11_singular_values",
+        "figure_12_broadband",
+    ),
+    "checks": ("figure_13_equivalent_support", "collapse", "energy_balance", "contact_statistics"),
+}
+
+CASES = [case.id for case in all_cases(STUDY.grid)]
+KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
+CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
+
+
+def library(script):
+    """The library files that a script imports; an edit reruns only the stages that import it."""
+    return library_of(f"{SCRIPTS}/{script}.py")
+
+
+def library_of(program):
+    """The library files that a program imports."""
+    return [str(file) for file in imported_files(program, SOURCE)]
+
+
+def settings(stage):
+    """The part of the configuration that a stage uses."""
+    return stage_params(STUDY, stage)
+
+
+def files_of_load(folder, suffix="nc"):
+    """The files of the cases of wildcard {load}, one per gap and seed."""
+    return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in ids_of_load(STUDY.grid, "{load}")]
+
+
+def files_of_loads(folder, loads, suffix="nc"):
+    """The files of the cases of some loads."""
+    return [
+        f"{RESULTS}/{folder}/{case}.{suffix}"
+        for load in loads
+        for case in ids_of_load(STUDY.grid, load)
+    ]
+
+
+def files_of_study(folder, suffix="nc"):
+    """The files of all cases."""
+    return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in CASES]
+
+
+def series_of_load():
+    """The time series that a simulation writes.
+
+    There are none where the study neither keeps them nor identifies anything from them.
+    """
+    return files_of_load("timeseries") if KEPT or STUDY.identification is not None else []
+
+
+def figure_files(group):
+    """The files of a group of figures."""
+    return [
+        f"{RESULTS}/figures/{name}.{suffix}"
+        for name in FIGURES[group]
+        for suffix in ("png", "pdf", "csv", "txt")
+    ]
+
+
+def jobs_of_study():
+    """The names of the benchmark files and logs of the jobs of a complete study."""
+    loads = [value_text(load) for load in load_values(STUDY.grid)]
+    jobs = ["basis", *(f"simulate_load_{load}" for load in loads)]
+    if STUDY.identification is None:
+        jobs.append("statistics")
+    else:
+        jobs += [f"spectra_load_{load}" for load in loads] if KEPT else []
+        jobs += [f"identify_{start}" for start in loads_by_half_decade(STUDY.grid)]
+        jobs += ["consistency", *(f"figures_{group}" for group in FIGURES)]
+        jobs += ["synthetic_campaign"] if not STUDY.overlay.campaign else []
+    return jobs
+
+
+def targets():
+    """The files of a complete study: tables, figures, and time series where they are kept.
+
+    Without an identification: statistics of every case, and time series where they are kept.
+    """
+    series = files_of_study("timeseries") if KEPT else []
+    if STUDY.identification is None:
+        return [f"{RESULTS}/statistics.csv", *series]
+    figures = [file for group in FIGURES for file in figure_files(group)]
+    tables = [
+        f"{RESULTS}/{name}"
+        for name in (
+            "consistency.csv",
+            "consistency_summary.csv",
+            "consistency_collapse.csv",
+            "consistency.nc",
+        )
+    ]
+    return [*tables, *figures, *series]
+
+
+wildcard_constraints:
+    law=r"[a-z_]+\.[A-Za-z0-9_-]+",
+    load=r"[0-9.e+-]+",
