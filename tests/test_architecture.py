@@ -222,11 +222,11 @@ def test_the_public_interface_is_for_users_only():
     assert [file for file in [*FILES, *SCRIPTS] if imports(file) & public] == []
 
 
-def test_no_drawer_for_odds_and_ends():
+def test_no_module_is_called_utils_or_helpers():
     assert [file for file in FILES if re.search("util|helper|common|misc", file.stem)] == []
 
 
-def test_every_file_and_public_function_says_what_it_is():
+def test_every_file_and_public_function_has_a_docstring():
     silent = []
     for file in FILES:
         tree = tree_of(file)

@@ -95,7 +95,7 @@ def test_modes_of_the_lowest_level_are_those_of_the_masses():
 
 
 @pytest.mark.parametrize("law", joint.LAWS)
-def test_the_law_is_named_on_a_level_it_has_not_seen(law):
+def test_law_is_identified_on_a_held_out_level(law):
     linear, candidates = fitted(law)
     base = modes_of(linear["base"])
     reference = {
@@ -123,7 +123,7 @@ def test_parameters_come_back(law, wanted, tolerance):
     assert {name: found[name] for name in wanted} == pytest.approx(wanted, rel=tolerance)
 
 
-def test_the_verdict_names_the_joint_and_the_completed_model_runs_in_the_study():
+def test_verdict_names_the_joint_and_completed_model_runs():
     linear, candidates = fitted("friction")
     campaign = campaign_of("friction")
     verdict, rows, completed = conclude(

@@ -141,7 +141,7 @@ def test_linear_effects_are_read_back(study_config, tmp_path, effects, wanted):
         assert low < best < high
 
 
-def test_one_effect_is_not_made_two(study_config, tmp_path):
+def test_single_effect_is_not_split_in_two(study_config, tmp_path):
     prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", MASS))
     assert (
         prepared.adopted["name"].split("@")[0] == "added_mass"
@@ -149,7 +149,7 @@ def test_one_effect_is_not_made_two(study_config, tmp_path):
     )
 
 
-def test_a_record_that_touches_hands_linear_effects_on_to_simulation(study_config, tmp_path):
+def test_contact_in_lowest_record_defers_linear_effects(study_config, tmp_path):
     soft = ("root_stiffness@roots", {"translation": 1.0e8, "rotation": 420.0})
     prepared = prepare(
         study_config, file_of(study_config, tmp_path / "campaign.nc", soft, loads=(0.5, 1.0))
@@ -164,7 +164,7 @@ def test_a_record_that_touches_hands_linear_effects_on_to_simulation(study_confi
     )
 
 
-def test_a_known_fault_of_the_chain_is_no_evidence_for_another_effect(study_config, tmp_path):
+def test_adopted_gain_error_is_no_evidence_for_other_effects(study_config, tmp_path):
     """With a channel's gain adopted, the bare model fits the lowest record: an effect that changes
     nothing there gains nothing there.
     """
@@ -187,7 +187,7 @@ def test_a_known_fault_of_the_chain_is_no_evidence_for_another_effect(study_conf
     assert linear_score(bench, None) < known - 30.0
 
 
-def test_a_pair_of_a_fault_and_an_effect_is_put_where_each_belongs(study_config, tmp_path):
+def test_gain_error_and_stinger_are_separated(study_config, tmp_path):
     path = file_of(study_config, tmp_path / "campaign.nc", STINGER, gains=(1.0, 1.4, 1.0, 1.0, 1.0))
     prepared = prepare(study_config, path)
     found = read(prepared)
@@ -202,9 +202,7 @@ def test_a_pair_of_a_fault_and_an_effect_is_put_where_each_belongs(study_config,
     assert bench.bare.omega[0] > 1.05 * attach(study_config, bench.campaign).omega[0]
 
 
-def test_what_stands_in_the_place_of_a_linear_effect_sits_where_a_spring_would_do_as_much(
-    study_config, tmp_path
-):
+def test_nonlinear_substitutes_sit_where_a_spring_would(study_config, tmp_path):
     """A rod at the shaker may be a friction or a stop there, not one at the top of a leg; what acts
     all along the tube is never ruled out by a place.
     """

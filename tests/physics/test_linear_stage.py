@@ -101,7 +101,7 @@ def test_gains_are_read_back(rig):
     np.testing.assert_allclose(np.nanmean(ratio, axis=1), GAINS[:3], atol=0.006)
 
 
-def test_a_late_channel_is_told_and_how_late(rig):
+def test_channel_delay_is_estimated(rig):
     _, fit = rig
     np.testing.assert_allclose(fit.delay[:3], [0.0, 4.0 / RATE, 0.0], atol=5e-5)
 
@@ -111,7 +111,7 @@ def test_a_late_channel_is_told_and_how_late(rig):
     [{0: 7.0e-3}, {2: -12.0e-3}, {0: 3.0e-3, 1: 9.0e-3}],
     ids=["7 ms", "12 ms early", "two channels"],
 )
-def test_a_channel_so_late_that_it_spoils_the_fit_is_turned_back_first(rig, late):
+def test_large_channel_delay_is_removed_before_the_fit(rig, late):
     """Between its resonances no phase of each mode stands for milliseconds: what the channel leaves
     is no sign that the fit is of another structure.
     """
@@ -131,7 +131,7 @@ def test_a_channel_so_late_that_it_spoils_the_fit_is_turned_back_first(rig, late
     np.testing.assert_allclose(found.log_frequency, fit.log_frequency, atol=3.0e-4)
 
 
-def test_nuisances_within_their_priors_are_no_finding(rig):
+def test_nuisances_within_priors_are_not_significant(rig):
     bench, fit = rig
     _, _, chi_square, pulls = corrected_nuisance(bench)
     values = linear.difference(
@@ -156,7 +156,7 @@ def test_linear_responses_are_those_of_the_integration(rig, study_config):
     assert fit.share[[0, 1, 2]].max() < 4e-3
 
 
-def test_plates_of_different_clearance_are_put_into_the_model(study_config):
+def test_plate_clearances_are_taken_from_the_campaign(study_config):
     force = np.ones((2, 1, 64))
     campaign = campaign_of(np.zeros((2, len(PLACES), 64)), force)
     model = attach(
@@ -179,7 +179,7 @@ def test_plates_of_different_clearance_are_put_into_the_model(study_config):
         )
 
 
-def test_modes_far_from_the_model_s_are_found(study_config):
+def test_modes_far_from_the_model_are_found(study_config):
     samples = int(RATE * SECONDS)
     force = 0.2 * band_limited_noise(np.random.default_rng(5), samples, RATE, (5.0, 200.0))[
         None, None
@@ -213,7 +213,7 @@ def test_modes_far_from_the_model_s_are_found(study_config):
     assert fit.residual[:3].max() < 1.5 and not fit.delay.any()
 
 
-def test_a_mass_may_sit_where_only_a_channel_is(study_config):
+def test_mass_may_sit_at_a_channel_point(study_config):
     blank = campaign_of(np.zeros((2, len(PLACES), 64)), np.zeros((2, 1, 64)))
     blank["channel_point"][2] = [-0.3, 0.0, 0.533]
     points = with_channel_points(study_config, blank).points
@@ -221,7 +221,7 @@ def test_a_mass_may_sit_where_only_a_channel_is(study_config):
     assert set(points) == {*study_config.points, "leg_y", "bend_y"}  # the apex has a name already
 
 
-def test_a_channel_of_a_point_s_name_does_not_move_the_point(study_config):
+def test_channel_named_like_a_point_does_not_move_it(study_config):
     blank = campaign_of(np.zeros((2, len(PLACES), 64)), np.zeros((2, 1, 64)))
     blank["channel_name"][2], blank["channel_point"][2] = "shaker", [-0.3, 0.0, 0.533]
     points = with_channel_points(study_config, blank).points
@@ -229,9 +229,7 @@ def test_a_channel_of_a_point_s_name_does_not_move_the_point(study_config):
     assert points["at_shaker"] == (-0.3, 0.0, 0.533)
 
 
-def test_the_first_seconds_of_a_run_from_rest_are_not_compared_with_a_record_under_way(
-    rig, study_config
-):
+def test_start_up_is_excluded_for_records_under_way(rig, study_config):
     bench, _ = rig
     under_way = Workbench(study_config, bench.campaign.assign_attrs(start_up="stationary"))
     assert bench.settled.all()

@@ -83,14 +83,14 @@ def bench(study_config):
     return Workbench(study_config, campaign(np.stack([response, response])), SECONDS)
 
 
-def test_alone_the_record_is_no_reading_of_the_bare_modes(bench):
+def test_record_with_spring_does_not_fit_the_linear_modes(bench):
     assert bench.measured_fit.residual.max() > 3.0
     assert not linear.credible(
         bench.measured_reading, bench.bare_reading, bench.measured_fit.covariance
     )
 
 
-def test_beside_the_spring_its_modes_and_gains_are_told(bench):
+def test_modes_and_gains_are_recovered_given_the_spring(bench):
     told = nuisance_beside(bench, SPRING, COEFFICIENT)
     for mode in TRUE.modes:
         here, there = list(told.modes).index(mode), list(TRUE.modes).index(mode)
@@ -99,11 +99,11 @@ def test_beside_the_spring_its_modes_and_gains_are_told(bench):
     np.testing.assert_allclose(told.gain / told.gain[2], TRUE.gain / TRUE.gain[2], atol=0.015)
 
 
-def test_beside_a_spring_that_bends_nothing_nothing_is_told(bench):
+def test_negligible_spring_gives_no_nuisance_estimate(bench):
     assert nuisance_beside(bench, SPRING, {"coefficient": 6.0e6}) is None
 
 
-def test_the_lowest_record_leads_to_the_spring_without_them(bench):
+def test_spring_is_located_before_nuisances_are_known(bench):
     """Over four decades of the coefficient, modes 0.3 % and dampings 15 % off: to within a third,
     which is where nuisances are told.
     """
@@ -115,7 +115,7 @@ def test_the_lowest_record_leads_to_the_spring_without_them(bench):
     assert nuisance_beside(bench, SPRING, SPRING.physical(found, scales)) is not None
 
 
-def test_nuisances_are_few_beyond_their_limit_and_what_bends_a_record_pulls_many():
+def test_nonlinear_record_pulls_many_nuisances():
     faulty_gain = [
         1.4,
         0.0,
@@ -138,14 +138,14 @@ def test_nuisances_are_few_beyond_their_limit_and_what_bends_a_record_pulls_many
     assert not linear.plausible(bent)
 
 
-def test_what_is_told_costs_its_sigmas():
+def test_nuisance_cost_is_half_the_sum_of_squared_sigmas():
     assert linear.cost(TRUE) == pytest.approx(
         0.5 * sum(np.square([0.99850, -0.66733, 1.39762, -1.27833, 1.5, -1.0])), rel=1e-4
     )
     assert linear.cost(linear.neutral([0, 2], 3)) == 0.0
 
 
-def test_a_nuisance_has_moved_by_half_a_sigma_of_any_correction():
+def test_nuisance_moves_at_half_a_sigma():
     none = linear.neutral([0], 1)
     assert not moved(
         linear.Nuisance(none.modes, np.array([1.001]), np.array([1.04]), np.array([0.995])), none
@@ -189,12 +189,12 @@ def at(bent, null, coefficient):
     return SimpleNamespace(mean=mean, free=free, own=lambda null: null.freed(free))
 
 
-def test_alone_the_record_is_none_of_the_bare_model(bent, null):
+def test_linear_model_does_not_explain_the_record(bent, null):
     assert bent.measured_fit.residual.max() > 3.0
     assert naming.bare_explained(bent, null, bent.measured_features)[0] < priors.EXPLAINED_Z
 
 
-def test_directions_are_of_the_lowest_record_but_for_gains(bent, null):
+def test_nuisance_directions_act_on_lowest_record_and_gains(bent, null):
     count = 2 * len(bent.measured_fit.modes)
     directions = nuisance_directions(bent, bent.values, null.records, 50)
     assert directions.shape == (2 * count + len(PLACES), *null.mean.shape)
@@ -207,7 +207,7 @@ def test_directions_are_of_the_lowest_record_but_for_gains(bent, null):
     np.testing.assert_allclose(gains.max(axis=-1), 20.0 * np.log10(1.02), rtol=1e-12)
 
 
-def test_a_linear_record_leaves_nothing_free(bent, null):
+def test_linear_record_leaves_no_free_nuisance(bent, null):
     linear_bench = bent.corrected_by(bent.nuisance)
     linear_bench.nonlinear_low = False
     assert nuisance_directions(linear_bench, bent.values, null.records, 50).shape == (
@@ -216,7 +216,7 @@ def test_a_linear_record_leaves_nothing_free(bent, null):
     )
 
 
-def test_beside_the_spring_nuisances_are_what_is_left(bent, null):
+def test_true_spring_leaves_only_nuisances(bent, null):
     found = at(bent, null, COEFFICIENT["coefficient"])
     without = naming.explained(
         bent, null.freed(found.free[:1]), found.mean, bent.measured_features
@@ -229,7 +229,7 @@ def test_beside_the_spring_nuisances_are_what_is_left(bent, null):
 
 
 @pytest.mark.parametrize("coefficient", [6.0e6, 6.0e9])
-def test_beside_another_spring_nuisances_are_not_what_is_left(bent, null, coefficient):
+def test_wrong_spring_leaves_more_than_nuisances(bent, null, coefficient):
     found = at(bent, null, coefficient)
     assert (
         naming.explained(bent, found.own(null), found.mean, bent.measured_features)[0]
@@ -237,7 +237,7 @@ def test_beside_another_spring_nuisances_are_not_what_is_left(bent, null, coeffi
     )
 
 
-def test_a_finalist_is_judged_again_with_unknowns_free(bent, null):
+def test_finalist_is_scored_again_with_free_nuisances(bent, null):
     scales, seeds = {"cubic": 8.0e10}, 4
     unit = SPRING.normalised(COEFFICIENT, scales)
     features = bent.features(

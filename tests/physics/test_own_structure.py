@@ -89,7 +89,7 @@ def masses():
 
 
 @pytest.mark.parametrize("periodic", [True, False])
-def test_the_modes_of_the_masses_come_out_of_periodic_and_of_random_records(tmp_path, periodic):
+def test_modes_from_periodic_and_random_records(tmp_path, periodic):
     values, campaign, linear, _ = prepared_of(_campaign("nothing", periodic), tmp_path)
     frequency, shapes = masses()
     base, study = modes_of(linear["base"]), study_of("", values)
@@ -104,7 +104,7 @@ def test_the_modes_of_the_masses_come_out_of_periodic_and_of_random_records(tmp_
     assert study.band_Hz[0] == pytest.approx(3.0, abs=0.2) and 25.0 < study.band_Hz[1] < 46.0
 
 
-def test_a_cubic_spring_between_the_masses_is_named_where_it_is(tmp_path):
+def test_cubic_spring_is_named_and_located(tmp_path):
     verdict, rows, completed, study, campaign = judged("cubic", tmp_path)
     assert study.mounting == "upper-lower"
     assert (
@@ -125,12 +125,12 @@ def test_a_cubic_spring_between_the_masses_is_named_where_it_is(tmp_path):
     ).sensor_names == ("upper.x", "lower.x")
 
 
-def test_where_nothing_is_hidden_nothing_is_named(tmp_path):
+def test_linear_structure_gets_verdict_none(tmp_path):
     verdict = judged("nothing", tmp_path)[0]
     assert verdict.verdict == "none" and verdict.effects == [] and verdict.ambiguity_set == []
 
 
-def test_hysteresis_that_the_catalogue_lacks_is_friction_at_most(tmp_path):
+def test_bouc_wen_hysteresis_is_at_most_called_friction(tmp_path):
     verdict = judged("bouc_wen", tmp_path)[0]
     assert verdict.verdict in ("named", "partly_explained", "ambiguous", "unknown")
     assert {each for ids in verdict.ambiguity_set for each in ids} <= {
@@ -139,7 +139,7 @@ def test_hysteresis_that_the_catalogue_lacks_is_friction_at_most(tmp_path):
     }
 
 
-def test_a_law_is_found_in_records_without_period(tmp_path):
+def test_cubic_spring_is_found_in_random_records(tmp_path):
     verdict, rows, *_ = judged("cubic", tmp_path, periodic=False)
     assert (
         verdict.verdict in ("named", "partly_explained")
@@ -150,7 +150,7 @@ def test_a_law_is_found_in_records_without_period(tmp_path):
     )
 
 
-def test_a_sensor_against_the_force_is_turned(tmp_path):
+def test_sensor_opposite_to_the_force_is_reversed(tmp_path):
     values, campaign, linear, _ = prepared_of(
         two_masses.campaign("nothing", periods=3, turned=True), tmp_path
     )
@@ -158,7 +158,7 @@ def test_a_sensor_against_the_force_is_turned(tmp_path):
     assert campaign["channel_direction"].values[0].tolist() == [0.0, 0.0, 1.0]
 
 
-def test_two_levels_are_not_testable_and_say_what_to_measure(tmp_path):
+def test_two_levels_are_not_testable(tmp_path):
     campaign = two_masses.campaign("nothing", periods=3, levels=(1.0, 4.0), splits=("fit", "fit"))
     values, kept, linear, _ = prepared_of(campaign, tmp_path)
     verdict, rows, completed = outcome(kept, None, values, plain_values(linear), [], [], {}, silent)
@@ -171,7 +171,7 @@ def test_two_levels_are_not_testable_and_say_what_to_measure(tmp_path):
     assert len(rows) == 4
 
 
-def test_a_response_that_does_not_follow_the_force_is_refused(tmp_path):
+def test_response_unrelated_to_the_force_is_refused(tmp_path):
     campaign = two_masses.campaign("nothing", periods=3)
     campaign["response"].values[:] = np.random.default_rng(3).standard_normal(
         campaign["response"].shape
@@ -184,7 +184,7 @@ def test_a_response_that_does_not_follow_the_force_is_refused(tmp_path):
     )
 
 
-def test_periods_that_hold_the_transient_are_counted():
+def test_transient_periods_are_counted():
     steady = np.random.default_rng(1).standard_normal((2, 500))
     signal = np.tile(steady, 6) + 1.0e-3 * np.random.default_rng(2).standard_normal((2, 3000))
     signal[:, :900] += 5.0 * np.exp(-np.arange(900) / 100.0)
@@ -197,7 +197,7 @@ def test_periods_that_hold_the_transient_are_counted():
     )
 
 
-def test_the_transient_is_taken_from_a_record_without_period():
+def test_transient_is_removed_from_a_random_record():
     rate, count = 100.0, 4096
     force = np.random.default_rng(8).standard_normal(2 * count)
     lines = 2j * np.pi * np.fft.rfftfreq(2 * count, 1.0 / rate)

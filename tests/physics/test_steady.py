@@ -49,7 +49,7 @@ def test_a_spring_and_a_damper_shift_the_receptance():
     assert force == pytest.approx(-(k + s * c) * exact, rel=1.0e-3)
 
 
-def test_without_elements_force_the_linear_steady_state_is_there_at_once():
+def test_linear_steady_state_needs_no_iteration():
     modes, model = oscillator()
     motion, _ = steady_elements(model, sine(18, 2.0), periods_before=0)
     assert motion[0, 0, 18] == pytest.approx(modes.frf(np.array([18 / PERIOD]))[0, 0], rel=1.0e-5)
@@ -95,7 +95,7 @@ def test_a_cubic_spring_follows_the_duffing_curve():
     )
 
 
-def test_a_motion_without_bound_is_told():
+def test_unbounded_motion_is_reported():
     _, model = oscillator(cubic=-5.0e6)
     with pytest.raises(IntegrationError, match="no bounded motion"):
         steady_elements(model, sine(20, 500.0))

@@ -50,7 +50,7 @@ def runs_of(thrown):
     return [(int(lane >= LANES - thrown), FAR, 0) for lane in range(LANES)]
 
 
-def test_the_runs_that_stay_are_untouched_by_one_that_is_thrown_off(leaning, forces):
+def test_diverged_run_does_not_change_the_others(leaning, forces):
     kinds = ["acceleration"] * leaning.sensor_shapes.shape[1]
     found = simulate_records(leaning, *forces, runs_of(2), kinds)
     assert np.isnan(found[-2:]).all()
@@ -59,21 +59,21 @@ def test_the_runs_that_stay_are_untouched_by_one_that_is_thrown_off(leaning, for
     )
 
 
-def test_a_structure_that_is_mostly_thrown_off_is_none_that_was_measured(leaning, forces):
+def test_model_with_mostly_diverged_runs_is_rejected(leaning, forces):
     with pytest.raises(IntegrationError, match="diverged"):
         simulate_records(
             leaning, *forces, runs_of(3), ["acceleration"] * leaning.sensor_shapes.shape[1]
         )
 
 
-def test_as_many_runs_of_every_record_are_kept():
+def test_equal_number_of_runs_per_record():
     features = np.arange(24.0).reshape(2, 4, 3)
     features[1, 0] = np.nan
     kept = of_survivors(features)
     np.testing.assert_array_equal(kept, [features[0, :3], features[1, 1:]])
 
 
-def test_fewer_than_half_are_too_few():
+def test_fewer_than_half_the_runs_are_too_few():
     features = np.zeros((2, 4, 3))
     features[0, :3] = np.nan
     with pytest.raises(IntegrationError, match="3 of 4 runs"):

@@ -18,7 +18,7 @@ def gains(rows):
     return {name: (gain, gain, 0.0) for name, gain in rows.items()}
 
 
-def test_a_pair_is_not_told_from_one_whose_other_effect_is_an_alias():
+def test_pairs_differing_by_an_alias_are_ambiguous():
     assert not_told_apart(gains(GAP_AND_DAMPING), "gap@all+hunt_crossley@all") == [
         "gap@all+contact_damping@all"
     ]
@@ -31,7 +31,7 @@ def test_the_order_of_a_pair_does_not_matter():
     ]
 
 
-def test_an_alias_far_behind_joins_only_where_it_leaves_nothing():
+def test_distant_alias_joins_only_if_it_explains_all():
     rows = gains(GAP_AND_DAMPING | {"gap@all+contact_damping@all": 1600.0})
     assert not_told_apart(rows, "gap@all+hunt_crossley@all") == []
     assert not_told_apart(rows, "gap@all+hunt_crossley@all", {"gap@all+contact_damping@all"}) == [
@@ -39,7 +39,7 @@ def test_an_alias_far_behind_joins_only_where_it_leaves_nothing():
     ]
 
 
-def test_a_spring_is_an_alias_of_one_that_never_saturates():
+def test_saturating_spring_is_alias_of_a_linear_one():
     rows = gains(
         {
             "saturation_stiffness@shaker+quadratic_drag@tube": 3500.0,
@@ -51,12 +51,12 @@ def test_a_spring_is_an_alias_of_one_that_never_saturates():
     ]
 
 
-def test_pairs_that_differ_by_both_effects_are_no_aliases():
+def test_pairs_differing_in_both_effects_are_no_aliases():
     rows = {"gap@all+hunt_crossley@all": 1755.0, "contact_damping@all+dry_friction@all": 1725.0}
     assert not_told_apart(gains(rows), "gap@all+hunt_crossley@all") == []
 
 
-def test_one_effect_and_a_scale_of_force_and_responses_are_a_gap_s_alias():
+def test_effect_with_common_gain_is_alias_of_a_gap():
     assert local_sets(candidate_named("gap@all"), gains({"gap@all": 100.0}), {"gap@all"}) == [
         (["gap"], False),
         (["sensor_gain"], False),
@@ -66,7 +66,7 @@ def test_one_effect_and_a_scale_of_force_and_responses_are_a_gap_s_alias():
     ]
 
 
-def test_so_they_are_beside_another_effect():
+def test_common_gain_alias_holds_in_pairs():
     best = candidate_named("gap@all+hunt_crossley@all")
     assert isinstance(best, Pair)
     sets = [ids for ids, _ in local_sets(best, gains(GAP_AND_DAMPING), set(GAP_AND_DAMPING))]
@@ -78,7 +78,7 @@ def test_so_they_are_beside_another_effect():
     ]
 
 
-def test_laws_of_one_quantity_are_compared_by_what_it_adds_to_the_other_effect():
+def test_laws_of_one_quantity_compare_by_added_gain():
     """Two codes differ by a quarter of what a contact's law changes, whatever a gap changes beside
     it.
     """

@@ -9,7 +9,7 @@ RATE, SAMPLING = 51200.0, 2048.0
 
 
 @pytest.mark.parametrize("steps_per_second", [51200.0, 102400.0, 204800.0])
-def test_mask(steps_per_second):
+def test_filter_response_meets_the_mask(steps_per_second):
     design = output_filter(steps_per_second, SAMPLING)
     frequency = np.linspace(0.0, steps_per_second / 2, 40001)
     level = 20 * np.log10(np.maximum(np.abs(design.response(frequency, steps_per_second)), 1e-12))
@@ -17,7 +17,7 @@ def test_mask(steps_per_second):
     assert np.max(level[frequency >= 1024.0]) < -80.0
 
 
-def test_first_stage_stops_the_images_of_the_record_s_band():
+def test_first_stage_rejects_aliases_of_the_record_band():
     design = output_filter(RATE, SAMPLING)
     half = (design.first.size - 1) // 2
     for centre in (10240.0, 20480.0):

@@ -43,7 +43,7 @@ def write_f16(folder, name, count, period=PERIOD):
     )
 
 
-def test_levels_beyond_the_estimation_records_are_held_out(tmp_path):
+def test_validation_levels_are_held_out(tmp_path):
     for name, count in (
         ("Level1", 9),
         ("Level3", 9),
@@ -80,7 +80,7 @@ def test_a_level_given_twice_has_two_names(tmp_path):
     }
 
 
-def test_a_held_out_record_may_have_a_period_of_its_own(tmp_path):
+def test_held_out_record_may_have_another_period(tmp_path):
     write_f16(tmp_path, "Level1", 9)
     write_f16(tmp_path, "Level2_Validation", 4, period=16384)
     levels, _, _ = levels_of(f16_campaign(tmp_path.glob("*.mat")))
@@ -92,7 +92,7 @@ def test_a_held_out_record_may_have_a_period_of_its_own(tmp_path):
         assert level.response[2] == pytest.approx(level.force, abs=1.0e-6)
 
 
-def test_the_output_beside_the_input_is_read(tmp_path):
+def test_silverbox_input_and_output_are_paired(tmp_path):
     for level in (5, 50, 100):
         driven = periodic(30, level).T
         savemat(tmp_path / f"SNJP_um_full_FNSI_{level}.mat", {"um": driven, "fs": 2441.40625})
@@ -110,7 +110,7 @@ def test_the_output_beside_the_input_is_read(tmp_path):
     )
 
 
-def test_files_that_are_not_the_benchmarks_are_named(tmp_path):
+def test_foreign_files_are_named(tmp_path):
     savemat(tmp_path / "other.mat", {"Force": 1.0})
     with pytest.raises(ValueError, match="must hold the level"):
         benchmark_campaign("f16", [tmp_path / "other.mat"])
@@ -132,7 +132,7 @@ def real(config, key, pattern, name):
     return benchmark_campaign(name, files)
 
 
-def test_the_aircraft_s_mounting_softens_and_two_methods_agree(study_config):
+def test_f16_mounting_softens_and_methods_agree(study_config):
     campaign = real(study_config, "f16_data", "F16Data_FullMSine_Level*.mat", "f16")
     linear = linear_models(campaign, F16)
     base, levels = modes_of(linear["base"]), levels_of(campaign)[0]
@@ -153,7 +153,7 @@ def test_the_aircraft_s_mounting_softens_and_two_methods_agree(study_config):
     )
 
 
-def test_the_oscillator_s_published_coefficients_come_back(study_config):
+def test_published_silverbox_coefficients_are_recovered(study_config):
     campaign = real(study_config, "silverbox_data", "SNJP_?m_full_FNSI_*.mat", "silverbox")
     linear = linear_models(campaign, SILVERBOX)
     assert modes_of(linear["base"]).frequency == pytest.approx([68.58], abs=0.02)

@@ -51,12 +51,12 @@ def runs():
     return draw
 
 
-def test_scatter_alone_parts_nothing(runs):
+def test_scatter_alone_shows_no_bistability(runs):
     null, path = runs(0.0)
     assert not branch_direction(NOTHING, null, MEASURED, path, UNIT, ()).any()
 
 
-def test_the_jump_is_found_with_its_length_in_its_record_alone(runs):
+def test_jump_is_found_with_its_size_in_its_record(runs):
     null, path = runs(0.3)
     first, second = branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0]
     assert not first.any()
@@ -64,7 +64,7 @@ def test_the_jump_is_found_with_its_length_in_its_record_alone(runs):
     assert np.linalg.norm(second) == pytest.approx(np.linalg.norm(JUMP), rel=0.25)
 
 
-def test_a_run_that_went_the_other_way_is_no_evidence_against_it(runs):
+def test_run_on_the_other_branch_is_no_contrary_evidence(runs):
     null, path = runs(0.3)
     direction = branch_direction(NOTHING, null, MEASURED, path, UNIT, ())[0, 1]
     measured = JUMP + np.random.default_rng(9).standard_normal(SIZE)
@@ -75,7 +75,7 @@ def test_a_run_that_went_the_other_way_is_no_evidence_against_it(runs):
     assert log_likelihood(other, free)[1] > SIZE + 100.0
 
 
-def test_a_jump_that_scatter_would_hide_is_found_towards_the_measurement(runs):
+def test_small_jump_is_found_along_the_measurement(runs):
     null, path = runs(0.3, jump=0.4 * JUMP)
     assert np.sum(path.differences[:, 1] ** 2 / 2.0, axis=1).max() < SIZE + 90.0
     assert (
@@ -86,18 +86,18 @@ def test_a_jump_that_scatter_would_hide_is_found_towards_the_measurement(runs):
     assert not branch_direction(NOTHING, null, elsewhere, path, UNIT, ()).any()
 
 
-def test_points_far_away_tell_nothing_here(runs):
+def test_distant_points_show_no_bistability(runs):
     null, path = runs(0.3, at=0.9)
     assert not branch_direction(NOTHING, null, MEASURED, path, UNIT, ()).any()
 
 
-def test_where_nothing_is_free_nothing_becomes_so(runs):
+def test_fixed_directions_stay_fixed(runs):
     null, path = runs(0.3)
     assert with_branch(NOTHING, null, MEASURED, path, UNIT, ()) is NOTHING
     assert with_branch(np.zeros((1, 2, SIZE)), null, MEASURED, path, UNIT, ()).shape == (2, 2, SIZE)
 
 
-def test_runs_of_a_path_are_deviations_of_one_run_each(runs):
+def test_path_runs_give_single_run_deviations(runs):
     null, path = runs(0.0)
     features = np.random.default_rng(3).standard_normal((2, 8, SIZE))
     rows = deviations(null, features, path, UNIT, ())
@@ -106,13 +106,13 @@ def test_runs_of_a_path_are_deviations_of_one_run_each(runs):
     assert np.mean(rows[:, 8:] ** 2) == pytest.approx(1.0, rel=0.1)
 
 
-def test_a_point_of_one_run_is_no_pair(runs):
+def test_point_with_one_run_gives_no_pair(runs):
     null, path = runs(0.0)
     path.differences[3:] = 0.0
     assert pair_deviations(null, path, UNIT, ()).shape == (2, 3, SIZE)
 
 
-def test_a_search_compares_points_by_how_far_its_runs_lie_apart(runs):
+def test_search_covariance_includes_the_jump(runs):
     _, path = runs(0.3)
     features = np.random.default_rng(4).standard_normal((2, 16, SIZE))
     covariance = np.tile(2.0 * np.eye(SIZE), (2, 1, 1))

@@ -98,7 +98,7 @@ def looked(monkeypatch):
         ((1.0, 0.02, 0.5), (0.8, 0.2, 0.4)),
     ],
 )
-def test_what_is_hidden_is_found_also_at_the_end_of_a_range(looked, truth, start):
+def test_hidden_parameters_are_found_up_to_range_ends(looked, truth, start):
     found, _ = looked(truth, start)
     assert found.unit == pytest.approx(
         np.array(truth), abs=0.05
@@ -122,7 +122,7 @@ def test_other_signs_are_tried(looked):
     )
 
 
-def test_other_signs_are_tried_where_a_search_ends(looked, monkeypatch):
+def test_other_signs_are_tried_at_the_optimum(looked, monkeypatch):
     """Of a tube that is pressed to its plates, no star far from the optimum tells to which side."""
     monkeypatch.setattr(search, "IMAGED", 0)
     truth = np.array([0.86, 0.2])
@@ -131,16 +131,14 @@ def test_other_signs_are_tried_where_a_search_ends(looked, monkeypatch):
     ].unit == pytest.approx(truth, abs=0.04)
 
 
-def test_what_is_far_behind_gets_no_closer_look(looked):
+def test_weak_candidate_is_not_refined(looked):
     _, whole = looked((0.3, 0.7), (0.5, 0.5))
     behind, few = looked((0.3, 0.7), (0.5, 0.5), least=1.0e6)
     assert few == 5 < whole  # those that it began with
     assert behind.features.shape[1] == finalists.FEW_SEEDS
 
 
-def test_a_search_that_ended_far_from_what_is_best_by_its_own_law_goes_on_there(
-    looked, monkeypatch
-):
+def test_search_resumes_at_the_best_simulated_point(looked, monkeypatch):
     """A plate of 285 kN/m and 0.46 kg: one of 541 kN/m and 0.22 kg came before it once the other's
     change was what two laws may differ by.
     """

@@ -31,7 +31,7 @@ def summary_of(*tables):
     return {row["method"]: row for row in summary_rows(consistency_rows(tables))}
 
 
-def test_three_methods_within_a_quarter_of_their_median_agree():
+def test_methods_within_a_quarter_of_the_median_agree():
     found = summary_of(
         *(
             case(1.0e5 * factor, seed, ods=0.8e5 * factor, broadband=1.2e5 * factor)
@@ -54,7 +54,7 @@ def test_one_method_off_by_more_is_a_spread(method):
     assert summary_of(case(1.0e5, 0, peak_half=9.0e5, secant=1.0))["lscf"]["verdict"] == "agree"
 
 
-def test_a_method_that_half_the_seeds_do_not_resolve_leaves_the_verdict_open():
+def test_method_unresolved_by_half_the_seeds_is_open():
     half = summary_of(case(1.0e5, 0), case(1.0e5, 1, silent=("ods",)))
     assert half["ods"]["k_median"] == 1.0e5 and half["ods"]["verdict"] == "agree"
     found = summary_of(
@@ -90,7 +90,7 @@ def test_rows_are_ordered_and_the_dataset_holds_them():
     assert dataset["verdict"].values.tolist() == [[2, 0], [0, 2]]
 
 
-def test_gaps_that_scale_fall_on_one_curve():
+def test_scaled_gaps_collapse_on_one_curve():
     # k = 4 load/gap for two gaps with different loads: interpolation in logarithms is exact for a
     # power law
     tables = [

@@ -14,7 +14,7 @@ def test_without_a_bank_every_candidate_is_a_file_of_the_run(tmp_path):
     }
 
 
-def test_what_a_bank_lacks_is_simulated_in_the_run_and_not_made_there(tmp_path):
+def test_missing_bank_candidates_are_simulated_in_the_run(tmp_path):
     bank = tmp_path / "bank"
     (bank / "paths").mkdir(parents=True)
     (bank / "paths" / f"{NAMES[1]}.npz").touch()

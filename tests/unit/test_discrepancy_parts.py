@@ -44,7 +44,7 @@ def layout(channels=1, pairs=()):
     )
 
 
-def test_band_powers_of_white_noise_are_its_density_times_their_width():
+def test_band_power_of_white_noise_is_density_times_width():
     force, response = np.random.default_rng(1).standard_normal((2, 60 * 2048))
     found = layout().power(record_features(layout(), force, response[None]))[0]
     expected = 10.0 * np.log10(2.0 / RATE * np.diff(layout().edges))
@@ -52,7 +52,7 @@ def test_band_powers_of_white_noise_are_its_density_times_their_width():
     assert abs(np.mean(10 ** (found / 10)) / np.mean(10 ** (expected / 10)) - 1.0) < 0.03
 
 
-def test_a_response_that_is_the_force_is_coherent_and_noise_is_not():
+def test_coherence_is_one_for_the_force_zero_for_noise():
     force, other = np.random.default_rng(2).standard_normal((2, 60 * 2048))
     features = record_features(layout(2), force, np.stack([3.0 * force, other]))
     coherence = np.tanh(features[layout(2).kind == "coherence"]).reshape(2, -1)
@@ -70,7 +70,7 @@ def test_the_sense_of_two_directions_is_seen():
     assert same.min() > 3.0
 
 
-def test_compression_has_an_inverse_and_leaves_small_differences():
+def test_asinh_compression_is_invertible_and_linear_near_zero():
     values = np.linspace(-60.0, 60.0, layout().kind.size)
     np.testing.assert_allclose(
         uncompressed(compressed(values, layout()), layout()), values, atol=1e-9
@@ -91,7 +91,7 @@ def test_shrunk_covariance_keeps_variances_and_can_be_inverted():
     )
 
 
-def test_likelihood_falls_with_distance_but_not_without_end():
+def test_likelihood_falls_with_distance_and_levels_off():
     scores = [
         log_likelihood(np.full(40, distance), np.eye(40))[0] for distance in (0.0, 1.0, 10.0, 100.0)
     ]
@@ -102,14 +102,14 @@ def test_likelihood_falls_with_distance_but_not_without_end():
     )  # a t law: a hundred sigma are not a hundred times ten
 
 
-def test_what_a_law_may_differ_by_is_forgiven_in_proportion():
+def test_model_error_is_tolerated_in_proportion():
     change = np.full(40, 20.0)
     plain = log_likelihood(0.1 * change, np.eye(40))[1]
     forgiven = log_likelihood(0.1 * change, np.eye(40), change, np.zeros(40, int))[1]
     assert forgiven < 0.1 * plain
 
 
-def test_emulator_meets_its_points_and_the_curve_between():
+def test_emulator_interpolates_its_points():
     points = np.linspace(0.0, 1.0, 8)[:, None]
     curve = np.column_stack([np.sin(3.0 * points[:, 0]), points[:, 0] ** 2])
     emulator = Emulator(points, curve, np.full(8, 1e-6))
@@ -124,7 +124,7 @@ def test_emulated_angles_wrap_round():
     np.testing.assert_allclose(emulator(np.array([0.999]))[0], 1.0, atol=0.02)
 
 
-def test_an_emulator_takes_a_length_of_its_own_for_each_parameter():
+def test_emulator_fits_a_length_scale_per_parameter():
     points = np.stack(
         np.meshgrid(np.linspace(0.0, 1.0, 9), np.linspace(0.0, 1.0, 3)), axis=-1
     ).reshape(-1, 2)
@@ -154,7 +154,7 @@ def test_the_search_finds_the_top_of_a_tilted_hill(best):
         )
 
 
-def test_a_likelihood_that_knows_nothing_gives_the_whole_range():
+def test_flat_likelihood_gives_the_whole_range():
     ((values, scores),) = _profile(lambda point: 0.0, np.array([0.4]))
     assert _above(values, scores, 0.4).tolist() == [0.0, 1.0]
 
@@ -168,7 +168,7 @@ def test_components_of_a_vector_are_also_tried_alone():
     assert len(Candidate("plate_flexibility", "all").design()) == 12
 
 
-def test_where_an_effect_is_nothing_is_known_where_its_range_holds_it():
+def test_neutral_point_is_known_if_in_range():
     scales = {"gap": 2.0e-4, "one": 1.0}
     offset, friction = Candidate("support_offset", "all"), Candidate("dry_friction", "all")
     np.testing.assert_allclose(
@@ -183,7 +183,7 @@ def test_interval_of_a_parabola():
     np.testing.assert_allclose([low, high], [0.4 - 0.1645, 0.4 + 0.1645], atol=0.006)
 
 
-def test_an_interval_is_that_of_its_own_hill():
+def test_interval_belongs_to_the_highest_maximum():
     """Where nothing was simulated the score of an emulator rises again, above what is known."""
     values = np.linspace(0.0, 1.0, 61)
     low, high = _above(
@@ -195,7 +195,7 @@ def test_an_interval_is_that_of_its_own_hill():
     np.testing.assert_allclose([low, high], [0.4 - 0.0822, 0.4 + 0.0822], atol=0.006)
 
 
-def test_a_profile_stays_where_it_was_looked_at():
+def test_profile_stays_within_simulated_points():
     ((values, _),) = _profile(
         lambda point: -float(point[0] ** 2), np.array([0.4]), np.array([[0.2, 0.6]])
     )
@@ -220,7 +220,7 @@ def test_names_of_candidates_come_back():
     assert pair.split == 1 and pair.periodic == (2,) and len(pair.effect.parameters) == 3
 
 
-def test_the_exact_alias_is_told_how_to_break():
+def test_exact_alias_comes_with_a_measurement_to_break_it():
     assert "clearance" in next_measurement([["gap"], ["sensor_gain"]])
     assert next_measurement([["gap"]]) is None
 
@@ -244,13 +244,13 @@ def verdict(name, sets, first, before_dB=4.0):
 
 
 @pytest.mark.parametrize(("before_dB", "arm"), [(1.1, "weak"), (2.0, "medium"), (4.0, "strong")])
-def test_the_arm_is_that_of_the_excess_over_the_floor(before_dB, arm):
+def test_suite_arm_follows_the_excess_over_the_floor(before_dB, arm):
     found = verdict("named", [["gap"]], ["gap"], before_dB)
     assert judged(found, {"arm": "medium", "effects": [["gap", {"factor": 1.2}]]})["arm"] == arm
     assert judged(found, {"arm": "stranger", "effects": [["loose_mass", {}]]})["arm"] == "stranger"
 
 
-def test_verdicts_are_held_against_truths():
+def test_verdicts_are_compared_with_truths():
     truth = {"arm": "strong", "effects": [["gap", {"factor": 1.2}]]}
     right = judged(verdict("ambiguous", [["gap"], ["sensor_gain"]], ["gap"]), truth)
     wrong = judged(verdict("named", [["dry_friction"]], ["dry_friction"]), truth)
@@ -263,7 +263,7 @@ def test_verdicts_are_held_against_truths():
     )  # Clopper-Pearson, 1 of 4
 
 
-def test_effects_taken_out_of_the_catalogue_count_as_strangers():
+def test_removed_effects_count_as_unknown():
     rows = [
         judged(
             verdict("unknown", [], []), {"arm": "left_out", "effects": [["gap", {"factor": 1.5}]]}
@@ -311,13 +311,13 @@ def test_priors_are_those_of_the_contract():
     )
 
 
-def test_clusters_end_where_the_difference_halves():
+def test_clusters_end_at_half_the_peak_difference():
     difference = np.array([0.5, 6.0, 10.0, 7.0, 3.0, 3.5, -4.0, 0.2])
     found = clusters(difference, np.abs(difference) > 0.3)
     assert [row.tolist() for row in found] == [[1, 2, 3], [6], [4, 5], [0]]
 
 
-def test_what_other_damping_changes_is_no_evidence():
+def test_damping_direction_is_no_evidence():
     """A difference along a free direction costs its prior, however large; across it nothing is
     forgiven.
     """
@@ -340,11 +340,11 @@ def test_what_other_damping_changes_is_no_evidence():
     assert null.covariance is covariance
 
 
-def test_where_no_band_counts_nothing_is_closed():
+def test_closed_fraction_without_bands_is_undefined():
     assert closed_fraction(0.0, 0.0, 0.0) is None
 
 
-def test_scatter_of_a_models_own_runs_counts_where_it_is_clearly_larger():
+def test_larger_scatter_of_the_model_runs_is_used():
     rng, size = np.random.default_rng(8), 40
     null = Null(
         np.array([1]),
@@ -365,7 +365,7 @@ def test_scatter_of_a_models_own_runs_counts_where_it_is_clearly_larger():
     assert across @ wider @ across < 8.0
 
 
-def test_chi_squares_of_a_record_of_bursts_scatter_more():
+def test_bursts_widen_the_chi_square_scatter():
     """A record in which one run of sixteen breaks out: its chi-square without that run is far from
     the others', so no 200 above expectation says that something is missing.
     """
@@ -405,7 +405,7 @@ class Blend:
         self.blend = np.full(size, 1.0e6)
 
 
-def test_a_likelihood_made_diagonal_once_is_the_same():
+def test_diagonalised_likelihood_is_the_same():
     rng, size = np.random.default_rng(4), 40
     root = rng.standard_normal((size, 2 * size))
     covariance = root @ root.T

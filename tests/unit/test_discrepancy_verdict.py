@@ -66,27 +66,27 @@ def decided(monkeypatch):
     return run
 
 
-def test_nothing_is_named_where_nothing_is_missing(decided):
+def test_no_discrepancy_gives_verdict_none(decided):
     assert decided([], rest=EXPLAINED, p=0.6).verdict == "none"
     assert decided([finalist("hertz@all", 9.0)], rest=EXPLAINED, p=0.6).verdict == "none"
 
 
-def test_what_no_candidate_explains_is_unknown(decided):
+def test_unexplained_discrepancy_is_unknown(decided):
     assert decided([finalist("hertz@all", 9.0)]).verdict == "unknown"
 
 
-def test_the_best_is_named_alone(decided):
+def test_clear_best_effect_is_named_alone(decided):
     found = decided([finalist("plate_flexibility@all", 300.0), finalist("dry_friction@all", 200.0)])
     assert (found.verdict, found.ambiguity) == ("named", [["plate_flexibility"]])
 
 
-def test_two_that_are_near_are_a_set_and_a_gap_is_never_alone(decided):
+def test_close_effects_and_gaps_form_ambiguity_sets(decided):
     near = decided([finalist("dry_friction@all", 300.0), finalist("foliate_obstacle@all", 295.0)])
     assert (near.verdict, near.ambiguity) == ("ambiguous", [["dry_friction"], ["foliate_obstacle"]])
     assert decided([finalist("gap@all", 300.0)]).ambiguity == [["gap"], ["sensor_gain"]]
 
 
-def test_an_alias_that_suffices_is_not_ruled_out(decided):
+def test_sufficient_alias_stays_in_the_set(decided):
     both = decided([finalist("contact_damping@all", 1200.0), finalist("hunt_crossley@all", 1000.0)])
     assert both.ambiguity == [["contact_damping"], ["hunt_crossley"]]
     assert decided(
@@ -97,7 +97,7 @@ def test_an_alias_that_suffices_is_not_ruled_out(decided):
     ).ambiguity == [["hertz"], ["contact_stiffness"]]
 
 
-def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
+def test_pair_needs_two_contributing_effects(decided):
     single, pair = finalist("gap@left", 300.0, LEFT), finalist("gap@left+dry_friction@all", 400.0)
     assert decided([single, pair]).ambiguity == [["dry_friction", "gap"]]
     assert decided([finalist("gap@left", 300.0), pair]).ambiguity == [["gap"]]
@@ -115,18 +115,18 @@ def test_a_pair_needs_a_rest_and_two_parts_that_are_there(decided):
     assert decided([single, idle]).chosen is single
 
 
-def test_what_leaves_much_is_partly_explained_or_unknown(decided):
+def test_large_residual_is_partly_explained_or_unknown(decided):
     single = [finalist("gap@all", 300.0, LEFT)]
     assert decided(single, share=0.7).verdict == "partly_explained"
     unknown = decided(single, share=0.3)
     assert (unknown.verdict, unknown.chosen, unknown.ambiguity) == ("unknown", None, [])
 
 
-def test_a_loss_on_held_out_records_is_a_veto(decided):
+def test_loss_on_held_out_records_vetoes_an_effect(decided):
     assert decided([finalist("hertz@all", 300.0, held_out=-40.0)], share=0.3).verdict == "unknown"
 
 
-def test_a_linear_effect_stands_beside_what_contact_adds(decided):
+def test_linear_and_contact_effects_are_named_together(decided):
     adopted = {"name": "added_mass@apex", "unit": [0.4], "gain": 90.0}
     rows = [
         adopted,
@@ -142,7 +142,7 @@ def test_a_linear_effect_stands_beside_what_contact_adds(decided):
     assert both.ambiguity == [["added_mass", "dry_friction"]]
 
 
-def test_two_linear_effects_are_one_set(decided):
+def test_two_linear_effects_form_one_set(decided):
     adopted = {
         "name": "added_mass@apex+sensor_gain@apex_y",
         "unit": [0.4, 0.6],
@@ -176,7 +176,7 @@ def test_two_linear_effects_are_one_set(decided):
 @pytest.mark.parametrize(
     ("location", "nominal"), [("left", 3.0e-4), ("right", 5.0e-4), ("all", None)]
 )
-def test_a_gap_is_told_in_metres_of_the_clearance_that_the_model_has(decided, location, nominal):
+def test_gap_is_given_in_metres_of_the_model_clearance(decided, location, nominal):
     laws = SimpleNamespace(gap=np.array([np.nan, np.nan, 5.0e-4, 9.0e-4]))
     model = SimpleNamespace(
         support_names=("left", "right", STOP),
@@ -192,7 +192,7 @@ def test_a_gap_is_told_in_metres_of_the_clearance_that_the_model_has(decided, lo
         assert row["parameters"]["gap"]["value"] == pytest.approx(nominal * factor)
 
 
-def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_the_linear_one(
+def test_nonlinear_effect_replaces_the_linear_one(
     decided,
 ):
     adopted = {"name": "fluid_added_mass_damping@tube", "unit": [0.1, 0.2], "gain": 40.0}
@@ -206,7 +206,7 @@ def test_an_effect_that_explains_the_lowest_record_too_stands_in_the_place_of_th
     assert worse.ambiguity == [["fluid_added_mass_damping", "quadratic_drag"]]
 
 
-def test_a_parameter_is_told_level_by_level(monkeypatch):
+def test_parameter_is_estimated_level_by_level(monkeypatch):
     fitted = iter([0.5, 0.25])
     monkeypatch.setattr(
         levels,
@@ -232,7 +232,7 @@ def test_a_parameter_is_told_level_by_level(monkeypatch):
     assert levels.by_level(None, None, np.zeros((2, 4)), pair, SCALES) == []
 
 
-def test_an_estimate_allows_for_a_gain_common_to_force_and_responses():
+def test_estimate_allows_for_a_common_gain():
     """Lengths and forces are known no better than such a gain: 2 %, one sigma; a friction
     coefficient is.
     """
@@ -246,7 +246,7 @@ def test_an_estimate_allows_for_a_gain_common_to_force_and_responses():
     assert narrow == pytest.approx(friction.physical([0.49], {"one": 1.0})["mu"]) and narrow < mu
 
 
-def test_a_linear_effect_stands_where_nothing_explains_the_rest(decided):
+def test_linear_effect_stays_when_the_rest_is_unexplained(decided):
     adopted = {"name": "sensor_gain@apex_y", "gain": 400.0, "unit": [0.7]}
     found = decided(
         [finalist("lateral_stinger@along_x", 30.0, explained=LEFT)],
@@ -261,7 +261,7 @@ def test_a_linear_effect_stands_where_nothing_explains_the_rest(decided):
     )
 
 
-def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
+def test_contradicted_effect_is_not_named(decided):
     """A gain on the fitted records alone, where the bare model is within the scatter of its
     seeds.
     """
@@ -277,9 +277,7 @@ def test_a_contradicted_effect_is_not_named_where_nothing_is_missing(decided):
     ("held_out", "expected"),
     [(85.0, [["contact_damping", "modal_damping"]]), (THRESHOLD - 1.0, [["modal_damping"]])],
 )
-def test_where_nothing_is_left_beyond_chance_the_held_out_records_alone_may_name(
-    decided, held_out, expected
-):
+def test_held_out_records_alone_may_name_an_effect(decided, held_out, expected):
     """Contact damping beside modal damping: 305 units of which 85 on the held-out record, within
     what the null's covariance holds.
     """
@@ -295,7 +293,7 @@ def test_where_nothing_is_left_beyond_chance_the_held_out_records_alone_may_name
     assert (found.verdict, found.ambiguity) == ("named", expected)
 
 
-def test_what_held_out_records_contradict_is_not_added_to_what_the_lowest_record_told(decided):
+def test_contradicted_effect_is_not_added_to_a_linear_one(decided):
     """Though the model still misses something: a loss beyond what tells candidates apart is none of
     chance.
     """
@@ -316,7 +314,7 @@ def test_what_held_out_records_contradict_is_not_added_to_what_the_lowest_record
     assert (kept.verdict, kept.ambiguity) == ("named", [["modal_damping", "quadratic_stiffness"]])
 
 
-def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided):
+def test_partial_effect_worsening_held_out_records_is_refuted(decided):
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
     assert (
         verdict.refuted(part, 0.5, -2.8)
@@ -336,7 +334,7 @@ def test_a_part_that_makes_the_held_out_records_worse_is_no_explanation(decided)
     )  # an offset of next to nothing, named for a channel that was late
 
 
-def test_a_part_that_makes_no_records_better_is_no_explanation(decided):
+def test_partial_effect_improving_no_record_is_refuted(decided):
     """Likelihood may gain by co and quad and kurtosis where no band's power comes nearer."""
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
     assert (
@@ -360,7 +358,7 @@ def names(rows):
     return [row.candidate.name for row in rows]
 
 
-def test_an_effect_is_looked_at_closely_once_and_the_first_ones_aliases_also_from_afar():
+def test_each_effect_and_aliases_of_the_best_are_refined_once():
     rows = screened(
         clearance__apex=100.0,
         coulomb_friction__shaker=90.0,
@@ -378,14 +376,14 @@ def test_an_effect_is_looked_at_closely_once_and_the_first_ones_aliases_also_fro
     ]
 
 
-def test_nothing_is_looked_at_closely_where_nothing_is_missing_and_no_gain_could_be_named():
+def test_nothing_is_refined_without_discrepancy_or_gain():
     rows = screened(hertz__all=4.0, gap__all=-3.0)
     assert names(naming.finalists(rows, EXPLAINED)) == []
     assert names(naming.finalists(rows, LEFT)) == ["hertz@all"]
     assert names(naming.finalists(screened(hertz__all=6.0), EXPLAINED)) == ["hertz@all"]
 
 
-def test_what_was_screened_beside_another_structure_is_looked_at_closely_whatever_its_score():
+def test_candidates_of_a_bank_are_refined_at_any_score():
     """Contact damping beside nine times the damping of all modes, which the candidates of a bank do
     not have: -64 there, 275 in the campaign.
     """

@@ -57,12 +57,12 @@ def widened(monkeypatch):
     return run
 
 
-def test_an_estimate_that_its_own_seeds_scatter_is_no_better_known(widened):
+def test_interval_includes_the_scatter_over_seeds(widened):
     low, high = widened([0.45, 0.55, 0.45, 0.55], [0.0, 100.0, 0.0, 0.0])
     assert (0.5 - low, high - 0.5) == pytest.approx((np.hypot(0.01, 1.645 * 0.05),) * 2)
 
 
-def test_seeds_are_looked_for_near_the_estimate(monkeypatch, widened):
+def test_seed_estimates_are_searched_near_the_optimum(monkeypatch, widened):
     boxes = []
 
     def calibrate(*arguments):
@@ -88,22 +88,22 @@ def test_seeds_are_looked_for_near_the_estimate(monkeypatch, widened):
     assert boxes == [[[0.0, pytest.approx(0.3)]]] * 2
 
 
-def test_seeds_that_agree_leave_the_interval(widened):
+def test_agreeing_seeds_keep_the_interval(widened):
     assert widened([0.5, 0.5], [0.0, 100.0, 0.0, 0.0]) == pytest.approx([0.49, 0.51])
 
 
-def test_points_that_are_not_clearly_worse_belong_to_the_interval(widened):
+def test_points_not_clearly_worse_belong_to_the_interval(widened):
     assert widened([0.5, 0.5], [0.0, 100.0, 60.0, 90.0]) == pytest.approx([0.49, 0.8])
     assert widened([0.5, 0.5], [0.0, 100.0, 10.0, 90.0]) == pytest.approx(
         [0.49, 0.51]
     )  # beyond one that is
 
 
-def test_an_interval_ends_where_what_was_simulated_is_clearly_worse(widened):
+def test_interval_ends_at_clearly_worse_points(widened):
     assert widened([0.1, 0.9], [0.0, 100.0, 80.0, 0.0]) == pytest.approx([0.4, 0.8])
 
 
-def test_what_is_near_and_how_far_wraps_round_with_an_angle():
+def test_distances_of_angles_wrap_round():
     assert offset(np.array([0.98]), np.array([0.03]), (0,)) == pytest.approx([-0.05])
     assert offset(np.array([0.98]), np.array([0.03]), ()) == pytest.approx([0.95])
     assert near(path_at(0.95, 0.5), np.array([0.05]), (0,)).tolist() == [True, False]

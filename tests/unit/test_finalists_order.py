@@ -35,14 +35,14 @@ def ordered(monkeypatch):
     return run
 
 
-def test_the_larger_gain_comes_first(ordered):
+def test_larger_score_gain_ranks_first(ordered):
     assert ordered({"gap@all": (300.0, LEFT), "hertz@all": (500.0, LEFT)}) == [
         "hertz@all",
         "gap@all",
     ]
 
 
-def test_of_two_that_are_not_told_apart_the_one_that_suffices_comes_first(ordered):
+def test_sufficient_effect_ranks_first_among_ambiguous(ordered):
     rows = {
         "hertz@all": (663.0, LEFT),
         "contact_stiffness@all": (641.0, ENOUGH),
@@ -53,11 +53,11 @@ def test_of_two_that_are_not_told_apart_the_one_that_suffices_comes_first(ordere
     assert ordered(rows | {"contact_stiffness@all": (400.0, ENOUGH)})[0] == "hertz@all"
 
 
-def test_nothing_comes_first_of_nothing(ordered):
+def test_empty_list_has_no_order(ordered):
     assert ordered({}) == []
 
 
-def test_an_alias_of_the_best_is_looked_at_longer_than_another_effect():
+def test_alias_of_the_best_needs_less_gain():
     ranked = {
         "ranked": [
             {"name": name, "score": score}
@@ -94,7 +94,7 @@ def test_an_alias_of_the_best_is_looked_at_longer_than_another_effect():
     ) == pytest.approx(700.0 * (1.0 + priors.SECOND_SHARE))
 
 
-def test_the_best_as_screened_and_what_looks_like_it_are_tried_at_every_place():
+def test_leading_effects_are_tried_at_every_place():
     ranked = {
         "ranked": [
             {"name": "clearance@shaker", "score": 900.0},

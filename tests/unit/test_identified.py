@@ -112,7 +112,7 @@ def test_the_damping_of_measured_modes_is_their_own():
     assert model.damping == pytest.approx(4.0 * np.pi * ratio * frequency)
 
 
-def test_what_measured_modes_can_not_do_is_told():
+def test_unsupported_uses_of_measured_modes_are_refused():
     with pytest.raises(ConfigError, match="'d'"):
         check_config(
             {

@@ -10,14 +10,14 @@ from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.tube import build_structure
 
 
-def test_a_result_is_made_once_and_the_oldest_forgotten():
+def test_result_is_computed_once_and_the_oldest_dropped():
     kept, made = Memo(), []
     for key in (0, 0, *range(MAX_ENTRIES + 1), 0):
         kept.get(key, lambda key=key: made.append(key))
     assert made == [0, *range(1, MAX_ENTRIES + 1), 0]
 
 
-def test_keys_tell_contents_and_shapes_apart():
+def test_memo_keys_distinguish_contents_and_shapes():
     rows = np.arange(6.0)
     keys = {
         content_key("a", rows),
@@ -28,7 +28,7 @@ def test_keys_tell_contents_and_shapes_apart():
     assert len(keys) == 4 and content_key("a", rows.copy()) in keys
 
 
-def test_a_support_s_law_shares_the_structure_and_a_stiffer_root_does_not(study_config):
+def test_structure_is_shared_between_support_laws(study_config):
     values = study_config.model_dump(mode="json")
     bare = build_structure(study_config)
     other = check_config(

@@ -48,22 +48,22 @@ def by_any_law(monkeypatch):
     return run
 
 
-def test_a_law_that_reads_too_low_opens_the_interval_upwards(by_any_law):
+def test_low_biased_law_widens_the_interval_upwards(by_any_law):
     assert by_any_law(0.5, 0.47) == pytest.approx([0.49, 0.54])
 
 
-def test_a_law_that_reads_too_high_opens_it_downwards(by_any_law):
+def test_high_biased_law_widens_the_interval_downwards(by_any_law):
     assert by_any_law(0.5, 0.47, 0.52) == pytest.approx([0.47, 0.54])
 
 
-def test_what_the_own_law_reads_of_its_own_runs_is_no_difference_of_laws(by_any_law):
+def test_bias_of_the_fitted_law_itself_is_not_counted(by_any_law):
     assert by_any_law(0.46, 0.46, 0.43) == pytest.approx([0.49, 0.54])
 
 
-def test_a_reading_at_the_end_of_where_it_was_looked_for_is_none(by_any_law):
+def test_estimate_at_the_search_limit_is_ignored(by_any_law):
     assert by_any_law(0.5, 0.7, 0.47) == pytest.approx([0.49, 0.54])
     assert by_any_law(0.5, 0.3) == pytest.approx([0.49, 0.51])
 
 
-def test_an_effect_of_one_law_keeps_its_interval(by_any_law):
+def test_effect_with_one_law_keeps_its_interval(by_any_law):
     assert by_any_law() == pytest.approx([0.49, 0.51])

@@ -37,7 +37,7 @@ def test_modes_are_matched_by_shape(study_model, with_plates):
     assert with_plates.omega[found] == pytest.approx(study_model.omega[SEEN])
 
 
-def test_a_correction_goes_to_the_mode_and_not_to_its_number(study_model, with_plates):
+def test_correction_follows_the_mode_not_its_number(study_model, with_plates):
     nuisance = linear.Nuisance(
         SEEN, np.array([1.0, 1.0, 1.01, 1.0]), np.array([1.0, 1.0, 1.2, 1.0]), np.ones(1)
     )
@@ -46,7 +46,7 @@ def test_a_correction_goes_to_the_mode_and_not_to_its_number(study_model, with_p
     assert moved.omega[8] == pytest.approx(1.01 * study_model.omega[4])
 
 
-def test_free_damping_leaves_plates_and_seen_modes_alone(values, study_model, with_plates):
+def test_free_damping_affects_only_unobserved_tube_modes(values, study_model, with_plates):
     bench = SimpleNamespace(
         model=lambda variant: with_plates,
         bare=study_model,

@@ -58,12 +58,12 @@ def test_the_period_is_found(period, count):
     assert np.array_equal(force[:found], force[found : 2 * found])
 
 
-def test_a_period_is_found_in_a_record_of_no_whole_number_of_them():
+def test_period_is_found_in_a_record_of_fractional_periods():
     force = np.resize(np.random.default_rng(7).standard_normal(1234), 6543)
     assert find_period(force) % 1234 == 0
 
 
-def test_a_record_without_period_is_refused_with_what_to_do():
+def test_record_without_period_is_refused():
     with pytest.raises(PeriodError, match="does not repeat within 5000 samples"):
         find_period(np.random.default_rng(1).standard_normal(5000))
 
@@ -75,7 +75,7 @@ def test_a_record_without_period_is_refused_with_what_to_do():
         (lambda y: 0.1 * y**2, "even_fraction", "odd_fraction"),
     ],
 )
-def test_silent_lines_tell_odd_from_even_laws(law, large, small):
+def test_unexcited_lines_distinguish_odd_and_even_laws(law, large, small):
     generator = np.random.default_rng(2)
     lines = {
         line: 0.2 * np.exp(2j * np.pi * generator.uniform())
@@ -90,7 +90,7 @@ def test_silent_lines_tell_odd_from_even_laws(law, large, small):
     assert told[large][0] > 0.02 and told[small][0] < 1.0e-6
 
 
-def test_a_full_multisine_tells_that_it_can_not_tell():
+def test_full_multisine_cannot_distinguish_parity():
     force = np.tile(signal(dict.fromkeys(range(8, 60), 0.1 + 0j)), 3)
     assert (
         "every line of the band is excited"

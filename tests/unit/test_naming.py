@@ -23,7 +23,7 @@ def test_a_score_is_the_gain_in_squared_error():
     assert score([[None, None]], [[1.0, 1.0]]) == -float("inf")
 
 
-def test_the_best_is_named_alone_when_the_others_are_far():
+def test_clear_winner_is_named_alone():
     choice = choose(
         [candidate("a", ["cubic_stiffness"], 0.05), candidate("b", ["clearance"], 0.3)],
         [],
@@ -38,7 +38,7 @@ def test_the_best_is_named_alone_when_the_others_are_far():
     )
 
 
-def test_two_that_explain_as_well_are_a_set():
+def test_equally_good_effects_form_an_ambiguity_set():
     choice = choose(
         [candidate("a", ["cubic_stiffness"], 0.050), candidate("b", ["clearance"], 0.052)],
         [],
@@ -52,7 +52,7 @@ def test_two_that_explain_as_well_are_a_set():
     ]
 
 
-def test_one_that_fits_worse_does_not_join_the_set_by_luck():
+def test_worse_fit_does_not_join_the_ambiguity_set():
     choice = choose(
         [
             candidate("a", ["cubic_stiffness"], 0.050),
@@ -66,7 +66,7 @@ def test_one_that_fits_worse_does_not_join_the_set_by_luck():
     assert choice.verdict == "named" and choice.ambiguity == [["cubic_stiffness"]]
 
 
-def test_a_second_effect_must_earn_its_place():
+def test_second_effect_needs_a_clear_gain():
     first = candidate("a", ["cubic_stiffness"], 0.05)
     little, much = (
         candidate("a+b", ["cubic_stiffness", "quadratic_stiffness"], error)
@@ -79,7 +79,7 @@ def test_a_second_effect_must_earn_its_place():
     ]
 
 
-def test_a_second_effect_that_gains_nothing_does_not_join_the_set():
+def test_useless_second_effect_does_not_join_the_set():
     choice = choose(
         [candidate("a", ["cubic_stiffness"], 0.05)],
         [candidate("a+b", ["cubic_stiffness", "quadratic_drag"], 0.0499)],
@@ -104,18 +104,18 @@ def test_a_second_effect_that_gains_nothing_does_not_join_the_set():
         ("unknown", 0.01, 0.01, "unknown"),
     ],
 )
-def test_what_is_left_of_the_tried_records_bounds_the_verdict(kind, left, floor, wanted):
+def test_residual_of_held_out_records_bounds_the_verdict(kind, left, floor, wanted):
     assert believed(kind, 1.5, left, left, floor) == wanted
 
 
-def test_a_linear_structure_lacks_nothing():
+def test_linear_structure_has_nothing_missing():
     choice = choose(
         [candidate("a", ["cubic_stiffness"], 0.09)], [], {"one": [0.1, 0.1]}, JOINT, AGAIN
     )
     assert (choice.verdict, choice.ambiguity) == ("none", [])
 
 
-def test_a_law_that_explains_little_more_than_a_linear_model_is_not_named():
+def test_law_hardly_better_than_linear_is_not_named():
     assert (
         choose([candidate("a", ["cubic_stiffness"], 0.6)], [], LINEAR, JOINT, AGAIN).verdict
         == "unknown"

@@ -27,7 +27,7 @@ def seen(seconds, *filled, strength=(10.0, 10.0)):
 
 
 @pytest.mark.parametrize("seconds", [10, 20, 49])
-def test_below_contact_it_is_what_lies_above_the_band(seconds):
+def test_noise_without_contact_is_the_level_above_the_band(seconds):
     assert noise_of({}, seen(seconds, BAND), RATE, BAND) == pytest.approx([0.1, 1.0], rel=0.05)
 
 
@@ -38,7 +38,7 @@ def test_impacts_are_not_noise(seconds):
     )
 
 
-def test_where_nothing_is_quiet_it_is_no_more_than_the_least():
+def test_noise_is_bounded_by_the_quietest_band():
     assert noise_of({}, seen(20, (0.0, 100.0), (100.0, 1024.0)), RATE, BAND) == pytest.approx(
         [1.0, 10.0], rel=0.1
     )
@@ -53,7 +53,7 @@ def test_impacts_that_fade_with_frequency_are_not_noise():
     ) == pytest.approx([0.1, 1.0], rel=0.05)
 
 
-def test_a_part_that_happens_to_be_low_does_not_decide():
+def test_single_quiet_band_does_not_set_the_noise():
     """Of a thousand channels of 20 s seven were read more than 0.5 dB low, one by 3.5 dB: what they
     hold was taken for motion then.
     """

@@ -57,13 +57,13 @@ def place_of(at, points):
     return place, known.parameters[:, 0].tolist()
 
 
-def test_places_are_tried_at_the_best_point():
+def test_other_places_are_tried_at_the_best_point():
     assert place_of("shaker", [[1.0], [0.6]]) == ("shaker", [1.0, 0.6])
     assert place_of("shaker", [[0.6]]) == ("leg", [0.6])
 
 
 @pytest.mark.parametrize(("at", "expected"), [("shaker", "leg"), ("leg", "upper")])
-def test_a_place_that_comes_as_near_is_looked_at_again(at, expected):
+def test_equally_good_place_is_refined_again(at, expected):
     """Within the scatter of two seeds."""
     candidate = SimpleNamespace(name=at, periodic=())
     found = SimpleNamespace(
@@ -72,7 +72,7 @@ def test_a_place_that_comes_as_near_is_looked_at_again(at, expected):
     assert finalists.placed_again(BENCH, NULL, None, found, {}, None)[0] == expected
 
 
-def test_no_place_comes_as_near():
+def test_no_other_place_is_as_good():
     candidate = SimpleNamespace(name="leg", periodic=())
     found = SimpleNamespace(
         candidate=candidate, unit=np.array([0.3]), path=path("leg", [[0.6]]), own=lambda null: null
@@ -80,7 +80,7 @@ def test_no_place_comes_as_near():
     assert finalists.placed_again(BENCH, NULL, None, found, {}, None) is None
 
 
-def test_of_many_places_the_first_and_some_of_every_part_are_screened():
+def test_screened_places_are_spread_over_the_tube():
     chosen = spread([f"place_{number}" for number in range(25)])
     assert len(chosen) == PLACES and chosen[0] == "place_0" and chosen[-1] == "place_24"
     assert spread(["a", "b"]) == ["a", "b"]

@@ -9,7 +9,7 @@ from vibroimpact.discrepancy.power_balance import drive_channel, input_power
 RATE, SECONDS = 1024.0, 64.0
 
 
-def test_the_power_of_a_damper_is_force_squared_over_its_constant():
+def test_damper_power_is_force_squared_over_its_constant():
     force = np.random.default_rng(1).standard_normal(int(RATE * SECONDS))
     spectrum, omega = np.fft.rfft(force), 2.0 * np.pi * np.fft.rfftfreq(len(force), 1.0 / RATE)
     inside = (omega > 2.0 * np.pi * 20.0) & (omega < 2.0 * np.pi * 200.0)
@@ -45,7 +45,7 @@ def campaign(point, direction):
     )
 
 
-def test_a_channel_at_the_drive_is_found_with_its_sense():
+def test_drive_point_channel_is_found_with_its_sign():
     assert drive_channel(campaign([0.2, 0.0, 0.9], [0.0, -1.0, 0.0])) == (1, -1.0)
     assert drive_channel(campaign([0.2, 0.0, 0.9], [1.0, 0.0, 0.0])) is None
     assert drive_channel(campaign([0.2, 0.0, 0.8], [0.0, 1.0, 0.0])) is None

@@ -62,7 +62,7 @@ def test_imports_are_followed_through_every_form(library):
     assert imported(library, "import vibroimpact.top as t") == everything
 
 
-def test_what_is_not_imported_is_not_listed(library):
+def test_only_imported_files_are_listed(library):
     assert imported(library, "import vibroimpact.alone") == {"__init__.py", "alone.py"}
     assert imported(library, "from vibroimpact.inner.sibling import x") == {
         "__init__.py",
@@ -73,7 +73,7 @@ def test_what_is_not_imported_is_not_listed(library):
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_the_files_of_a_script_are_those_that_python_loads(script):
+def test_imported_files_cover_what_python_loads(script):
     """Against the interpreter: run the script's imports, list the modules of the package that were
     loaded.
     """
@@ -97,7 +97,7 @@ def test_the_files_of_a_script_are_those_that_python_loads(script):
     assert loaded <= set(imported_files(script, ROOT / "src"))
 
 
-def test_a_config_digest_stands_for_keys_and_values():
+def test_config_digest_depends_on_keys_and_values():
     digest = config_digest({"a": 1.0, "b": {"c": [1, 2]}})
     assert digest == config_digest({"b": {"c": [1, 2]}, "a": 1.0})
     others = [
@@ -109,7 +109,7 @@ def test_a_config_digest_stands_for_keys_and_values():
     assert digest not in {config_digest(other) for other in others}
 
 
-def test_a_source_digest_stands_for_the_contents_wherever_they_lie(tmp_path):
+def test_source_digest_depends_on_contents_not_location(tmp_path):
     for folder in ("here", "there"):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "a.py").write_text("1")

@@ -38,19 +38,19 @@ def ranked(monkeypatch):
     return run
 
 
-def test_what_is_named_comes_before_an_effect_that_was_not_added_to_it(ranked):
+def test_named_effect_ranks_before_a_rejected_addition(ranked):
     """28 units beyond the threshold, but held-out records contradict it: the mass alone is the
     answer, and the first of the list.
     """
     assert ranked(28.0, "named", None) == ["added_mass", "added_mass+quadratic_stiffness"]
 
 
-def test_what_was_added_comes_first(ranked):
+def test_added_effect_ranks_first(ranked):
     assert ranked(28.0, "named", SPRING) == ["added_mass+quadratic_stiffness", "added_mass"]
 
 
 @pytest.mark.parametrize(
     ("gain", "first"), [(28.0, "added_mass+quadratic_stiffness"), (10.0, "added_mass")]
 )
-def test_where_nothing_is_named_gain_decides(ranked, gain, first):
+def test_ranking_without_a_name_follows_the_gain(ranked, gain, first):
     assert ranked(gain, "unknown", None)[0] == first

@@ -14,7 +14,7 @@ PAIR = candidate_named("hertz@all+foliate_obstacle@all")
 VALUES = {"excitation": {"point": "shaker", "direction": [0.0, -2.0, 0.0]}}
 
 
-def test_a_law_is_exchanged_for_another_of_its_quantity_alone():
+def test_law_is_replaced_by_one_of_the_same_quantity():
     assert [(pair.name, number) for pair, number in exchanged(PAIR, VALUES)] == [
         ("contact_stiffness@all+foliate_obstacle@all", 0)
     ]
@@ -22,7 +22,7 @@ def test_a_law_is_exchanged_for_another_of_its_quantity_alone():
     assert exchanged(candidate_named("hertz@all+contact_stiffness@all"), VALUES) == []
 
 
-def test_a_spring_that_may_give_way_is_tried_as_one_that_never_does_where_the_catalogue_has_it():
+def test_saturating_spring_is_replaced_by_a_linear_one():
     """A rod along the force; a rod is at the drive point alone, and along an axis."""
     spring = candidate_named("coulomb_friction@apex+saturation_stiffness@shaker")
     assert [(pair.name, number) for pair, number in exchanged(spring, VALUES)] == [
@@ -36,7 +36,7 @@ def test_a_spring_that_may_give_way_is_tried_as_one_that_never_does_where_the_ca
     )
 
 
-def test_it_is_searched_from_where_the_other_effect_is_at_every_value_of_its_own():
+def test_replacement_search_starts_from_the_partner():
     ((pair, number),) = exchanged(PAIR, VALUES)
     points = starts(pair, number, SimpleNamespace(candidate=PAIR, unit=np.array([0.3, 0.7, 0.5])))
     np.testing.assert_allclose(points[:, 1:], np.tile([0.7, 0.5], (len(points), 1)))

@@ -93,5 +93,5 @@ def test_the_free_step_has_its_determinant_and_distance_from_one(scheme):
     )
 
 
-def test_the_checks_know_the_filter():
+def test_config_checks_use_the_filter_ratio():
     assert config_checks.FILTER_RATIO == RATIO

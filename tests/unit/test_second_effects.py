@@ -58,7 +58,7 @@ def found(paths=(), *finalists):
     return [(pair.name, float(unit[-1]), gain) for pair, unit, gain in rows]
 
 
-def test_what_simulation_puts_first_comes_first(simulated):
+def test_pairs_are_ordered_by_simulated_gain(simulated):
     gap = finalist("gap@all", 1124.0)
     simulated(
         [
@@ -78,7 +78,7 @@ def test_what_simulation_puts_first_comes_first(simulated):
     ]
 
 
-def test_of_two_points_of_a_pair_the_better_is_kept_and_what_is_thrown_off_is_not(simulated):
+def test_better_point_of_a_pair_is_kept(simulated):
     gap = finalist("gap@all", 1000.0)
     simulated(
         [(gap, "hertz@all", 0.2), (gap, "hertz@all", 0.6), (gap, "preload@all", 0.5)],
@@ -87,7 +87,7 @@ def test_of_two_points_of_a_pair_the_better_is_kept_and_what_is_thrown_off_is_no
     assert found((), gap) == [("gap@all+hertz@all", 0.6, 1300.0)]
 
 
-def test_the_second_effect_is_tried_where_else_it_was_screened(simulated):
+def test_second_effect_is_tried_at_its_other_places(simulated):
     gap = finalist("gap@all", 1000.0)
     simulated(
         [(gap, "clearance@shaker", 0.3)],
@@ -98,7 +98,7 @@ def test_the_second_effect_is_tried_where_else_it_was_screened(simulated):
     ]
 
 
-def test_without_the_best_only_a_few_are_simulated(simulated, monkeypatch):
+def test_few_pairs_without_the_best_are_simulated(simulated, monkeypatch):
     first, other = finalist("gap@all", 1000.0), finalist("hertz@all", 900.0)
     simulated(
         [
@@ -119,7 +119,7 @@ def test_without_the_best_only_a_few_are_simulated(simulated, monkeypatch):
     ]
 
 
-def test_the_rest_of_one_law_is_simulated_whatever_a_sum_says(simulated, monkeypatch):
+def test_stiffness_and_damping_of_one_contact_are_paired(simulated, monkeypatch):
     """A soft contact with a Hunt-Crossley damping of 19 s/m was the forty-second of the sums, and
     explained most by simulation.
     """
@@ -155,7 +155,7 @@ ROWS = [
         ({"linear": ROWS[:2]}, []),
     ],
 )
-def test_a_lowest_record_that_is_not_quite_linear_tells_of_one_effect(monkeypatch, change, names):
+def test_weakly_nonlinear_lowest_record_names_one_effect(monkeypatch, change, names):
     monkeypatch.setattr(
         second,
         "simulate_path",
@@ -190,7 +190,7 @@ ALL, BEST = [0.4, 0.2, 0.8, 1.0], [0.4]
         ("hunt_crossley@all", "gap@all", False, BEST),
     ],
 )
-def test_what_no_sum_tells_is_tried_at_every_value(monkeypatch, first, name, hidden, units):
+def test_non_additive_pairs_are_tried_at_every_value(monkeypatch, first, name, hidden, units):
     """Nine times the damping, in a tube that is pressed to its hole, was simulated at six tenths
     alone, where the sum put it, and not found; a soft contact with a heavy damping was proposed
     with a stiff one.

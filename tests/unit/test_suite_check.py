@@ -37,12 +37,12 @@ def verdict(kind, *sets, factor=None):
         ("swapped", verdict("ambiguous", ["gap"], ["sensor_gain"]), False),
     ],
 )
-def test_a_verdict_is_right_or_told_why_not(name, said, right):
+def test_wrong_verdict_has_its_reasons(name, said, right):
     (row,) = table({name: said})
     assert row["right"] == right and bool(row["faults"]) != right
 
 
-def test_every_check_hides_what_the_generator_knows():
+def test_suite_checks_hide_known_effects():
     from vibroimpact_truth.hidden import EFFECTS
     from vibroimpact_truth.measure import INSTRUMENTS
 
@@ -52,7 +52,7 @@ def test_every_check_hides_what_the_generator_knows():
     }
 
 
-def test_what_only_the_model_has_is_in_its_configuration(study_config):
+def test_model_only_effects_are_in_its_configuration(study_config):
     plain = study_config.model_dump(mode="json")
     assert CHECKS["nothing"].values(plain) == plain
     assert {support["gap_factor"] for support in CHECKS["swapped"].values(plain)["supports"]} == {

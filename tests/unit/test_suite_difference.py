@@ -62,7 +62,7 @@ def written(folder, verdicts):
     return folder
 
 
-def test_verdicts_are_held_against_each_other(tmp_path):
+def test_verdicts_of_two_suites_are_compared(tmp_path):
     friction, lobes = ["dry_friction"], ["foliate_obstacle"]
     plain = written(
         tmp_path / "plain",

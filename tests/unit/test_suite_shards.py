@@ -48,7 +48,7 @@ def test_shards_add_up():
         ("9", "a/b", "shard = a/b"),
     ],
 )
-def test_no_shard_is_refused_by_a_sentence(count, shard, named):
+def test_invalid_shard_is_refused(count, shard, named):
     with pytest.raises(ValueError, match=f"^{named}: give"):
         shard_of(count, shard)
 
@@ -58,7 +58,7 @@ def test_a_table_is_read_as_it_was_written(shards):
     assert repr(read_table(file)) == repr(read(folder)[2:])  # NaN is not equal to itself
 
 
-def test_what_was_judged_elsewhere_is_known_and_counts_once(shards):
+def test_imported_verdicts_count_once(shards):
     folder, file = shards
     assert (
         numbers_judged(folder) == [0, 1, 2, 3]

@@ -7,12 +7,12 @@ BENT = Prepared([], None, linear_stage=True, nonlinear_low=True)
 SHOWN = [0, 2, 4]
 
 
-def test_a_linear_record_tells_by_the_modes_that_it_shows():
+def test_linear_record_determines_effects_by_its_modes():
     assert telling_modes(LINEAR, SHOWN) == SHOWN
     assert telling_modes(LINEAR, SHOWN, for_all=True) is None  # a bank is for other campaigns
 
 
-def test_a_record_that_something_bends_leaves_linear_effects_to_simulation():
+def test_nonlinear_record_defers_linear_effects():
     """A preload beside nine times the damping: the damping was no candidate, and {offset,
     square-law drag} was told.
     """
@@ -22,5 +22,5 @@ def test_a_record_that_something_bends_leaves_linear_effects_to_simulation():
     )  # where it must be quick, the three that come nearest are simulated
 
 
-def test_a_record_without_modes_tells_nothing():
+def test_record_without_modes_determines_no_effect():
     assert telling_modes(Prepared([], None, linear_stage=False), None) is None

@@ -23,7 +23,7 @@ PAIR = "added_mass@apex+modal_damping@structure"
         (PAIR, "coulomb_friction@apex@alone+hertz@all", True),
     ],
 )
-def test_room_beside_or_in_place_of_what_the_lowest_record_told(adopted, candidate, expected):
+def test_at_most_two_effects_with_the_adopted_ones(adopted, candidate, expected):
     prepared = Prepared([], adopted=None if adopted is None else {"name": adopted})
     assert prepared.room(candidate_named(candidate)) is expected
 
@@ -42,7 +42,7 @@ def test_room_beside_or_in_place_of_what_the_lowest_record_told(adopted, candida
         (PAIR, [], []),
     ],
 )
-def test_what_is_simulated_of_a_candidate(adopted, in_place, expected):
+def test_simulated_variants_of_a_candidate(adopted, in_place, expected):
     """What there is no room for is not simulated, and what can not have been taken for a linear
     effect not in its place.
     """
@@ -55,7 +55,7 @@ def test_what_is_simulated_of_a_candidate(adopted, in_place, expected):
     ] == expected
 
 
-def test_no_place_is_ruled_out_where_the_record_shows_no_linear_modes_with_what_is_adopted():
+def test_no_place_is_excluded_without_linear_modes():
     candidates = [
         candidate_named(name) for name in ("coulomb_friction@apex", "gap@all", "clearance@left_leg")
     ]

@@ -143,7 +143,7 @@ def test_an_interrupted_study_continues_where_it_stopped(study):
     assert study.finished.returncode == 0, study.finished.stderr
 
 
-def test_a_complete_study_has_tables_and_figures_and_nothing_left_to_do(study):
+def test_complete_study_has_tables_figures_and_no_jobs_left(study):
     for name in (
         "consistency.csv",
         "consistency_summary.csv",
@@ -156,7 +156,7 @@ def test_a_complete_study_has_tables_and_figures_and_nothing_left_to_do(study):
     assert study.plan() == {}
 
 
-def test_progress_tells_load_and_number_of_cases(study):
+def test_progress_shows_load_and_number_of_cases(study):
     told = study.stopped.stdout + study.stopped.stderr
     assert "Simulation at 0.5 N RMS: 2 of 4 cases" in told
     assert "Identification at 4 N RMS: 2 of 4 cases" in told
@@ -173,7 +173,7 @@ def test_progress_tells_load_and_number_of_cases(study):
         ("config/checks.py", set()),
     ],
 )
-def test_an_edited_file_reruns_the_stages_that_import_it_and_what_follows(study, file, expected):
+def test_edited_file_reruns_the_stages_that_import_it(study, file, expected):
     assert study.plan_after_edit(file) == expected
 
 
@@ -183,7 +183,7 @@ def test_an_added_load_simulates_only_what_is_new(study):
     assert "basis" not in plan
 
 
-def test_an_added_gap_or_load_of_a_study_without_series_simulates_only_what_is_new(study):
+def test_added_load_without_series_simulates_only_new_cases(study):
     values = {**study.changed(record={"keep_time_series": False}), "study": "added"}
     assert study.snakemake("-j2", values=values).returncode == 0
     assert study.plan(values=values) == {}
@@ -216,7 +216,7 @@ def test_the_timing_is_made_on_request_from_all_jobs(study):
     assert study.plan() == {}
 
 
-def test_an_edited_figure_reruns_its_figures_and_an_edited_method_no_simulation(study):
+def test_edited_figure_or_method_reruns_no_simulation(study):
     assert study.plan_after_edit("figures/study/shapes.py") == {"figures_identification", "all"}
     assert study.plan_after_edit("identify/lscf.py") == {
         "identify",
@@ -238,7 +238,7 @@ def test_time_series_are_written_only_where_they_are_kept(study):
     assert "simulate_to_spectra" in run.stderr + run.stdout
 
 
-def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
+def test_wrong_configuration_is_reported_before_any_plan(study):
     run = study.snakemake(
         "--dry-run", values=study.changed(spectra={"overlp": 0.5}, record={"duration_s": 1.0})
     )
@@ -253,9 +253,7 @@ def test_a_wrong_configuration_is_told_in_sentences_before_any_plan(study):
     ("structure", "file", "jobs"),
     [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)],
 )
-def test_a_measured_structure_is_planned_candidate_by_candidate(
-    study, tmp_path, structure, file, jobs
-):
+def test_measured_structure_is_planned_by_candidate(study, tmp_path, structure, file, jobs):
     (tmp_path / file).touch()
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data={tmp_path}")
     assert run.returncode == 0, run.stdout + run.stderr
@@ -279,7 +277,7 @@ def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
         assert "discrepancy_prepare" not in planned
 
 
-def test_a_wrong_structure_file_is_told_before_any_plan(study, tmp_path):
+def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
     (tmp_path / "bench.nc").touch()
     (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [60, 5]}")
     run = study.snakemake(
@@ -295,7 +293,7 @@ def test_a_wrong_structure_file_is_told_before_any_plan(study, tmp_path):
     )
 
 
-def test_a_quick_run_is_one_job_and_a_full_one_a_job_per_candidate(study, tmp_path):
+def test_quick_run_is_one_job_full_run_one_per_candidate(study, tmp_path):
     (tmp_path / "bench.nc").touch()
     planned = {}
     for quick in ("yes", "no"):
@@ -326,7 +324,7 @@ def test_a_quick_run_is_one_job_and_a_full_one_a_job_per_candidate(study, tmp_pa
     )
 
 
-def test_a_suite_judges_its_shard_without_what_was_judged_elsewhere(study, tmp_path):
+def test_suite_shard_skips_imported_campaigns(study, tmp_path):
     asked = [
         "--dry-run",
         "suite",
@@ -349,7 +347,7 @@ def test_a_suite_judges_its_shard_without_what_was_judged_elsewhere(study, tmp_p
 
 
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
-def test_a_missing_measurement_folder_is_told_with_where_to_get_it(study, structure):
+def test_missing_measurements_name_their_source(study, structure):
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")
     told = run.stdout + run.stderr
     assert run.returncode == 1
