@@ -295,3 +295,13 @@ def test_rules_hold_no_physics():
         code = re.sub(r"#.*|\"\"\".*?\"\"\"|r?f?\"[^\"]*\"", "", file.read_text())
         assert re.findall(r"\b\d+\.\d*\b|\b\d+e-?\d+\b", code) == [], file
         assert not re.search(r"^ +(run|shell):", file.read_text(), flags=re.M), file
+
+
+def test_test_names_are_short():
+    names = {
+        node.name: file.name
+        for file in (ROOT / "tests").rglob("test_*.py")
+        for node in ast.walk(tree_of(file))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
+    }
+    assert {name: file for name, file in names.items() if len(name) > 60} == {}
