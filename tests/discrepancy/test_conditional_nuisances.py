@@ -103,6 +103,7 @@ def test_negligible_spring_gives_no_nuisance_estimate(bench):
     assert nuisance_beside(bench, SPRING, {"coefficient": 6.0e6}) is None
 
 
+@pytest.mark.slow
 def test_spring_is_located_before_nuisances_are_known(bench):
     """Over four decades of the coefficient, modes 0.3 % and dampings 15 % off: to within a third,
     which is where nuisances are told.
@@ -216,6 +217,7 @@ def test_linear_record_leaves_no_free_nuisance(bent, null):
     )
 
 
+@pytest.mark.slow
 def test_true_spring_leaves_only_nuisances(bent, null):
     found = at(bent, null, COEFFICIENT["coefficient"])
     without = naming.explained(
@@ -228,6 +230,7 @@ def test_true_spring_leaves_only_nuisances(bent, null):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("coefficient", [6.0e6, 6.0e9])
 def test_wrong_spring_leaves_more_than_nuisances(bent, null, coefficient):
     found = at(bent, null, coefficient)
@@ -237,6 +240,7 @@ def test_wrong_spring_leaves_more_than_nuisances(bent, null, coefficient):
     )
 
 
+@pytest.mark.slow
 def test_finalist_is_scored_again_with_free_nuisances(bent, null):
     scales, seeds = {"cubic": 8.0e10}, 4
     unit = SPRING.normalised(COEFFICIENT, scales)

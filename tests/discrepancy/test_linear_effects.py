@@ -103,6 +103,7 @@ def read(prepared):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effects", "wanted"),
     [
@@ -141,6 +142,7 @@ def test_linear_effects_are_read_back(study_config, tmp_path, effects, wanted):
         assert low < best < high
 
 
+@pytest.mark.slow
 def test_single_effect_is_not_split_in_two(study_config, tmp_path):
     prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", MASS))
     assert (
@@ -149,6 +151,7 @@ def test_single_effect_is_not_split_in_two(study_config, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_contact_in_lowest_record_defers_linear_effects(study_config, tmp_path):
     soft = ("root_stiffness@roots", {"translation": 1.0e8, "rotation": 420.0})
     prepared = prepare(
@@ -187,6 +190,7 @@ def test_adopted_gain_error_is_no_evidence_for_other_effects(study_config, tmp_p
     assert linear_score(bench, None) < known - 30.0
 
 
+@pytest.mark.slow
 def test_gain_error_and_stinger_are_separated(study_config, tmp_path):
     path = file_of(study_config, tmp_path / "campaign.nc", STINGER, gains=(1.0, 1.4, 1.0, 1.0, 1.0))
     prepared = prepare(study_config, path)
@@ -202,6 +206,7 @@ def test_gain_error_and_stinger_are_separated(study_config, tmp_path):
     assert bench.bare.omega[0] > 1.05 * attach(study_config, bench.campaign).omega[0]
 
 
+@pytest.mark.slow
 def test_nonlinear_substitutes_sit_where_a_spring_would(study_config, tmp_path):
     """A rod at the shaker may be a friction or a stop there, not one at the top of a leg; what acts
     all along the tube is never ruled out by a place.

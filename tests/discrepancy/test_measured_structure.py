@@ -130,6 +130,7 @@ def test_linear_structure_gets_verdict_none(tmp_path):
     assert verdict.verdict == "none" and verdict.effects == [] and verdict.ambiguity_set == []
 
 
+@pytest.mark.slow
 def test_bouc_wen_hysteresis_is_at_most_called_friction(tmp_path):
     verdict = judged("bouc_wen", tmp_path)[0]
     assert verdict.verdict in ("named", "partly_explained", "ambiguous", "unknown")
@@ -139,6 +140,7 @@ def test_bouc_wen_hysteresis_is_at_most_called_friction(tmp_path):
     }
 
 
+@pytest.mark.slow
 def test_cubic_spring_is_found_in_random_records(tmp_path):
     verdict, rows, *_ = judged("cubic", tmp_path, periodic=False)
     assert (

@@ -221,6 +221,7 @@ def values(estimates, name):
     return found[np.isfinite(found)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", IDENTIFIED)
 @pytest.mark.parametrize("k", RESOLVED)
 def test_records_give_the_support_back_on_average(chain, k, method):
@@ -239,6 +240,7 @@ def test_records_give_the_support_back_on_average(chain, k, method):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", IDENTIFIED)
 @pytest.mark.parametrize("k", RESOLVED)
 def test_standard_errors_match_the_scatter(chain, k, method):

@@ -132,6 +132,7 @@ def real(config, key, pattern, name):
     return benchmark_campaign(name, files)
 
 
+@pytest.mark.slow
 def test_f16_mounting_softens_and_methods_agree(study_config):
     campaign = real(study_config, "f16_data", "F16Data_FullMSine_Level*.mat", "f16")
     linear = linear_models(campaign, F16)
@@ -153,6 +154,7 @@ def test_f16_mounting_softens_and_methods_agree(study_config):
     )
 
 
+@pytest.mark.slow
 def test_published_silverbox_coefficients_are_recovered(study_config):
     campaign = real(study_config, "silverbox_data", "SNJP_?m_full_FNSI_*.mat", "silverbox")
     linear = linear_models(campaign, SILVERBOX)

@@ -125,6 +125,7 @@ def test_the_default_study_is_planned_with_one_job_per_load(study):
     assert plan == {"simulate_to_spectra": 24, "identify": 6, **dict.fromkeys(once, 1)}
 
 
+@pytest.mark.slow
 def test_loads_are_identified_by_half_decade(study):
     plan = study.plan(values=study.changed(grid={"load_rms_N": [0.5, 1.5, 3.1, 3.2, 4.0]}))
     assert plan["simulate"] == plan["spectra"] == 3
@@ -183,6 +184,7 @@ def test_an_added_load_simulates_only_what_is_new(study):
     assert "basis" not in plan
 
 
+@pytest.mark.slow
 def test_added_load_without_series_simulates_only_new_cases(study):
     values = {**study.changed(record={"keep_time_series": False}), "study": "added"}
     assert study.snakemake("-j2", values=values).returncode == 0
@@ -206,6 +208,7 @@ def test_a_changed_key_reruns_the_stages_that_use_it(study):
     )
 
 
+@pytest.mark.slow
 def test_the_timing_is_made_on_request_from_all_jobs(study):
     assert study.plan("timing") == {"timing": 1}
     run = study.snakemake("-j2", "timing")
@@ -216,6 +219,7 @@ def test_the_timing_is_made_on_request_from_all_jobs(study):
     assert study.plan() == {}
 
 
+@pytest.mark.slow
 def test_edited_figure_or_method_reruns_no_simulation(study):
     assert study.plan_after_edit("figures/study/shapes.py") == {"figures_identification", "all"}
     assert study.plan_after_edit("identify/lscf.py") == {
@@ -227,6 +231,7 @@ def test_edited_figure_or_method_reruns_no_simulation(study):
     }
 
 
+@pytest.mark.slow
 def test_time_series_are_written_only_where_they_are_kept(study):
     assert len(list((study.results / "timeseries").glob("*.nc"))) == 4
     values = {**study.changed(record={"keep_time_series": False}), "study": "short"}
@@ -249,6 +254,7 @@ def test_wrong_configuration_is_reported_before_any_plan(study):
     assert "Traceback" not in told and "Building DAG" not in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("structure", "file", "jobs"),
     [("f16", "F16Data_FullMSine_Level1.mat", 18), ("silverbox", "SNJP_um_full_FNSI_5.mat", 14)],
@@ -324,6 +330,7 @@ def test_quick_run_is_one_job_full_run_one_per_candidate(study, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_suite_shard_skips_imported_campaigns(study, tmp_path):
     asked = [
         "--dry-run",
@@ -346,6 +353,7 @@ def test_suite_shard_skips_imported_campaigns(study, tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("structure", ["f16", "silverbox"])
 def test_missing_measurements_name_their_source(study, structure):
     run = study.snakemake("--dry-run", structure, "--config", f"{structure}_data=nowhere")
@@ -356,6 +364,7 @@ def test_missing_measurements_name_their_source(study, structure):
     )
 
 
+@pytest.mark.slow
 def test_lint_has_no_advice_but_on_conda_and_containers(study):
     run = study.snakemake("--lint")
     advice = set(re.findall(r"^ +\* (.*)$", run.stdout + run.stderr, flags=re.M))
