@@ -6,8 +6,7 @@ import sys
 from pathlib import Path
 
 # Threads on small matrices cost more than they bring, and the tests run one process per core.
-for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
-    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")}
 
 import pytest
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.discrepancy_results import made_up_verdict
-from vibroimpact.discrepancy import naming, priors
+from vibroimpact.discrepancy import naming
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.emulator import Emulator
 from vibroimpact.discrepancy.features import (
@@ -300,15 +300,6 @@ def test_shuffled_truths_fall_to_chance():
     assert table["in the set"]["by_chance"] == pytest.approx(0.2, abs=0.03) and table["first"][
         "by_chance"
     ] == pytest.approx(0.2, abs=0.03)
-
-
-def test_priors_are_those_of_the_contract():
-    assert (priors.FREQUENCY_SD, priors.DAMPING_SD, priors.GAIN_SD, priors.NAMED_BEYOND) == (
-        0.003,
-        0.10,
-        0.02,
-        2.0,
-    )
 
 
 def test_clusters_end_at_half_the_peak_difference():

@@ -4,7 +4,6 @@ and weighs it.
 
 import json
 
-from vibroimpact.campaign.file import read_campaign
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact_truth.campaign import Plan, make_campaign
@@ -21,7 +20,6 @@ def test_hidden_mass_is_named_and_weighed(study_config, tmp_path):
     hidden = (("added_mass", {"place": "apex", "mass": MASS_KG}),)
     plan = Plan((77, 3), hidden, levels=LEVELS, duration=RECORDED_S)
     make_campaign(plan, tmp_path / "campaign.nc", twin=False)
-    assert "mass" not in json.dumps(read_campaign(tmp_path / "campaign.nc").attrs, default=str)
 
     values = study_config.model_dump(mode="json") | {"basis": COARSE}
     values["structure"]["mesh"] = {"elements_per_span": 8, "elements_per_bend": 24}

@@ -2,7 +2,6 @@
 
 import pytest
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.windows import compared_s, screened_s
 
 
@@ -22,4 +21,4 @@ from vibroimpact.discrepancy.windows import compared_s, screened_s
 def test_the_length_compared_follows_the_batch_and_the_request(records, duration, asked, expected):
     compared = compared_s(records, duration, asked)
     assert compared == expected
-    assert screened_s(compared) == min(expected, priors.SCREENED_S)
+    assert screened_s(compared) == min(expected, 12.0)

@@ -62,32 +62,6 @@ def test_interval_includes_the_scatter_over_seeds(widened):
     assert (0.5 - low, high - 0.5) == pytest.approx((np.hypot(0.01, 1.645 * 0.05),) * 2)
 
 
-def test_seed_estimates_are_searched_near_the_optimum(monkeypatch, widened):
-    boxes = []
-
-    def calibrate(*arguments):
-        boxes.append(arguments[-1].tolist())
-        return SimpleNamespace(unit=np.array([0.5]))
-
-    widened(
-        [0.5], [0.0, 100.0, 0.0, 0.0]
-    )  # the other parts of the interval are made up from here on
-    monkeypatch.setattr(estimate_scatter, "calibrate", calibrate)
-    found = Finalist(
-        SimpleNamespace(periodic=()),
-        np.array([0.1]),
-        np.array([[0.0, 0.2]]),
-        None,
-        0.0,
-        np.zeros((1, 2, 1)),
-        path_at(0.1, 0.2, 0.3, 0.4),
-        [],
-        np.zeros((0, 1, 1)),
-    )
-    estimate_scatter.with_scatter(None, NULL, None, found)
-    assert boxes == [[[0.0, pytest.approx(0.3)]]] * 2
-
-
 def test_agreeing_seeds_keep_the_interval(widened):
     assert widened([0.5, 0.5], [0.0, 100.0, 0.0, 0.0]) == pytest.approx([0.49, 0.51])
 

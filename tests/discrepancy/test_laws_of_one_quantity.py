@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from vibroimpact.discrepancy import conclusion
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.same_quantity import exchanged, starts
 
@@ -41,7 +40,3 @@ def test_replacement_search_starts_from_the_partner():
     points = starts(pair, number, SimpleNamespace(candidate=PAIR, unit=np.array([0.3, 0.7, 0.5])))
     np.testing.assert_allclose(points[:, 1:], np.tile([0.7, 0.5], (len(points), 1)))
     np.testing.assert_allclose(points[:, :1], pair.first.design())
-
-
-def test_the_job_that_concludes_counts_its_own_seconds(tmp_path):
-    assert 0.0 < conclusion.elapsed(tmp_path) < 3600.0

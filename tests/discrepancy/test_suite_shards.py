@@ -4,7 +4,7 @@ becomes one table.
 
 import pytest
 
-from tests.unit.test_suite_difference import written
+from tests.discrepancy.test_suite_difference import written
 from tests.unit.test_suite_page import effect, verdict_of
 from vibroimpact.discrepancy.dag import numbers_added, numbers_judged, shard_of
 from vibroimpact.discrepancy.suite import rates, read, read_shards, read_table

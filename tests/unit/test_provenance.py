@@ -77,7 +77,7 @@ def test_only_imported_files_are_listed(library):
 # interpreter loads what all scripts share from elsewhere and forks for each.
 LISTING = """
 import json, os, sys
-import h5py, jinja2, matplotlib.pyplot, netCDF4, numba.extending, pandas, pint, pydantic, pyuff, yaml
+import h5py, jinja2, matplotlib.pyplot, netCDF4, numba.extending, pandas, pint, pydantic, pyuff
 import scipy.interpolate, scipy.optimize, scipy.signal, scipy.sparse.linalg, scipy.stats, xarray
 for name, imports in json.load(sys.stdin).items():
     if os.fork() == 0:
