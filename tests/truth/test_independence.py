@@ -45,14 +45,6 @@ def test_compiled_code_is_in_one_file():
     ] == ["kernel.py"]
 
 
-def test_files_hold_one_idea():
-    assert [
-        file.name
-        for file in PACKAGE.rglob("*.py")
-        if len(file.read_text().splitlines()) > 300 and file.name != "kernel.py"
-    ] == []
-
-
 def test_every_effect_has_its_amounts():
     assert set(AMOUNTS) == set(EFFECTS) | set(STRANGERS)
 
