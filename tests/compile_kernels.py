@@ -15,10 +15,10 @@ import numpy as np
 def library_kernel():
     """Integrate a mass between stops for a few steps."""
     from tests.oscillator import oscillator
-    from vibroimpact.integration.batch import Schedule, march_lanes
-    from vibroimpact.integration.kernels import LANES
+    from vibroimpact.integration.batch import Schedule, integrate_batch
+    from vibroimpact.integration.kernels.lanes import LANES
 
-    march_lanes(
+    integrate_batch(
         oscillator(1.0, 400.0, contact_stiffness=1.0e5),
         Schedule(20480, 2048, 0.0, 0.02, "exact"),
         np.full(LANES, 1.0e-3),
