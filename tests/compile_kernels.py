@@ -29,10 +29,10 @@ def library_kernel():
 
 def truth_kernel():
     """Simulate a short record of the tube with the other code."""
-    from vibroimpact_truth.campaign import Plan, forces, records_of
+    from vibroimpact_truth.campaign import Plan, forces, simulate_records
 
     plan = Plan((1,), levels=((10.0, 1.3, "fit"),), duration=0.05)
-    records_of(plan, forces(plan))
+    simulate_records(plan, forces(plan))
 
 
 if __name__ == "__main__":
