@@ -43,10 +43,10 @@ smoke: $(READY) ## the same study made tiny, in under a minute
 	$(BIN)/snakemake -j$(JOBS) --configfile config/smoke.yaml
 
 test: $(READY) ## the fast tier of every kind of test, in parallel
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow"
 
-test-all: $(READY) ## every test
-	$(BIN)/python -m pytest
+test-all: $(READY) ## every test, and the coverage of the library
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --cov --cov-report term
 
 lint: $(READY) ## formatting, static checks and types
 	$(BIN)/ruff format --check

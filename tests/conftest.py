@@ -1,25 +1,36 @@
 """What several test files share: the study's configuration and its reduced model, built once."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
-os.environ.setdefault(
-    "OMP_NUM_THREADS", "1"
-)  # as the workflow's jobs have it: threads on small matrices cost more than they bring
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Threads on small matrices cost more than they bring, and the tests run one process per core.
+os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")}
 
 import pytest
 
 from vibroimpact.config.reading import load_config
 from vibroimpact.reduction.reduced_model import build_model
 
-CONFIG = Path(__file__).resolve().parents[1] / "config"
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session):
+    """Compile the kernels once, before parallel workers start and each compiles its own."""
+    if session.config.getoption("numprocesses", None) and not hasattr(
+        session.config, "workerinput"
+    ):
+        path = os.pathsep.join([str(ROOT / "src"), str(ROOT)])
+        command = [sys.executable, "-m", "tests.compile_kernels"]
+        subprocess.run(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": path}, check=True)
 
 
 @pytest.fixture(scope="session")
 def study_config():
     """The default configuration."""
-    return load_config(CONFIG / "study.yaml")
+    return load_config(ROOT / "config" / "study.yaml")
 
 
 @pytest.fixture(scope="session")

@@ -222,11 +222,11 @@ def test_the_public_interface_is_for_users_only():
     assert [file for file in [*FILES, *SCRIPTS] if imports(file) & public] == []
 
 
-def test_no_drawer_for_odds_and_ends():
+def test_no_module_is_called_utils_or_helpers():
     assert [file for file in FILES if re.search("util|helper|common|misc", file.stem)] == []
 
 
-def test_every_file_and_public_function_says_what_it_is():
+def test_every_file_and_public_function_has_a_docstring():
     silent = []
     for file in FILES:
         tree = tree_of(file)
@@ -317,3 +317,13 @@ def test_examples_use_the_public_interface_only(example):
         if name.startswith("vibroimpact") and any(part.startswith("_") for part in name.split("."))
     ]
     assert private == []
+
+
+def test_test_names_are_short():
+    names = {
+        node.name: file.name
+        for file in (ROOT / "tests").rglob("test_*.py")
+        for node in ast.walk(tree_of(file))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
+    }
+    assert {name: file for name, file in names.items() if len(name) > 60} == {}

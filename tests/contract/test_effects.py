@@ -63,7 +63,7 @@ def test_the_catalogue_is_complete():
 
 
 @pytest.mark.parametrize("effect", EFFECTS.values(), ids=EFFECTS)
-def test_an_entry_says_what_it_is(effect):
+def test_catalogue_entries_are_described(effect):
     assert effect.explanation and effect.source
     assert set(effect.broken) <= set(TESTS)
     assert set(effect.aliases) <= CATALOGUE - {effect.id}
@@ -74,7 +74,7 @@ def test_an_entry_says_what_it_is(effect):
 
 
 @pytest.mark.parametrize("name", OF_THE_MODEL)
-def test_a_variant_is_a_valid_configuration_and_the_original_stays(study_config, name):
+def test_variant_is_valid_and_leaves_the_original_unchanged(study_config, name):
     values = study_config.model_dump(mode="json")
     before = repr(values)
     for location in EFFECTS[name].locations(values):
@@ -140,7 +140,7 @@ def test_normalised_parameters_come_back(name):
 
 
 @pytest.mark.parametrize("name", [name for name in OF_THE_MODEL if EFFECTS[name].other_laws])
-def test_other_laws_are_valid_configurations_and_the_original_stays(study_config, name):
+def test_other_laws_are_valid_and_leave_the_original(study_config, name):
     values = study_config.model_dump(mode="json")
     before, candidate = repr(values), Candidate(name, EFFECTS[name].locations(values)[0])
     parameters = candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES)
@@ -163,7 +163,7 @@ def test_other_laws_are_valid_configurations_and_the_original_stays(study_config
         ),
     ],
 )
-def test_a_law_that_bends_little_by_little_is_as_stiff_and_as_strong_in_all(
+def test_gradual_law_keeps_initial_stiffness_and_limit_force(
     study_config, name, stiffness, limit, parameters
 ):
     """And it gives way earlier: a quarter of it at a quarter of the displacement at which the other

@@ -105,7 +105,7 @@ def test_a_stop_acts_along_the_force_wherever_it_sits(compared, location):
     )
 
 
-def test_a_stop_that_was_added_is_none_of_all_supports(compared):
+def test_added_stop_is_not_among_all_supports(compared):
     """An effect of all supports leaves the stop as it is, whichever of the two comes first."""
     values, _, _, sizes = compared
     stop = Candidate("clearance", "apex")
@@ -125,7 +125,7 @@ def test_a_stop_that_was_added_is_none_of_all_supports(compared):
         assert results[0] == results[1], other.name
 
 
-def test_a_turned_force_drives_what_is_across(compared):
+def test_misaligned_force_drives_the_transverse_direction(compared):
     values, campaign, bare, _ = compared
     model = attach(
         check_config(
@@ -144,7 +144,7 @@ def test_a_turned_force_drives_what_is_across(compared):
     np.testing.assert_array_equal(model.sensor_shapes, bare.sensor_shapes)
 
 
-def test_a_force_turned_about_the_tube_stays_across_it(compared):
+def test_force_turned_about_the_tube_stays_transverse(compared):
     values, campaign, bare, _ = compared
     model = attach(
         check_config(
@@ -166,7 +166,7 @@ def test_a_force_turned_about_the_tube_stays_across_it(compared):
     )
 
 
-def test_a_mode_may_pass_its_neighbours(compared):
+def test_shifted_mode_may_cross_its_neighbours(compared):
     values, campaign, bare, _ = compared
     model = attach(
         check_config(

@@ -92,7 +92,7 @@ def test_the_difference_falls_with_the_modes(study_config):
         ), falling
 
 
-def test_the_difference_falls_with_the_square_of_the_bend_s_elements(study_config):
+def test_difference_is_second_order_in_bend_elements(study_config):
     try:
         rows = mesh_rows(study_config)
     except JudgeAbsent as absent:

@@ -32,7 +32,7 @@ def test_the_sentence_names_the_remedy(nothing_installed, judge, remedy):
         judge()
 
 
-def test_the_study_goes_on_without_them(nothing_installed, study_config, tmp_path):
+def test_study_runs_without_external_solvers(nothing_installed, study_config, tmp_path):
     verdicts = judges.all_verdicts(study_config)
     assert {check.case for check in verdicts.checks} == {"judge scipy"} and all(
         check.passed for check in verdicts.checks
@@ -42,7 +42,7 @@ def test_the_study_goes_on_without_them(nothing_installed, study_config, tmp_pat
     assert "OpenSees" in (tmp_path / "validation_judges.txt").read_text()
 
 
-def test_calculix_tells_what_went_wrong():
+def test_calculix_error_is_reported():
     try:
         with pytest.raises(RuntimeError, match="ccx ended"):
             judges_presence.calculix("*STEP\n*FREQUENCY\n")

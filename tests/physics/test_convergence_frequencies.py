@@ -21,7 +21,7 @@ def mesh_rows(study_config):
     return convergence_mesh.mesh_rows(study_config, refined=("legs", "bend"), stiffness=(4.0e6,))
 
 
-def test_an_order_comes_back_from_its_own_sequence():
+def test_convergence_order_of_a_known_sequence():
     sizes = 0.5 ** np.arange(5)
     values = 3.0 + 0.7 * sizes**4
     assert fitted_order(sizes[:-1], successive_changes(values)) == pytest.approx(4.0)
@@ -30,12 +30,12 @@ def test_an_order_comes_back_from_its_own_sequence():
         fitted_order(sizes[:1], values[:1])
 
 
-def test_frequencies_converge_with_the_mesh_at_the_orders_of_theory(mesh_rows):
+def test_frequencies_converge_at_the_theoretical_order(mesh_rows):
     checks = convergence_mesh.mesh_checks(mesh_rows)
     assert len(checks) == 6 and failed(checks) == []
 
 
-def test_the_bend_error_is_that_of_chords_in_place_of_arcs(mesh_rows):
+def test_bend_error_is_that_of_chords_for_arcs(mesh_rows):
     # theta²/24 is the share by which a chord is shorter than its arc; a shorter bend is stiffer.
     own = {
         row["elements_per_bend"]: row["frequency_Hz"]
@@ -59,7 +59,7 @@ def test_published_first_frequencies_by_number_of_points(study_config):
     assert failed(contact_points.published_checks(study_config)) == []
 
 
-def test_the_first_frequency_converges_with_the_points_at_order_1_and_trapezoidal_at_order_2(
+def test_first_frequency_converges_with_contact_points(
     study_config,
 ):
     checks = contact_points.order_checks(
@@ -68,7 +68,7 @@ def test_the_first_frequency_converges_with_the_points_at_order_1_and_trapezoida
     assert len(checks) == 2 and failed(checks) == []
 
 
-def test_five_points_follow_the_layer_where_the_contact_is_and_one_never_clamps(study_config):
+def test_one_contact_point_never_clamps_the_tube(study_config):
     rows = contact_points.contact_point_rows(
         study_config,
         sharing=(("equal", 1), ("equal", 5)),

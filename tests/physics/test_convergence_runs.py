@@ -41,7 +41,7 @@ def rows(study_config):
     return found
 
 
-def test_linear_modes_lose_frequency_as_the_trapezoidal_rule_does(study_config):
+def test_modes_shift_as_the_trapezoidal_rule_does(study_config):
     rows = convergence_period.period_rows(study_config, rates=(25600, 51200, 102400))
     assert [
         check.row() for check in convergence_period.period_checks(rows) if not check.passed
@@ -66,12 +66,12 @@ def test_a_seed_has_the_same_force_at_every_step(study_config):
     assert all(np.sqrt(np.mean((force - forces[-1]) ** 2)) < 0.03 for force in forces)
 
 
-def test_the_energy_of_impacts_closes_with_the_square_of_the_step(rows):
+def test_impact_energy_balance_is_second_order_in_the_step(rows):
     checks = energy_checks(statistics_rows(rows))
     assert len(checks) == 1 and checks[0].passed, checks[0].row()
 
 
-def test_statistics_do_not_tell_one_step_from_half_of_it(rows):
+def test_halving_the_step_leaves_statistics_unchanged(rows):
     table = [
         row
         for row in statistics_rows(rows)
@@ -85,7 +85,7 @@ def test_statistics_do_not_tell_one_step_from_half_of_it(rows):
     assert len(checks) > 8 and [check.row() for check in checks if not check.passed] == []
 
 
-def test_a_shifted_statistic_is_told(rows):
+def test_shifted_statistic_is_detected(rows):
     moved = [
         row | {"rms_force_N": row["rms_force_N"] * (1.5 if row["value"] == 25600 else 1.0)}
         for row in rows

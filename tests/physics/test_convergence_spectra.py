@@ -19,7 +19,7 @@ def test_white_noise_has_the_degrees_of_freedom_of_the_formula(study_config):
     assert [check.row() for check in spectra.measured_checks(rows) if not check.passed] == []
 
 
-def test_ringing_between_buffers_takes_degrees_of_freedom_from_a_peak(study_config, study_model):
+def test_ringing_across_buffers_costs_degrees_of_freedom(study_config, study_model):
     records = spectra.linear_records(study_model, study_config.seed, count=256)
     rows = spectra.linear_rows(
         study_model,
@@ -49,7 +49,7 @@ def test_the_power_kernel_is_that_of_the_window(window):
     assert expected.sum() / 8.0 == pytest.approx(1.0)
 
 
-def test_the_expected_spectrum_has_the_value_of_its_bins_and_the_level_of_a_long_buffer(
+def test_expected_spectrum_has_bin_values_and_long_buffer_level(
     study_model,
 ):
     spectrum = spectra.averaging(5.0, 0.5, "hann")
@@ -83,12 +83,12 @@ def gaussian_estimates(seeds, wander):
 
 
 @pytest.mark.parametrize("bins", [1, 10, 100])
-def test_a_gaussian_record_has_a_multiple_of_1_whatever_the_width(bins):
+def test_gaussian_record_has_unit_variance_ratio(bins):
     psd, nu, correlation = gaussian_estimates(200, 0.0)
     assert impacts.variance_multiple(psd, bins, nu, correlation)[0] == pytest.approx(1.0, abs=0.15)
 
 
-def test_a_wandering_level_shows_in_bands_and_hardly_in_bins():
+def test_drifting_level_shows_in_bands_not_in_bins():
     psd, nu, correlation = gaussian_estimates(200, 0.1)
     narrow, wide = (impacts.variance_multiple(psd, bins, nu, correlation)[0] for bins in (1, 100))
     assert narrow < 1.3 and wide > 5.0

@@ -185,7 +185,7 @@ def test_exact_spectra_give_the_support_back(study_config, study_model, window, 
 
 
 @pytest.mark.parametrize("k", RESOLVED)
-def test_without_the_window_s_kernel_the_test_above_is_red(study_config, study_model, k):
+def test_ignoring_window_leakage_biases_the_support(study_config, study_model, k):
     # The same Hann spectra, but the methods are told that no window was used.
     spectra = exact_spectra(study_config, study_model, k, 0.0, "hann").assign_attrs(window="none")
     errors = damping_errors(
@@ -221,6 +221,7 @@ def values(estimates, name):
     return found[np.isfinite(found)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", IDENTIFIED)
 @pytest.mark.parametrize("k", RESOLVED)
 def test_records_give_the_support_back_on_average(chain, k, method):
@@ -239,9 +240,10 @@ def test_records_give_the_support_back_on_average(chain, k, method):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", IDENTIFIED)
 @pytest.mark.parametrize("k", RESOLVED)
-def test_standard_errors_tell_the_scatter(chain, k, method):
+def test_standard_errors_match_the_scatter(chain, k, method):
     for name in ("k", "c"):
         found = values(chain[k][method], name)
         errors = values(chain[k][method], f"{name}_standard_error")

@@ -125,7 +125,7 @@ def test_a_case_does_not_depend_on_its_batch(study_model, short, impacting, lane
     assert_same(alone, 0, lanes, lane)
 
 
-def test_a_calm_neighbour_changes_no_bit(study_model, short, impacting):
+def test_linear_neighbour_lane_changes_no_bit(study_model, short, impacting):
     """Lanes that never touch share their vector with lanes that do; the pass count and the skips
     must not leak.
     """

@@ -132,7 +132,7 @@ def sliding(friction, normal=10.0, speed=(0.0, 0.02)):
     )
 
 
-def test_friction_stops_a_sliding_mass_after_the_coulomb_distance():
+def test_sliding_mass_stops_after_the_coulomb_distance():
     """v²/(2 mu g) with g = N/m; the elastic stick spring adds at most mu N / k_t."""
     run = trace(sliding(0.2), 0.02)
     rest = run.contact_displacement[0, 0, 1, -200:].mean()
@@ -371,7 +371,7 @@ def test_saturating_spring_is_linear_then_constant():
     )
 
 
-def test_laws_refuse_what_no_contact_can_be():
+def test_laws_refuse_impossible_contacts():
     with pytest.raises(
         ValueError, match="stick_stiffness must be positive where there is friction"
     ):

@@ -71,6 +71,7 @@ def host_can():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not host_can(), reason="needs an x86 processor with AVX2 and fused multiply-add"
 )

@@ -42,7 +42,7 @@ def report(rows):
     return worst
 
 
-def test_the_basis_has_the_size_of_the_paper_s(model):
+def test_basis_has_the_published_size(model):
     assert 85 <= model.modes <= 105
     assert (model.frequencies < 7500.0).sum() == len(model.full_mode_frequencies) == 75
     assert model.frequencies[:75] == pytest.approx(model.full_mode_frequencies, rel=1e-7)
@@ -53,7 +53,7 @@ def test_reduced_frequencies_are_right_from_free_to_clamped(report):
     assert max(report["all"].values()) < 1.0e-7
 
 
-def test_what_each_family_brings(report):
+def test_each_family_of_shapes_improves_the_basis(report):
     worst = {vectors: max(errors.values()) for vectors, errors in report.items()}
     assert worst["free_modes alone"] == pytest.approx(2.4e-2, rel=0.1)
     assert worst["without attachment_shapes"] > 1.0e-3 > 1.0e-5 > worst["without constrained_modes"]
@@ -152,7 +152,7 @@ def test_symmetric_tube_moves_symmetrically_in_its_first_modes(model):
     )
 
 
-def test_modal_damping_is_that_of_the_first_modes_of_the_whole_tube(model):
+def test_modal_damping_of_first_modes_is_that_of_the_full_tube(model):
     ratios = model.damping / (2.0 * model.omega)
     assert ratios[:2].tolist() == pytest.approx([0.015, 0.015]) and ratios[2:] == pytest.approx(
         np.full(model.modes - 2, 0.002)

@@ -68,9 +68,7 @@ def test_scaling_load_and_gap_scales_the_record_bit_for_bit(short_config, study_
     assert np.array_equal(doubled.contact_fraction, single.contact_fraction)
 
 
-def test_files_written_on_the_way_hold_what_the_whole_record_does(
-    short_config, study_model, records, cases, tmp_path
-):
+def test_streamed_files_equal_the_whole_record(short_config, study_model, records, cases, tmp_path):
     batch = cases[:2]
     paths = {case: tmp_path / f"{case.id}.nc" for case in batch}
     for case, record in simulate_cases(
@@ -148,7 +146,7 @@ def test_stress_at_20_newton_is_that_of_the_testbed(short_config, study_model):
     assert 60e6 < max(float(record.stress_peak.max()) for record in found) < 250e6
 
 
-def test_the_stress_flag_tells_of_the_peak(records):
+def test_stress_flag_follows_the_peak_stress(records):
     assert all(
         int(record.stress_flag) == int(record.stress_peak.max() > 60e6)
         for record in records.values()

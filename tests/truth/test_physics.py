@@ -85,6 +85,7 @@ def test_a_rigid_limit_is_the_bare_rig(effect, parameters):
     np.testing.assert_allclose(same, bare, rtol=0.0, atol=4e-2 * np.abs(bare).max())
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not DEV_NULL.exists(),
     reason="the development campaigns (shared data/campaigns) are not beside this checkout",

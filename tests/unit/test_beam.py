@@ -64,7 +64,7 @@ def test_bending_mass_is_friedman_and_kosmatka_closed_form():
     assert np.allclose(bending_mass(beam, length), expected, rtol=1e-12, atol=1e-18)
 
 
-def test_euler_bernoulli_mass_is_the_textbook_one():
+def test_euler_bernoulli_mass_matrix_is_the_textbook_one():
     beam = tube_beam(SECTION, MATERIAL, "euler_bernoulli")
     length = LENGTH
     textbook = np.array(

@@ -47,7 +47,7 @@ def write_f16(folder, name, count, period=PERIOD):
     )
 
 
-def test_levels_beyond_the_estimation_records_are_held_out(tmp_path):
+def test_validation_levels_are_held_out(tmp_path):
     for name, count in (
         ("Level1", 9),
         ("Level3", 9),
@@ -84,7 +84,7 @@ def test_a_level_given_twice_has_two_names(tmp_path):
     }
 
 
-def test_a_held_out_record_may_have_a_period_of_its_own(tmp_path):
+def test_held_out_record_may_have_another_period(tmp_path):
     write_f16(tmp_path, "Level1", 9)
     write_f16(tmp_path, "Level2_Validation", 4, period=16384)
     levels, _, _ = levels_of(f16_campaign(tmp_path.glob("*.mat")))
@@ -96,7 +96,7 @@ def test_a_held_out_record_may_have_a_period_of_its_own(tmp_path):
         assert level.response[2] == pytest.approx(level.force, abs=1.0e-6)
 
 
-def test_the_output_beside_the_input_is_read(tmp_path):
+def test_silverbox_input_and_output_are_paired(tmp_path):
     for level in (5, 50, 100):
         driven = periodic(30, level).T
         savemat(tmp_path / f"SNJP_um_full_FNSI_{level}.mat", {"um": driven, "fs": 2441.40625})
@@ -114,7 +114,7 @@ def test_the_output_beside_the_input_is_read(tmp_path):
     )
 
 
-def test_files_that_are_not_the_benchmarks_are_named(tmp_path):
+def test_foreign_files_are_named(tmp_path):
     savemat(tmp_path / "other.mat", {"Force": 1.0})
     with pytest.raises(ValueError, match="must hold the level"):
         f16_campaign([tmp_path / "other.mat"])
@@ -138,7 +138,8 @@ def real(name, folder, campaign_of):
     return campaign, own_study(name, asked, campaign, 0, asked.band_Hz)
 
 
-def test_the_aircraft_s_mounting_softens_and_two_methods_agree():
+@pytest.mark.slow
+def test_f16_mounting_softens_and_methods_agree():
     campaign, study = real("f16", "f16_ground_vibration", f16_campaign)
     linear = linear_models(campaign, study)
     base, levels = modes_of(linear["base"]), levels_of(campaign)[0]
@@ -159,7 +160,8 @@ def test_the_aircraft_s_mounting_softens_and_two_methods_agree():
     )
 
 
-def test_the_oscillator_s_published_coefficients_come_back():
+@pytest.mark.slow
+def test_published_silverbox_coefficients_are_recovered():
     campaign, study = real("silverbox", "silverbox", silverbox_campaign)
     linear = linear_models(campaign, study)
     assert modes_of(linear["base"]).frequency == pytest.approx([68.58], abs=0.02)

@@ -73,7 +73,7 @@ def test_rows_with_other_columns_are_refused(tmp_path):
         write_csv(tmp_path / "benchmark.csv", COLUMNS, [{"case": "a tube"}])
 
 
-def test_the_page_holds_every_peer_and_says_who_is_absent(tmp_path):
+def test_page_lists_every_peer_and_absent_ones(tmp_path):
     absent = ["JAX cannot be imported: install it"]
     write_page(
         tmp_path / "performance.md",
@@ -116,7 +116,7 @@ def test_work_and_precision_stand_side_by_side():
     assert "| R3 | 200000 | 0.0015 | 170 | 0.0021 | 170 |  |" in section(rows, "figure.png")
 
 
-def test_the_plain_loop_ends_where_ours_ends(problem, monkeypatch):
+def test_plain_loop_and_kernel_agree(problem, monkeypatch):
     """Over 1000 steps and more, hit hard: 1e-12 where both follow the contact iteration to
     round-off, 1e-4 where ours stops as usual.
     """
@@ -143,7 +143,7 @@ def test_peers_of_the_ordinary_environment_agree_with_ours(problem, peer):
     assert found.passed, found.sentence()
 
 
-def test_a_peer_with_another_gap_is_found_out(problem):
+def test_peer_with_another_gap_is_detected(problem):
     peer = plain.peers()[0]
     other = replace(
         peer,
@@ -154,7 +154,7 @@ def test_a_peer_with_another_gap_is_found_out(problem):
     assert "does NOT agree" in agreement(other, problem, STEPS_S).sentence()
 
 
-def test_a_case_does_not_see_how_many_others_run(problem):
+def test_case_is_independent_of_the_batch_size(problem):
     forces = np.stack([problem.force(STEPS_S, seed) for seed in range(16)], axis=1)
     parts = march_ours(problem, forces, schedule_of(STEPS_S))
     assert sum(part.displacement.shape[0] for part in parts) == 16
@@ -163,7 +163,7 @@ def test_a_case_does_not_see_how_many_others_run(problem):
     )
 
 
-def test_the_textbook_step_solves_newmark_s_equations():
+def test_textbook_step_solves_newmark_equations():
     omega, damping, dt = np.array([300.0]), np.array([12.0]), 1.0e-3
     c = newmark_map(omega, damping, dt)[:, 0]
     q0, v0, f0, f1 = 0.3, -2.0, 5.0, 7.0

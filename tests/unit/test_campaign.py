@@ -44,7 +44,7 @@ def campaign():
     )
 
 
-def test_what_is_written_is_read(campaign, tmp_path):
+def test_campaign_file_round_trip(campaign, tmp_path):
     write_campaign(campaign, tmp_path / "campaign.nc")
     read = read_campaign(tmp_path / "campaign.nc")
     for name in campaign.variables:
@@ -55,7 +55,7 @@ def test_what_is_written_is_read(campaign, tmp_path):
     np.testing.assert_allclose(read["load_rms"].values, rms, rtol=1e-6)
 
 
-def test_a_breach_of_the_contract_is_told_with_all_others(campaign, tmp_path):
+def test_all_format_errors_are_reported_together(campaign, tmp_path):
     broken = campaign.drop_vars("gap").assign(
         channel_kind=("channel", np.array(["acceleration", "tilt", "displacement"], dtype=object))
     )

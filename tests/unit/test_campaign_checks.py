@@ -101,12 +101,12 @@ def complaints(campaign):
     return [row for row in rows if row["level"] != "pass"]
 
 
-def test_nothing_is_said_of_a_sound_campaign(campaign):
+def test_sound_campaign_passes_every_check(campaign):
     assert complaints(campaign) == []
 
 
 @pytest.mark.parametrize("record, channel", [(0, 0), (2, 3), (1, 4)])
-def test_clipping_is_told(sound, record, channel):
+def test_clipping_is_detected(sound, record, channel):
     values = sound["response"].values[record, channel]
     limit = 0.6 * np.abs(values).max()
     sound["response"].values[record, channel] = np.clip(values, -limit, limit)
@@ -115,7 +115,7 @@ def test_clipping_is_told(sound, record, channel):
     ]
 
 
-def test_clipping_with_noise_behind_it_is_told(sound):
+def test_clipping_followed_by_noise_is_detected(sound):
     values = sound["response"].values[2, 1]
     limit = 0.6 * np.abs(values).max()
     sound["response"].values[2, 1] = np.clip(
@@ -169,7 +169,7 @@ def test_the_peak_of_a_periodic_record_is_not_clipping(stated):
 
 
 @pytest.mark.parametrize("stated", [True, False])
-def test_a_clipped_periodic_record_is_told(stated):
+def test_clipped_periodic_record_is_detected(stated):
     campaign = periodic(stated, clip=(1, 2))
     assert [
         (row["record"], row["channel"])
@@ -184,7 +184,7 @@ SILVERBOX = DEVELOPMENT.parent / "silverbox"
 @pytest.mark.skipif(
     not SILVERBOX.is_dir(), reason="the Silverbox records are not beside the project"
 )
-def test_the_silverbox_is_sound_until_it_is_clipped():
+def test_silverbox_passes_until_clipped():
     campaign = silverbox_campaign(SILVERBOX.glob("*um_full*.mat")).assign_attrs(period_samples=0)
     assert [row["level"] for row in check_campaign(campaign) if row["check"] == "clipping"] == [
         "pass"
@@ -198,7 +198,7 @@ def test_the_silverbox_is_sound_until_it_is_clipped():
 
 @pytest.mark.parametrize("fill", ["zero", "held", "noise"])
 @pytest.mark.parametrize("start", [1.3, 11.3])
-def test_a_drop_out_is_told(sound, fill, start):
+def test_drop_out_is_detected(sound, fill, start):
     values, rate = sound["response"].values[1, 2], sound.attrs["sampling_frequency"]
     part = slice(int(start * rate), int((start + 0.5) * rate))
     values[part] = {
@@ -234,7 +234,7 @@ def test_rest_before_the_first_motion_is_no_drop_out():
     }
 
 
-def test_motion_that_sets_in_late_is_no_drop_out():
+def test_late_onset_of_motion_is_no_drop_out():
     # Whirl in the plane grows out of the noise long after the start.
     campaign = made_up()
     grown = 1e-4 + 1.0 / (1.0 + np.exp(-3.0 * (campaign["time"].values - 8.0)))
@@ -248,7 +248,7 @@ def test_motion_that_sets_in_late_is_no_drop_out():
 
 @pytest.mark.parametrize("samples", [2, 3, 5, -4])
 @pytest.mark.parametrize("channel", [0, 3])
-def test_a_delay_of_a_channel_is_told(sound, samples, channel):
+def test_channel_delay_is_detected(sound, samples, channel):
     sound["response"].values[:, channel] = np.roll(
         sound["response"].values[:, channel], samples, axis=-1
     )
@@ -262,7 +262,7 @@ def test_a_delay_of_a_channel_is_told(sound, samples, channel):
     )
 
 
-def test_a_delayed_force_is_told(sound):
+def test_delayed_force_is_detected(sound):
     sound["force"].values[:] = np.roll(sound["force"].values, 3, axis=-1)
     found = complaints(sound)
     assert [(row["check"], row["channel"]) for row in found] == [
@@ -271,7 +271,7 @@ def test_a_delayed_force_is_told(sound):
     assert "All responses lead" in found[0]["message"] and "3.0 samples" in found[0]["message"]
 
 
-def test_a_gap_leaves_its_signal_out(sound):
+def test_missing_samples_exclude_the_signal(sound):
     sound["response"].values[2, 1, 5000:5100] = np.nan
     sound["force"].values[1, 0, 7000] = np.inf
     rows = complaints(sound)
@@ -288,7 +288,7 @@ def test_a_gap_leaves_its_signal_out(sound):
     assert np.argwhere(~response).tolist() == [[2, 1]]
 
 
-def test_channels_across_and_along_swapped_are_told(sound):
+def test_swapped_axes_are_detected(sound):
     directions = sound["channel_direction"].values
     across = int(np.argmax(np.abs(directions[:, 0])))
     along = int(np.argmax(np.abs(directions[:, 1])))
@@ -301,7 +301,7 @@ def test_channels_across_and_along_swapped_are_told(sound):
 
 
 @pytest.mark.parametrize("channel", [0, 3])
-def test_a_reversed_channel_is_told(sound, channel):
+def test_reversed_channel_is_detected(sound, channel):
     sound["response"].values[:, channel] *= -1.0
     assert [(row["check"], row["channel"]) for row in complaints(sound)] == [
         ("swapped channels", names(sound, 0, channel)[1])
@@ -309,7 +309,7 @@ def test_a_reversed_channel_is_told(sound, channel):
 
 
 @pytest.mark.parametrize("units", ["m s-1", "mm", "bananas", ""])
-def test_a_wrong_unit_leaves_its_channel_out(sound, units):
+def test_wrong_unit_excludes_the_channel(sound, units):
     sound["channel_units"].values[2] = units
     rows = complaints(sound)
     assert [(row["check"], row["record"], row["channel"]) for row in rows] == [
@@ -320,26 +320,26 @@ def test_a_wrong_unit_leaves_its_channel_out(sound, units):
     )
 
 
-def test_a_drifting_level_is_told(sound):
+def test_drifting_level_is_detected(sound):
     grow = np.linspace(0.6, 1.6, sound.sizes["time"])
     sound["response"].values[1] *= grow.astype(np.float32)
     told = {(row["check"], row["record"]) for row in complaints(sound)}
     assert told == {("stationarity", str(sound["record_name"].values[1]))}
 
 
-def test_a_wrong_load_is_told(sound):
+def test_wrong_load_is_detected(sound):
     sound["load_rms"].values[1] *= 1.05
     assert [(row["check"], row["record"]) for row in complaints(sound)] == [
         ("load_rms", str(sound["record_name"].values[1]))
     ]
 
 
-def test_a_force_of_another_clock_refuses(sound):
+def test_force_with_another_clock_is_refused(sound):
     sound["force"].values[:] = sound["force"].values[..., ::-1]
     assert "refuse" in {row["level"] for row in complaints(sound) if row["check"] == "coherence"}
 
 
-def test_uneven_time_and_a_wrong_rate_refuse(sound):
+def test_uneven_time_and_wrong_rate_are_refused(sound):
     uneven = sound.assign_coords(
         time=np.where(
             np.arange(sound.sizes["time"]) > 900, sound["time"].values + 0.2, sound["time"].values
@@ -352,7 +352,7 @@ def test_uneven_time_and_a_wrong_rate_refuse(sound):
     ]
 
 
-def test_one_level_refuses_and_no_holdout_warns(sound):
+def test_one_level_is_refused_no_holdout_warns(sound):
     one = sound.isel(record=[1])
     assert {row["level"] for row in complaints(one) if row["check"] == "content"} == {
         "refuse",
@@ -361,7 +361,7 @@ def test_one_level_refuses_and_no_holdout_warns(sound):
     assert refused(check_campaign(one)) and not refused(check_campaign(sound))
 
 
-def test_short_records_are_told():
+def test_short_records_are_reported():
     short = made_up().isel(time=slice(0, 5000))
     short["load_rms"].values[:] = np.sqrt(
         np.mean(short["force"].values[:, 0].astype(float) ** 2, axis=-1)
@@ -372,7 +372,7 @@ def test_short_records_are_told():
     } == {"warn"}
 
 
-def test_what_the_file_leaves_open_is_filled_and_told(tmp_path):
+def test_missing_attributes_get_reported_defaults(tmp_path):
     bare = made_up().drop_vars(["load_rms", "repeat", "split", "record_name"])
     bare["response"].values[1, :, -700:], bare["force"].values[1, :, -700:] = np.nan, np.nan
     write_record(bare, tmp_path / "bare.nc")

@@ -33,7 +33,7 @@ def spectra(h1):
     return Transfer(LINES, h1, np.full(h1.shape, 0.98), np.ones(len(h1)), 12)
 
 
-def test_a_model_that_is_nearly_right_contradicts_no_channel():
+def test_nearly_correct_model_flags_no_channel():
     assert (
         compare_with_model(
             spectra(beam(1.005, 0.02) * np.array([1.02, 0.98, 1.0, 1.01, 0.99])[:, None]),
@@ -46,7 +46,7 @@ def test_a_model_that_is_nearly_right_contradicts_no_channel():
 
 
 @pytest.mark.parametrize("first, second", [*combinations(range(5), 2)])
-def test_every_pair_of_exchanged_channels_is_told(first, second):
+def test_exchanged_channels_are_detected(first, second):
     measured = beam(1.005, 0.02)
     measured[[first, second]] = measured[[second, first]]
     rows = compare_with_model(spectra(measured), beam(), NAMES, KINDS, "low")
@@ -61,7 +61,7 @@ def test_channels_of_other_kinds_are_not_exchanged():
     assert compare_with_model(spectra(measured), beam(), NAMES, ["velocity", *KINDS[1:]]) == []
 
 
-def test_a_reversed_channel_and_a_wrong_unit_are_told():
+def test_reversed_channel_and_wrong_unit_are_detected():
     measured = beam(1.003)
     measured[2] *= -1.0
     measured[4] /= 9.80665
@@ -73,7 +73,7 @@ def test_a_reversed_channel_and_a_wrong_unit_are_told():
     assert "polarity" in rows[0]["message"] and "between g and m s-2" in rows[1]["message"]
 
 
-def test_a_channel_that_hears_nothing_is_not_judged():
+def test_silent_channel_is_not_checked():
     measured = beam()
     measured[3] *= -1.0
     quiet = spectra(measured)
@@ -81,7 +81,7 @@ def test_a_channel_that_hears_nothing_is_not_judged():
     assert compare_with_model(quiet, beam(), NAMES, KINDS) == []
 
 
-def test_several_channels_off_are_the_structure_and_no_units():
+def test_several_deviating_channels_mean_a_model_error():
     """Friction that holds the tube at the lowest level quietens many channels: none is left out for
     it.
     """

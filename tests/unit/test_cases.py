@@ -44,7 +44,7 @@ def test_loads_are_log_spaced_to_the_digits_of_their_ids():
     assert all(float(value_text(load)) == load for load in loads)
 
 
-def test_loads_fall_into_half_decades_whatever_the_other_loads_are():
+def test_half_decade_of_a_load_ignores_the_other_loads():
     batches = loads_by_half_decade(grid((20.0, 0.05, 1.0, 3.1, 3.17, 10.0, 0.999)))
     assert batches == {
         "from_0.0316": ["0.05"],
@@ -89,7 +89,7 @@ def test_an_added_load_gap_or_seed_changes_no_other_id():
         assert before < after
 
 
-def test_a_text_that_is_no_id_is_refused_with_the_form_of_one():
+def test_malformed_case_id_is_refused():
     for text in ("load_1_gap_2", "load_1_gap_2_seed_x", "load_1_gap_2_seed_0.nc", ""):
         with pytest.raises(ValueError, match="should look like load_0.5_gap"):
             case_from_id(text)

@@ -70,7 +70,7 @@ def test_direction_is_the_derivative_of_position():
 
 
 @pytest.mark.parametrize("arc_length", [0.0, 0.35, 0.7, 0.7 + QUARTER, 1.1, 1.9])
-def test_locate_returns_the_arc_length_from_a_point_beside_it(arc_length):
+def test_locate_returns_arc_length_of_the_nearest_point(arc_length):
     line = build_centreline(U_TUBE)
     beside = (
         line.position(arc_length) + 0.004 * transverse_directions(line.direction(arc_length))[1]
@@ -100,7 +100,7 @@ def test_a_point_off_the_tube_is_named_with_its_distance():
     assert line.locate([0.0, 0.0, 1.0049], "point apex") == pytest.approx(0.5 * line.length)
 
 
-def test_transverse_directions_are_global_axes_made_perpendicular():
+def test_transverse_directions_follow_the_global_axes():
     assert transverse_directions(np.array([0.0, 0.0, -1.0])).tolist() == [
         [1.0, 0.0, 0.0],
         [0.0, 1.0, 0.0],
@@ -124,7 +124,7 @@ def test_a_direction_of_no_length_is_refused():
         unit_vector([0.0, 0.0, 0.0])
 
 
-def test_mesh_has_the_stated_elements_and_contact_points_as_nodes():
+def test_mesh_has_contact_points_as_nodes():
     line = build_centreline(U_TUBE)
     supports = [np.linspace(0.335, 0.365, 5), line.length - np.linspace(0.365, 0.335, 5)]
     nodes = mesh_arc_lengths(line, MESH, supports)

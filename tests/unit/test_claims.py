@@ -110,7 +110,7 @@ def scaled(table, method, factor):
     return {**table, method: table[method] * factor}
 
 
-def test_the_papers_own_study_holds(curves, model):
+def test_published_study_satisfies_every_claim(curves, model):
     for claim in (
         poles.smooth_transition,
         poles.pole_methods,
@@ -189,7 +189,7 @@ FALSIFIED = [
     FALSIFIED,
     ids=[f"{claim.__name__}-{i}" for i, (claim, _, _) in enumerate(FALSIFIED)],
 )
-def test_a_claim_that_is_false_is_said_to_be(curves, model, claim, change, verdicts):
+def test_false_claim_fails(curves, model, claim, change, verdicts):
     assert claim(replace(curves, **change(curves)), model).verdict in verdicts
 
 
@@ -203,13 +203,13 @@ def test_the_node_is_where_the_shape_changes_sign(curves, model):
     assert shapes.node(replace(held, shape=rising[::-1]), model).verdict != HOLDS
 
 
-def test_quadrature_is_the_part_that_no_turn_makes_real():
+def test_quadrature_is_the_part_no_phase_rotation_removes():
     real = np.linspace(-1.0, 1.0, 9)
     assert shapes.quadrature(np.exp(1.1j) * real) == pytest.approx(0.0, abs=1e-12)
     assert shapes.quadrature(real + 0.1j * real**2) > 0.05
 
 
-def test_valleys_of_the_linear_tube_are_not_raised_and_filled_ones_are(curves, model):
+def test_filled_anti_resonances_are_detected(curves, model):
     k, c = curves.stiffness["broadband"][:, 1], curves.support_damping["broadband"][:, 1]
     column = model.sensor_shapes[:, [model.sensor_names.index(response.VALLEY_SENSOR)]]
     exact = {
@@ -233,7 +233,7 @@ def test_valleys_of_the_linear_tube_are_not_raised_and_filled_ones_are(curves, m
     assert response.anti_resonances(filled, model).verdict != FAILS
 
 
-def test_a_step_that_changes_the_response_is_seen():
+def test_step_dependent_response_is_detected():
     generator = np.random.default_rng(5)
     names = equivalence.STATISTICS
     rows = [

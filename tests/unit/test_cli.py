@@ -61,7 +61,7 @@ def test_all_problems_of_a_study_are_printed(run, tmp_path):
         ("nowhere.nc", None, "cannot be read"),
     ],
 )
-def test_a_file_that_can_not_be_read_is_a_sentence(run, tmp_path, name, content, part):
+def test_unreadable_file_is_reported_in_a_sentence(run, tmp_path, name, content, part):
     path = tmp_path / name
     if content is not None:
         path.write_bytes(content)

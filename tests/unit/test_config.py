@@ -105,7 +105,7 @@ def test_the_configurations_that_are_shipped_are_valid(file):
     load_config(file)
 
 
-def test_the_default_study_is_the_papers():
+def test_default_study_is_the_published_one():
     config = load_config(STUDY)
     diameter = config.structure.section.outer_diameter_m
     assert diameter == 0.02222
@@ -318,7 +318,7 @@ def test_a_missing_key_and_a_missing_kind_are_named(study):
     assert "damping.kind is missing" in found
 
 
-def test_a_path_that_bends_along_itself_is_refused(other_kinds):
+def test_bend_along_its_own_tangent_is_refused(other_kinds):
     put(other_kinds, "structure.segments.1.toward", [2.0, 0.0, 0.0])
     assert any(
         "structure.segments[1].toward" in line and "parallel to the tube" in line
@@ -339,7 +339,7 @@ def test_a_force_file_that_is_not_there_is_named(other_kinds):
     )
 
 
-def test_all_problems_are_told_at_once(study):
+def test_all_problems_are_reported_together(study):
     # Of the schema and between keys, in different sections.
     put(study, "spectra.overlp", 0.5)
     put(study, "grid.gap_m.2", -1.3e-4)
@@ -352,7 +352,7 @@ def test_all_problems_are_told_at_once(study):
         assert part in found
 
 
-def test_a_file_that_can_not_be_read_is_a_sentence(tmp_path):
+def test_unreadable_file_is_reported_in_a_sentence(tmp_path):
     with pytest.raises(ConfigError, match="nowhere.yaml: cannot be read .*give the path"):
         load_config(tmp_path / "nowhere.yaml")
     broken = tmp_path / "broken.yaml"
@@ -411,7 +411,7 @@ def test_every_key_is_read_somewhere(kinds, request):
     assert {name for name in names if name not in read and f".{name}" not in rules} == set()
 
 
-def test_a_stage_sees_its_keys_and_no_others():
+def test_stage_sees_only_its_declared_keys():
     settings = StageSettings(stage_params(load_config(STUDY), "basis"))
     config = load_config(STUDY)
     assert settings.structure.section.outer_diameter_m == config.structure.section.outer_diameter_m

@@ -111,7 +111,7 @@ def test_the_map_holds_every_counted_cell(folder, figures):
     )
 
 
-def test_the_spectra_of_the_records_that_say_most_are_shown(folder, figures):
+def test_spectra_of_most_discrepant_records_are_shown(folder, figures):
     before = made_up_map(9.0)
     assert [RECORDS[index][0] for index in chosen_records(before)] == [
         "L0.5_G1.3_0",
@@ -147,7 +147,7 @@ def test_the_ranking_shows_scores_and_the_null_line(folder, figures):
     ]
 
 
-def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair_each_estimate():
+def test_estimates_of_the_named_law_and_of_pairs_are_shown():
     def candidate(law, value, ids=("foliate_obstacle",), name="angle"):
         return {"ids": list(ids), "name": law, "parameters": {name: {"value": value}}}
 
@@ -172,7 +172,7 @@ def test_of_two_laws_of_one_effect_the_one_that_was_named_is_shown_and_of_a_pair
     assert axis_label("foliate_obstacle.angle", "deg") == "foliate obstacle, angle (deg)"
 
 
-def test_profiles_show_what_was_simulated(folder, figures):
+def test_profiles_show_the_simulated_points(folder, figures):
     rows = [
         row["parameter"]
         for row in rows_of(folder, "discrepancy_profiles")
@@ -197,7 +197,7 @@ def test_parameters_are_shown_in_units_of_the_field():
     assert axis_label("offset_x", "mm") == "offset x (mm)" and axis_label("mu", "1") == "mu (-)"
 
 
-def test_what_came_nearest_is_told_where_nothing_is_named():
+def test_closest_effect_is_shown_if_nothing_is_named():
     told = verdict_sentence(
         made_up_verdict(
             "unknown",
@@ -211,7 +211,7 @@ def test_what_came_nearest_is_told_where_nothing_is_named():
     assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
 
 
-def test_of_several_the_most_probable_is_shown_with_its_parameters():
+def test_most_probable_of_several_is_shown():
     named = made_up_verdict().to_values()["effects"]
     page = discrepancy_page("campaign", made_up_verdict("ambiguous", most_probable=named), [])
     assert (
@@ -227,7 +227,7 @@ def test_of_several_the_most_probable_is_shown_with_its_parameters():
     )
 
 
-def test_an_effect_that_was_screened_at_many_places_is_shown_at_the_best():
+def test_effect_is_shown_at_its_best_place():
     rows = [
         {"ids": ids, "location": place, "heldout_score": score}
         for ids, place, score in (
@@ -245,7 +245,7 @@ def test_an_effect_that_was_screened_at_many_places_is_shown_at_the_best():
     ]  # what was looked at closely stays
 
 
-def test_a_quick_look_says_what_it_gives_up():
+def test_quick_report_states_its_limits():
     assert "at 16 s of every record" in discrepancy_page(
         "campaign", made_up_verdict("unknown"), [], quick_s=16.0
     )
@@ -263,7 +263,7 @@ def test_a_run_without_map_or_candidates_says_so(tmp_path):
     assert "can not be judged" in page and "a verdict needs two levels" in page
 
 
-def test_a_run_without_a_completed_model_shows_the_map_alone(folder, tmp_path):
+def test_run_without_completed_model_shows_only_the_map(folder, tmp_path):
     sheets = {
         sheet.name: sheet
         for sheet in discrepancy_figures(read_results_without_after(folder, tmp_path))
@@ -281,7 +281,7 @@ def read_results_without_after(folder, elsewhere):
     return read_results(elsewhere)
 
 
-def test_the_page_is_one_file_with_everything_in_it(folder, figures):
+def test_report_is_one_self_contained_file(folder, figures):
     verdict = made_up_verdict()
     files = [folder / "figures" / f"{name}.png" for name in figures]
     page = discrepancy_page("dev <friction>", verdict, files)
@@ -324,7 +324,7 @@ def test_every_verdict_has_its_sentence_and_page(kind):
     assert sentence.split(" (")[0] in page and ("Measure next" in page) == (kind == "ambiguous")
 
 
-def test_a_region_tells_the_modes_near_it_each_once():
+def test_region_names_each_nearby_mode_once():
     region = made_up_verdict().to_values()["regions"][0]
     page = discrepancy_page(
         "campaign",

@@ -37,7 +37,7 @@ RANGE = (1.0e3, 1.0e8)
         (np.inf, np.nan, np.nan, 570.0, "unresolved"),
     ],
 )
-def test_quality_weighs_chance_and_the_model_s_error(k, error, model_error, free, quality):
+def test_quality_combines_random_and_model_error(k, error, model_error, free, quality):
     found = grade(Estimate("lscf", k, error, 60.0, 5.0, 20.0, 0.02), model_error, free, RANGE)
     assert found.quality == quality and bool(found.note) == (quality != "ok")
     assert np.isnan(found.k) == (quality == "unresolved") and np.isnan(found.c) == (
@@ -46,7 +46,7 @@ def test_quality_weighs_chance_and_the_model_s_error(k, error, model_error, free
     assert (found.frequency, found.damping_ratio) == (20.0, 0.02)
 
 
-def test_a_damping_with_too_large_an_error_is_left_out_alone():
+def test_uncertain_damping_is_dropped_alone():
     found = grade(
         Estimate("lscf", 1.0e5, 2.0e3, 60.0, 45.0), 2.0e3, 570.0, RANGE, c_error_limit=40.0
     )
@@ -59,7 +59,7 @@ def test_a_damping_with_too_large_an_error_is_left_out_alone():
     )
 
 
-def test_weakened_never_makes_better():
+def test_downgrade_never_improves_quality():
     assert mark_weak(Estimate("ods", 1.0, 0.1), "why").quality == "weak"
     assert mark_weak(unresolved("ods", "no peak"), "why").quality == "unresolved"
     assert mark_weak(unresolved("ods", "no peak"), "why").note == "no peak; why"
@@ -106,7 +106,7 @@ def overlapping(generator, segments=12):
     return values, 2.0 * segments**2 / covariance.sum()
 
 
-def test_scatter_of_overlapping_segments_gives_the_error_of_their_mean():
+def test_standard_error_from_overlapping_segments():
     generator = np.random.default_rng(1)
     records = [overlapping(generator) for _ in range(4000)]
     means = np.array([values.mean() for values, _ in records])
@@ -117,7 +117,7 @@ def test_scatter_of_overlapping_segments_gives_the_error_of_their_mean():
     assert np.all(np.isinf(segment_covariance(np.ones((3, 2)), 4.0)))
 
 
-def test_leaving_segments_out_tells_the_pull_of_each():
+def test_jackknife_gives_the_pull_of_each_segment():
     values = np.array([1.0, 2.0, 6.0, -1.0])
     without = np.array([np.delete(values, index).mean() for index in range(4)])
     np.testing.assert_allclose(jackknife_influences(without[:, None])[:, 0], values - values.mean())
@@ -131,7 +131,7 @@ def test_a_covariance_is_widened_and_never_narrowed():
     assert widened(covariance, pulls, np.inf) == pytest.approx(covariance)
 
 
-def test_independent_values_per_hertz_tell_the_length_of_the_record():
+def test_independent_values_per_hertz_follow_record_length():
     assert effective_duration(17.817, spectral_kernel("hann", 10.0)) == pytest.approx(
         49.0, rel=0.08
     )

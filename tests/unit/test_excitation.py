@@ -86,7 +86,7 @@ def test_a_streamed_force_is_the_inverse_transform_of_its_lines(samples, rate, b
     ],
     ids=lambda section: section.kind,
 )
-def test_a_step_has_the_same_bits_in_whatever_stretch_it_is_asked_for(section):
+def test_force_does_not_depend_on_the_requested_range(section):
     def stream():
         return ForceStream(
             section,
@@ -195,7 +195,7 @@ def test_a_measured_force_drives_a_case(tmp_path):
         normalised_force(section, None, 12 * 51200, 51200.0, slice(0, 51200))
 
 
-def test_what_is_wrong_with_a_file_is_said(tmp_path):
+def test_errors_in_a_force_file_are_reported(tmp_path):
     values = np.ones(100)
     netcdf, table, _ = measured_files(tmp_path, values, 400.0)
     with pytest.raises(ForceFileError, match="no variable 'Force': it has force, time"):

@@ -83,7 +83,7 @@ def test_the_transient_period_is_left_out_and_the_rest_averaged(tmp_path):
     assert response.per_force[2, line] == pytest.approx(0.01 * modes @ (1.9, 0.2), rel=1.0e-9)
 
 
-def test_a_file_that_is_not_the_benchmark_s_is_named(tmp_path):
+def test_foreign_file_is_named(tmp_path):
     path = tmp_path / "Level2.mat"
     savemat(path, {"Force": np.ones((1, 5000)), "Acceleration": np.ones((3, 5000)), "Fs": 400.0})
     with pytest.raises(ValueError, match="no whole number of periods"):

@@ -34,7 +34,7 @@ def test_responses_are_those_of_the_full_solution(study_model, modes, k, c):
     )
 
 
-def test_slope_of_the_response_to_the_support(study_model, modes):
+def test_derivative_of_the_response_with_the_support(study_model, modes):
     frequency = np.linspace(15.0, 60.0, 23)
     response = LinearFamily(modes, frequency).response(study_model.sensor_shapes[:, [1]])
     value, slope = response.frf_slope(1.0e5, 60.0)
@@ -77,7 +77,7 @@ def test_jacobian_of_the_support(study_model, modes, k, c):
         )
 
 
-def test_a_pole_above_the_clamped_frequency_belongs_to_no_support(study_model, modes):
+def test_pole_above_the_clamped_frequency_has_no_support(study_model, modes):
     clamped = natural_frequencies(study_model, 1.0e12, 1)[0]
     assert equivalent_support(modes, 1.05 * clamped, 0.01).k == np.inf
     with pytest.raises(ValueError, match="no support"):
@@ -98,7 +98,7 @@ def tube(study_model):
 
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 30.0), (1.0e6, 1000.0)])
-def test_the_other_modes_times_the_first_one_are_the_whole_spectrum(study_model, tube, k, c):
+def test_first_mode_times_residual_modes_is_the_spectrum(study_model, tube, k, c):
     frequency, ratio = frequency_of(first_pole(study_model, k, c))
     index = np.arange(round(40 * frequency) - 60, round(40 * frequency) + 61)
     factor = tube.other_modes(frequency, ratio)(index)

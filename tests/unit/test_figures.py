@@ -171,7 +171,7 @@ def column(rows, name):
     return np.array([float(row[name]) if row[name] else np.nan for row in rows])
 
 
-def test_there_is_a_figure_for_every_declared_name_and_for_each_of_the_papers(sheets):
+def test_every_declared_figure_is_drawn(sheets):
     assert sorted(sheets[0]) == sorted(declared())
     assert {int(name[7:9]) for name in declared() if name.startswith("figure_")} == set(
         range(1, 14)
@@ -243,7 +243,7 @@ def holds(rows, values):
     return any(np.allclose(found, values, rtol=1e-6, atol=0.0, equal_nan=True) for found in columns)
 
 
-def test_the_table_rounds_to_its_digits_and_keeps_what_is_not_a_number():
+def test_table_rounds_numbers_and_keeps_text():
     assert rounded([1.23456789, -9.87654321e-13, 0.0, 4.0e6]) == [
         1.234568,
         -9.876543e-13,
@@ -271,7 +271,7 @@ def test_every_column_has_a_label_with_its_unit():
     assert [label_of(name) for name in COLUMNS if not UNIT.search(label_of(name))] == []
 
 
-def test_cells_of_a_map_touch_half_way():
+def test_map_cells_meet_half_way():
     np.testing.assert_allclose(edges([1.0, 2.0, 4.0]), [0.5, 1.5, 3.0, 5.0])
 
 
@@ -354,7 +354,7 @@ def test_the_in_plane_share_is_a_ratio_of_mean_squares():
     )
 
 
-def test_bars_run_from_the_smallest_to_the_largest_seed_without_the_unresolved():
+def test_bars_span_the_resolved_seeds():
     sheet = Sheet("bars", "bars", "bars.")
     rows = [{"load_rms_N": 1.0, "k_N_per_m": k} for k in (3.0, 1.0, 2.0, np.nan)] + [
         {"load_rms_N": 2.0, "k_N_per_m": np.nan}
@@ -374,7 +374,7 @@ def test_bars_run_from_the_smallest_to_the_largest_seed_without_the_unresolved()
     )
 
 
-def test_loads_are_chosen_by_the_way_of_the_peak():
+def test_shown_loads_are_spread_along_the_peak_shift():
     rows = [
         {"method": "lscf", "load_rms_N": load, "frequency_Hz": frequency, "damping_ratio": ratio}
         for load, frequency, ratio in (
@@ -406,7 +406,7 @@ def test_colours_of_loads_differ_and_grow_lighter():
     assert len(set(colours)) == 3 and lightness == sorted(lightness)
 
 
-def test_a_campaigns_records_are_those_of_the_nearest_gap_in_order_of_load():
+def test_overlay_uses_the_nearest_gap_in_order_of_load():
     campaign = xr.Dataset(
         {
             "load_rms": ("record", [10.0, 0.5, 3.0, 10.0, 1.0]),
@@ -417,7 +417,7 @@ def test_a_campaigns_records_are_those_of_the_nearest_gap_in_order_of_load():
     assert overlay._shown_records(campaign.isel(record=slice(0, 4)), 1.0e-4) == [3]
 
 
-def test_a_study_that_resolves_nothing_still_has_its_figures(config, study, tmp_path):
+def test_unresolved_study_still_has_its_figures(config, study, tmp_path):
     model, found, rows = study
     unresolved = [
         {

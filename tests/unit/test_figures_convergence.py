@@ -210,7 +210,7 @@ def test_a_line_in_the_picture_is_in_the_table(drawn, name):
     )
 
 
-def test_what_one_record_does_not_resolve_is_not_drawn(drawn):
+def test_unresolved_values_are_not_drawn(drawn):
     sheet = drawn[0]["validation_convergence_statistics_step"]
     shown_names = {str(name) for _, _, table in sheet.tables for name in table["statistic"]}
     assert shown_names == {"rms_force_N", "band_5_20_dB"}

@@ -277,7 +277,7 @@ def test_every_format_gives_the_same_campaign(kind, signals, tmp_path):
     assert "lbf" in text and "4.448" in text and "Record high: 3000 samples" in text
 
 
-def test_the_sidecar_overrides_a_label_and_the_report_says_so(signals, tmp_path):
+def test_sidecar_overrides_a_label_and_is_reported(signals, tmp_path):
     write_csv(tmp_path, signals)
     sidecar(
         tmp_path,
@@ -290,7 +290,7 @@ def test_the_sidecar_overrides_a_label_and_the_report_says_so(signals, tmp_path)
     assert rows[1]["unit_from"] == "campaign.yaml; header of the file says g"
 
 
-def test_what_is_missing_is_asked_for_all_at_once(signals, tmp_path):
+def test_missing_information_is_requested_at_once(signals, tmp_path):
     write_mat5(tmp_path, signals)
     bare = [
         {"name": "tip", "variable": "A[0]", "kind": "acceleration", "point_m": [0, 0, 0]},
@@ -326,7 +326,7 @@ def test_what_is_missing_is_asked_for_all_at_once(signals, tmp_path):
         assert part in told, told
 
 
-def test_mistakes_in_the_sidecar_are_told_with_their_place(signals, tmp_path):
+def test_sidecar_errors_name_their_place(signals, tmp_path):
     write_mat5(tmp_path, signals)
     sidecar(
         tmp_path,
@@ -345,7 +345,7 @@ def test_mistakes_in_the_sidecar_are_told_with_their_place(signals, tmp_path):
         assert part in str(refusal.value)
 
 
-def test_two_rates_and_a_contradicted_one_are_told(signals, tmp_path):
+def test_conflicting_sampling_rates_are_reported(signals, tmp_path):
     write_mat5(tmp_path, signals)
     sidecar(tmp_path, "mat", sampling_frequency_Hz=500)
     with pytest.raises(
@@ -385,7 +385,7 @@ def test_records_of_other_lengths_end_with_nan(signals, tmp_path):
     assert not refused([row for row in check_campaign(campaign) if row["check"] == "contract"])
 
 
-def test_truly_uneven_samples_are_interpolated_and_holes_refused():
+def test_uneven_samples_are_interpolated_holes_refused():
     draw = np.random.default_rng(2)
     time = np.arange(2000) / 1000.0
     uneven = time + 2e-4 * draw.uniform(-1.0, 1.0, time.size)
@@ -404,7 +404,7 @@ def test_truly_uneven_samples_are_interpolated_and_holes_refused():
         even_samples(np.zeros(10), np.zeros(10), "a file")
 
 
-def test_a_universal_file_tells_units_and_places_by_its_own_tables(signals, tmp_path):
+def test_universal_file_gives_units_and_places(signals, tmp_path):
     file = pyuff.UFF(str(tmp_path / "low.uff"))
     file.write_sets(
         [
@@ -449,7 +449,7 @@ def test_a_universal_file_tells_units_and_places_by_its_own_tables(signals, tmp_
     )
 
 
-def test_files_that_say_too_little_get_a_draft(signals, tmp_path):
+def test_incomplete_files_get_a_draft_sidecar(signals, tmp_path):
     write_mat5(tmp_path, signals)
     (tmp_path / "campaign.yaml").unlink()
     with pytest.raises(ImportProblem) as refusal:

@@ -52,7 +52,7 @@ def test_known_poles_come_back_from_frequency_responses(drive):
             assert ratio_of_drives == pytest.approx(SHAPES[1, mode] / SHAPES[0, mode], rel=1.0e-4)
 
 
-def test_lower_orders_are_leading_parts_of_the_highest():
+def test_lower_orders_are_leading_blocks_of_the_highest():
     frequency = np.arange(5.0, 45.0, 0.1)
     values = responses(frequency, [0, 1])
     together, alone = NormalEquations(frequency, values, 12), NormalEquations(frequency, values, 5)
@@ -69,7 +69,7 @@ def white_noise_spectra(frequency):
     return response[:, None, :] * response[None, :, :].conj()
 
 
-def test_half_spectra_hold_every_mode_once_and_with_the_known_decay():
+def test_half_spectra_hold_each_mode_once_with_its_decay():
     frequency = np.arange(0.0, 128.01, 0.05)
     lags = lag_window("none", 2 * (frequency.size - 1), 20.0, 5.0)
     assert lags.decay == pytest.approx(np.log(100.0) / 5.0)
@@ -114,7 +114,7 @@ def random_record(seed, seconds=120):
     return np.fft.rfft(np.stack(parts, axis=1), axis=-1)
 
 
-def test_known_pole_comes_back_from_random_records_within_its_standard_error():
+def test_known_pole_within_its_standard_error():
     search = PoleSearch(np.arange(641) * 0.1, (5.0, 45.0), "hann", 12)
     errors, scores = [], []
     for seed in range(16):
@@ -156,7 +156,7 @@ def test_the_first_order_with_one_stable_pole_is_taken():
     assert first_stable_order(late, start, 3.0) == (5, True)
 
 
-def test_orders_that_split_a_broad_peak_are_passed_over():
+def test_orders_that_split_a_broad_peak_are_skipped():
     start = pole_of(20.0, 0.05)
     split = chart(
         (3, [(20.0, 0.06, False)]),

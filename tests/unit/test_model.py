@@ -123,6 +123,6 @@ def test_a_wrong_model_is_refused_with_the_field_named(changes, message):
         ModalModel(**parts(**changes))
 
 
-def test_all_problems_are_told_at_once():
+def test_all_problems_are_reported_together():
     with pytest.raises(ValueError, match="damping has 4 .*; .*sensor_names has 1"):
         ModalModel(**parts(damping=np.ones(4), sensor_names=("apex.x",)))

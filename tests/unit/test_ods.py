@@ -35,7 +35,7 @@ def test_mac_sees_neither_size_nor_phase():
     assert mac(np.stack([shape, np.ones(3)]), shape).shape == (2,)
 
 
-def test_first_singular_vector_is_the_shape_that_carries_the_band():
+def test_first_singular_vector_is_the_dominant_shape():
     generator = np.random.default_rng(1)
     shape = generator.standard_normal(9)
     shape /= np.linalg.norm(shape)
@@ -59,7 +59,7 @@ def test_first_singular_vector_is_the_shape_that_carries_the_band():
 
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 31.0), (1.0e5, 62.0), (1.0e6, 1018.0), (4.0e6, 1.0e4)])
-def test_exact_shapes_give_k_where_the_mode_s_shape_alone_does_not(study_model, tube, k, c):
+def test_operating_shapes_give_the_support_stiffness(study_model, tube, k, c):
     frequency, ratio = frequency_of(first_pole(study_model, k, c))
     line = frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
     measured = deflection_shape(
@@ -97,7 +97,7 @@ def test_the_change_with_damping_is_that_of_a_new_match(study_model, tube):
     assert match.damping_change == pytest.approx(0.5 * np.log(higher / lower), rel=0.05)
 
 
-def test_own_shape_of_a_narrow_band_is_the_response_there(study_model, tube):
+def test_narrow_band_shape_is_the_response_shape(study_model, tube):
     motion = tube.at_line.frf(1.0e5, 62.0, slice(130, 131))[:, 0]
     assert mac(linear_ods(tube.at_line, slice(130, 131), 1.0e5, 62.0), motion) == pytest.approx(1.0)
 

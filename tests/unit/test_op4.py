@@ -127,14 +127,14 @@ def test_matrices_are_known_by_their_names(tmp_path, op4, names):
         assert np.array_equal(read_matrix(tmp_path / "all.op4", name).toarray(), matrix)
 
 
-def test_the_only_matrix_needs_no_name_and_a_plain_name_goes_first(tmp_path, op4):
+def test_single_matrix_needs_no_name(tmp_path, op4):
     op4.write(str(tmp_path / "one.op4"), ["whole"], [MASS])
     assert np.array_equal(read_matrix(tmp_path / "one.op4", "mass").toarray(), MASS)
     op4.write(str(tmp_path / "more.op4"), ["mgg", "maa", "mass"], [np.eye(2), np.eye(2), MASS])
     assert np.array_equal(read_matrix(tmp_path / "more.op4", "mass").toarray(), MASS)
 
 
-def test_op4_files_that_can_not_be_used_are_refused(tmp_path, op4):
+def test_unusable_op4_files_are_refused(tmp_path, op4):
     for name, matrices in (
         ("complex", [("MGG", MASS + 1j), ("KGG", STIFFNESS)]),
         ("long", [("MGG", np.ones((2, 3))), ("KGG", STIFFNESS)]),
@@ -168,7 +168,7 @@ def test_op4_files_that_can_not_be_used_are_refused(tmp_path, op4):
             read_matrix(tmp_path / f"{name}.op4", "mass")
 
 
-def test_without_its_reader_a_sentence_says_what_to_install(tmp_path, monkeypatch):
+def test_missing_op4_reader_says_what_to_install(tmp_path, monkeypatch):
     (tmp_path / "hand.op4").write_text(BY_HAND)
     monkeypatch.setitem(sys.modules, "pyyeti.nastran", None)
     with pytest.raises(

@@ -26,7 +26,7 @@ def expected(place, ratio, kernel, size=3.0e-7):
 
 @pytest.mark.parametrize("level", LEVELS.values())
 @pytest.mark.parametrize("ratio", [1.0e-3, 0.015, 0.1])
-def test_width_and_damping_are_inverse(level, ratio):
+def test_damping_from_width_inverts_width_from_damping(level, ratio):
     edges = level_edges(20.0, ratio, level)
     peak = 1.0 / (4.0 * ratio**2 * (1.0 - ratio**2))
     for edge in edges:
@@ -71,7 +71,7 @@ def test_an_exact_spectrum_gives_its_pole_at_every_level(window, level):
     np.testing.assert_allclose(fit.curve, psd[fit.bins], rtol=1.0e-5)
 
 
-def test_without_the_kernel_the_window_s_width_is_taken_for_damping():
+def test_ignoring_window_leakage_overestimates_damping():
     psd = expected(16.0, 0.015, spectral_kernel("hann", 10.0))
     blind = fit_peak(
         FREQUENCY, psd, spectral_kernel("none", 10.0), 2.0, find_peak(FREQUENCY, psd, (8.0, 45.0))
@@ -79,7 +79,7 @@ def test_without_the_kernel_the_window_s_width_is_taken_for_damping():
     assert 1.025 < blind.damping_ratio / 0.015 < 1.12
 
 
-def test_noisy_spectra_are_read_without_bias_and_with_the_right_standard_error():
+def test_noisy_spectra_give_unbiased_poles_and_errors():
     kernel, averages = spectral_kernel("none", 10.0), 18.0
     psd = expected(21.0, 0.025, kernel)
     generator = np.random.default_rng(11)
@@ -104,7 +104,7 @@ def test_noisy_spectra_are_read_without_bias_and_with_the_right_standard_error()
         np.testing.assert_allclose(errors / found.std(axis=0), 1.0, atol=0.25)
 
 
-def test_what_is_no_resonance_gives_none_or_a_wide_error():
+def test_no_resonance_gives_no_pole_or_a_wide_error():
     kernel = spectral_kernel("none", 10.0)
     line = np.full(FREQUENCY.size, 1.0e-12)
     line[200] = 1.0

@@ -143,7 +143,7 @@ def test_a_damping_matrix_is_rebuilt_from_its_parts():
         split_damping(np.eye(30) + 0.1 * np.cov(generator.standard_normal((30, 100))))
 
 
-def test_base_motion_is_what_the_absolute_equations_say():
+def test_base_motion_agrees_with_absolute_coordinates():
     """Relative and absolute formulation: two masses on a base that moves as a sine, an elastic stop
     fixed in space.
     """

@@ -84,7 +84,7 @@ def summary(power=1.5):
     return rows
 
 
-def test_the_law_returns_what_it_was_fitted_on_and_extends_it():
+def test_equivalent_law_interpolates_and_extrapolates():
     law = fit_law(summary(), lambda load, gap: load / gap)
     for level in np.geomspace(law.level[0], law.level[-1], 7):
         k, c = law.at(level)

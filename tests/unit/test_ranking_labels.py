@@ -34,6 +34,6 @@ def rows(*pairs):
         ),
     ],
 )
-def test_a_place_is_told_where_the_effects_do_not_tell_bars_apart(pairs, labels):
+def test_bars_of_the_same_effect_are_labelled_by_place(pairs, labels):
     (sheet,) = ranking_figure(rows(*pairs))
     assert [text.get_text() for text in sheet.axes["main"].get_yticklabels()] == labels

@@ -22,7 +22,7 @@ def test_the_model_comes_back_bit_for_bit(study_model, tmp_path):
         assert columns or np.array_equal(came, given), name
 
 
-def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
+def test_record_has_units_and_splits_in_two_files(tmp_path):
     values = {"displacement": np.ones((2, 5)), "impact_count": [3], "energy_residual": 1e-12}
     coordinates = {"sensor": ["apex.x", "apex.y"], "time": np.arange(5.0), "support": ["left"]}
     record = variables.describe(values, coordinates, {"case": "one"})
@@ -38,7 +38,7 @@ def test_a_record_has_units_and_splits_into_statistics_and_series(tmp_path):
     assert again.attrs["Conventions"].startswith("CF-")
 
 
-def test_a_file_filled_in_pieces_is_the_file_of_the_whole(tmp_path):
+def test_file_written_in_pieces_equals_the_whole(tmp_path):
     values = np.arange(12.0, dtype="f4").reshape(2, 6)
     coordinates = {"time": ("time", np.arange(6.0)), "place": ("point", [0.5, 1.5], {"units": "m"})}
     whole = xr.Dataset(
@@ -75,7 +75,7 @@ def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
         records.read_record(tmp_path / "some.nc", ["none"])
 
 
-def test_an_abandoned_file_leaves_nothing(tmp_path):
+def test_unfinished_file_is_removed(tmp_path):
     with pytest.raises(RuntimeError, match="stopped"):
         with records.RecordFile(tmp_path / "half.nc", xr.Dataset({"a": 1.0})):
             raise RuntimeError("stopped")

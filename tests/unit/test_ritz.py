@@ -77,7 +77,7 @@ def test_a_plane_tube_has_an_in_plane_and_an_out_of_plane_group():
     assert [group.contact_rows.tolist() for group in groups] == [[0, 2, 4, 6, 8], [1, 3, 5, 7, 9]]
 
 
-def test_a_straight_tube_also_parts_axial_motion_and_torsion():
+def test_straight_tube_separates_axial_motion_and_torsion():
     groups = groups_of(tube(bend=False))
     assert [sorted(set((group.dofs % 6).tolist())) for group in groups] == [
         [0, 4],
@@ -167,7 +167,7 @@ def test_every_attachment_shape_counts(groups):
         assert len(alone) == 5
 
 
-def test_a_free_tube_keeps_its_rigid_motion_and_its_static_flexibility():
+def test_free_tube_keeps_rigid_modes_and_static_flexibility():
     groups = groups_of(tube(root="free"))
     rigid = 0
     for group in groups:
@@ -207,7 +207,7 @@ def test_a_clamped_tube_needs_no_shift(groups):
     assert [group.shift for group in groups] == [0.0, 0.0]
 
 
-def test_families_can_be_chosen_and_a_group_without_contact_has_free_modes_only(groups):
+def test_group_without_contact_has_free_modes_only(groups):
     assert list(basis_vectors(groups[0], BASIS, ("constrained_modes",))) == ["constrained_modes"]
     no_shapes = SimpleNamespace(
         free_modes_to_Hz=2000.0, constrained_modes_to_Hz=800.0, attachment_shapes=False

@@ -46,7 +46,7 @@ def test_psd_is_that_of_scipy(window, overlap):
     assert np.all(low <= mean) and np.all(mean <= high) and np.any(low < 0.5 * mean)
 
 
-def test_white_noise_has_a_flat_psd_of_twice_its_variance_over_the_rate():
+def test_white_noise_psd_is_twice_variance_over_rate():
     signal = 3.0 * np.random.default_rng(2).standard_normal((1, 400 * 256))
     mean = psd_statistics(segment_spectra(signal, RATE, settings()).values)[0][0]
     assert mean[5:-5].mean() == pytest.approx(2.0 * 9.0 / RATE, rel=0.01)
@@ -98,7 +98,7 @@ def test_effective_averages_of_a_49_s_record(segment_s, overlap, averages):
     )
 
 
-def test_the_scatter_of_bins_is_that_of_the_effective_averages():
+def test_bin_scatter_is_that_of_the_effective_averages():
     signal = np.random.default_rng(5).standard_normal((40, 49 * 64))
     mean = psd_statistics(segment_spectra(signal, 64.0, settings()).values)[0][:, 10:-10]
     averages = effective_averages(49.0, 64.0, settings())
@@ -122,7 +122,7 @@ def resonance_correlation(lag, frequency, ratio):
 
 
 @pytest.mark.parametrize("window", ["hann", "boxcar"])
-def test_kernel_gives_the_expected_averaged_spectrum(window):
+def test_window_leakage_gives_the_expected_averaged_spectrum(window):
     # Another way to the same expectation: transform of the correlation times the window's
     # autocorrelation.
     rate, segment_s, place, ratio = 512.0, 10.0, 16.0, 0.015
@@ -141,7 +141,7 @@ def test_kernel_gives_the_expected_averaged_spectrum(window):
     )
 
 
-def test_a_hann_window_of_10_s_widens_the_free_tube_s_peak_by_8_percent():
+def test_10_s_hann_window_widens_the_peak_by_8_percent():
     kernel = spectral_kernel("hann", 10.0)
     step = kernel.spacing_Hz / kernel.oversampling
     frequency = np.arange(4000) * step

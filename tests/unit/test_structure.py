@@ -117,7 +117,7 @@ def test_planes_of_a_plane_tube_are_exactly_uncoupled():
 
 @pytest.mark.parametrize("theory", ["timoshenko", "euler_bernoulli"])
 @pytest.mark.parametrize("place", [0.05, 0.25, 0.4137, 0.5])
-def test_tip_load_gives_exact_deflection_and_stress_between_nodes(theory, place):
+def test_tip_load_gives_exact_deflection_and_stress(theory, place):
     structure = tube(segments=straight(0.5), end=FREE, theory=theory)
     load, (x, y) = 10.0, np.eye(3)[:2]
     moment_of_area = np.pi / 64.0 * (0.02222**4 - 0.01968**4)
@@ -138,7 +138,7 @@ def test_tip_load_gives_exact_deflection_and_stress_between_nodes(theory, place)
         assert structure.stress_rows(place) @ dofs == pytest.approx(expected, rel=1e-6, abs=1e-3)
 
 
-def test_a_force_between_nodes_acts_as_on_a_mesh_with_a_node_there():
+def test_force_between_nodes_acts_as_on_a_node():
     # 0.35 m is the middle of a mesh of 5 and a node of a mesh of 4: deflection there differs by the
     # element's own local part only.
     between, on_node = tube(elements=(5, 12)), tube(elements=(4, 12))
@@ -158,7 +158,7 @@ def test_reciprocity_between_points_that_are_not_nodes():
     assert there == pytest.approx(back.T, rel=1e-8, abs=1e-10 * np.abs(there).max())
 
 
-def test_contact_rows_read_the_contact_points_along_their_directions():
+def test_contact_rows_project_on_the_contact_directions():
     structure = tube(supports=[plate([-0.3, 0.0, 0.35])])
     rows = structure.contact_rows()
     assert rows.shape == (3, 2, structure.dofs)

@@ -30,7 +30,7 @@ def test_everything_may_be_left_out(tmp_path):
     )
 
 
-def test_what_is_stated_is_kept(tmp_path):
+def test_stated_values_are_kept(tmp_path):
     found = read_structure(
         written(
             tmp_path,
@@ -91,7 +91,7 @@ def test_other_models_are_left_to_the_study(tmp_path, text):
         ("drive: [a1]", "structure.drive = ['a1'] must be the name of a channel"),
     ],
 )
-def test_what_is_wrong_is_told(tmp_path, key, told):
+def test_errors_in_the_structure_file_are_reported(tmp_path, key, told):
     with pytest.raises(ConfigError) as error:
         read_structure(written(tmp_path, f"structure:\n  kind: identified\n  {key}\n"))
     assert (
@@ -99,7 +99,7 @@ def test_what_is_wrong_is_told(tmp_path, key, told):
     )
 
 
-def test_every_problem_of_a_file_is_told_at_once(tmp_path):
+def test_all_problems_of_a_file_are_reported_at_once(tmp_path):
     text = """
 study: x
 structure:
@@ -131,7 +131,7 @@ def test_every_declared_key_is_used_and_has_an_example():
     assert MeasuredStructure.model_validate(examples).emphasis == 1.0
 
 
-def test_names_that_the_campaign_lacks_are_told_with_those_it_has():
+def test_unknown_channel_names_are_listed_with_known_ones():
     asked = StructureFile(
         drive="b",
         places={"joint": {"a1": -1, "c": 1}},
@@ -154,7 +154,7 @@ def test_names_that_the_campaign_lacks_are_told_with_those_it_has():
     assert "the usable channels are a1, a2" in str(error.value)
 
 
-def test_places_are_pairs_along_one_direction_and_every_channel_to_the_ground():
+def test_places_are_channel_pairs_and_channels_to_ground():
     places = default_places(
         ["1:+z", "top left", "side"], [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)]
     )

@@ -125,7 +125,7 @@ def test_a_quantity_of_both_codes_is_a_parameter_of_each(name):
     assert true in stated and own in {row.name for row in EFFECTS[name].parameters}
 
 
-def test_a_parameter_by_its_other_name_is_held_against_its_truth():
+def test_renamed_parameter_is_compared_with_its_truth():
     row = judged(
         verdict_of(
             "named",
@@ -182,7 +182,7 @@ def test_the_detection_limit_is_that_of_the_draw():
     assert limit["high"] / limit["low"] < 1.6
 
 
-def test_intervals_of_the_limit_hold_the_truth_as_often_as_they_say():
+def test_detection_limit_intervals_have_nominal_coverage():
     found = [detection_limit(*drawn(60, seed)) for seed in range(30)]
     held = [not row["low"] > LIMIT and not row["high"] < LIMIT for row in found]
     assert np.mean(held) >= 0.83
@@ -207,7 +207,7 @@ def test_separated_campaigns_keep_a_finite_slope():
         (lambda s: s > 13.0, "above what was tried"),
     ],
 )
-def test_a_limit_that_can_not_be_told_says_why(found, words):
+def test_undefined_detection_limit_says_why(found, words):
     strength = np.geomspace(0.2, 20.0, 20)
     limit = detection_limit(strength, found(strength))
     assert np.isnan(limit["limit"]) and words in limit["note"]
@@ -242,7 +242,7 @@ def figures(tmp_path_factory):
     return folder, {sheet.name: sheet for sheet in sheets}
 
 
-def test_figures_hold_every_row(figures):
+def test_suite_figures_show_every_row(figures):
     _, sheets = figures
     assert [*sheets] == ["suite_rates", "suite_confusion", "suite_strength", "suite_parameters"]
     rows = made_up_rows()
@@ -257,7 +257,7 @@ def test_figures_hold_every_row(figures):
     assert "fewer than 8" in sheets["suite_strength"].axes["curve"].get_title(loc="left")
 
 
-def test_the_matrix_shows_each_count_in_its_cell(figures):
+def test_confusion_matrix_shows_each_count(figures):
     axes = figures[1]["suite_confusion"].axes["main"]
     rows, columns = (
         [label.get_text() for label in labels]
@@ -279,13 +279,13 @@ def test_the_matrix_shows_each_count_in_its_cell(figures):
     }
 
 
-def test_a_suite_with_nothing_to_draw_says_so(tmp_path):
+def test_empty_suite_page_says_so(tmp_path):
     for sheet in suite_figures([], [], []):
         assert any("no " in text.get_text() for axes in sheet.axes.values() for text in axes.texts)
         sheet.save(tmp_path)
 
 
-def test_the_page_names_seed_count_and_the_rows_that_miss(figures):
+def test_suite_page_names_seed_count_and_missed_rows(figures):
     folder, sheets = figures
     rows = made_up_rows()
     sentence = suite_sentence(77, rows, rates(rows))

@@ -102,7 +102,7 @@ def test_the_figure_shows_every_part_of_every_rule(paths, tmp_path):
     assert sorted(widths) == sorted(shown.values())
 
 
-def test_a_stopwatch_tells_what_a_log_gives_back():
+def test_stopwatch_times_are_read_back_from_the_log():
     stopwatch = Stopwatch()
     assert stopwatch.time("work", sum, range(1000)) == 499500
     with pytest.raises(RuntimeError), stopwatch("work"):

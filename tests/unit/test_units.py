@@ -51,7 +51,7 @@ def test_a_unit_has_its_printed_factor(text, kind, factor):
         ("Pa", "voltage", "no voltage"),
     ],
 )
-def test_what_can_not_be_told_is_refused(text, kind, told):
+def test_unknown_unit_is_refused(text, kind, told):
     with pytest.raises(UnitError, match=told):
         si_factor(text, kind)
 
@@ -66,5 +66,5 @@ def test_what_can_not_be_told_is_refused(text, kind, told):
         ("1", "generic", "1"),
     ],
 )
-def test_the_unit_it_leads_to(text, kind, si):
+def test_base_unit_of_a_unit(text, kind, si):
     assert si_unit(text, kind) == si

@@ -21,7 +21,7 @@ ROW = {
     ("holds", "word"),
     [(True, "yes"), ("True", "yes"), (np.True_, "yes"), (False, "no"), ("False", "no")],
 )
-def test_one_and_nought_are_numbers_and_what_holds_is_told_in_words(tmp_path, holds, word):
+def test_numbers_stay_numbers_and_booleans_are_words(tmp_path, holds, word):
     page = validation_page([ROW | {"pass": holds}], [], [], tmp_path)
     assert (
         '<td class="number">1</td><td class="number">0</td><td class="number">1</td><td'

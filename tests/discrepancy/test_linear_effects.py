@@ -1,0 +1,236 @@
+"""Linear effects are read off a lowest record: one, two at once, modes that moved far, a record
+that touches.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
+from vibroimpact.config.reading import check_config
+from vibroimpact.discrepancy.attach import attach
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
+from vibroimpact.discrepancy.in_place import gain_of_spring
+from vibroimpact.discrepancy.linear_fit import LinearChanges
+from vibroimpact.discrepancy.nearest_model import translated
+from vibroimpact.discrepancy.prepared import adopt, prepare, workbench
+from vibroimpact.discrepancy.screening import linear_score
+from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.excitation.random_force import band_limited_noise
+
+RATE, SECONDS, GAP = 2048.0, 12.0, 2.8886e-4
+PLACES = {
+    "apex_y": ([0.0, 0.0, 1.0], [0, 1, 0]),
+    "bend_y": ([0.2121, 0.0, 0.9121], [0, 1, 0]),
+    "leg_y": ([-0.3, 0.0, 0.55], [0, -1, 0]),
+    "lower_y": ([0.3, 0.0, 0.33], [0, 1, 0]),
+    "apex_x": ([0.0, 0.0, 1.0], [1, 0, 0]),
+}
+ROOTS = ("root_stiffness@roots", {"translation": 1.0e8, "rotation": 6000.0})
+MASS = (
+    "added_mass@apex_y",
+    {"mass": 0.3},
+)
+STINGER = ("lateral_stinger@along_y", {"stiffness": 5000.0, "damping": 0.0})
+TURNED = (
+    "force_misalignment@about_tube",
+    {"angle": -0.4},
+)
+DAMPED = ("modal_damping@all", {"factor": 3.0})
+CROSSED = (
+    "mode_frequency_error@mode_5",
+    {"factor": 0.85},
+)
+
+
+def file_of(config, path, *effects, loads=(0.02, 0.03), gains=(1.0,) * len(PLACES)):
+    """Write the campaign of a tube with effects (candidate's name, parameters in SI)."""
+    samples = int(RATE * SECONDS)
+    force = np.array(
+        [
+            load
+            * band_limited_noise(np.random.default_rng([5, number]), samples, RATE, (5.0, 200.0))
+            for number, load in enumerate(loads)
+        ]
+    )[:, None]
+    channels = [
+        Channel(name, tuple(point), tuple(direction), "m s-2", "acceleration")
+        for name, (point, direction) in PLACES.items()
+    ]
+    drive = Channel("shaker", (-0.2121, 0.0, 0.9121), (0.0, 1.0, 0.0), "N", "generic")
+    levels = [Level("low", GAP), Level("high", GAP)]
+    blank = campaign_dataset(
+        force, np.zeros((2, len(PLACES), samples)), channels, [drive], levels, RATE, start_up="rest"
+    )
+    points = dict(config.points) | {"apex_y": (0.0, 0.0, 1.0)}
+    values = config.model_copy(update={"points": points}).model_dump(mode="json")
+    for name, physical in effects:
+        values = candidate_named(name).variant(values, physical)
+    model = attach(check_config(values, "hidden"), blank)
+    schedule = schedule_of(blank, config.integration, SECONDS)
+    response = simulate_records(
+        model,
+        schedule,
+        Forces(force, schedule),
+        [(record, GAP, 0) for record in range(2)],
+        ["acceleration"] * len(PLACES),
+    )
+    response = response * np.array(gains)[:, None]
+    response = response + 0.01 * response[0].std(axis=-1).max() * np.random.default_rng(
+        6
+    ).standard_normal(response.shape)
+    write_campaign(
+        campaign_dataset(force, response, channels, [drive], levels, RATE, start_up="rest"), path
+    )
+    return path
+
+
+def read(prepared):
+    """{effect id: {parameter: (value, low, high)}} of what was adopted."""
+    candidate = candidate_named(prepared.adopted["name"])
+    interval = np.array(prepared.adopted["interval"])
+    sides = zip(
+        candidate.parts(np.array(prepared.adopted["unit"])),
+        candidate.parts(interval[:, 0]),
+        candidate.parts(interval[:, 1]),
+        strict=True,
+    )
+    return {
+        part.effect_id: part.estimate(own, np.stack([low, high], axis=1), prepared.scales)
+        for (part, own), (_, low), (_, high) in sides
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effects", "wanted"),
+    [
+        ((CROSSED,), {"mode_frequency_error": ("factor", 0.85, 0.005)}),
+        (
+            (ROOTS, MASS),
+            {"root_stiffness": ("rotation", 6000.0, 0.02), "added_mass": ("mass", 0.3, 0.02)},
+        ),
+        (
+            (STINGER, DAMPED),
+            {
+                "lateral_stinger": ("stiffness", 5000.0, 0.02),
+                "modal_damping": ("factor", 3.0, 0.06),
+            },
+        ),
+        (
+            (TURNED, DAMPED),
+            {"force_misalignment": ("angle", -0.4, 0.03), "modal_damping": ("factor", 3.0, 0.06)},
+        ),
+    ],
+    ids=[
+        "a mode below its neighbour",
+        "roots and mass",
+        "stinger and damping",
+        "turned force and damping",
+    ],
+)
+def test_linear_effects_are_read_back(study_config, tmp_path, effects, wanted):
+    prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", *effects))
+    found = read(prepared)
+    assert set(found) == set(wanted)
+    assert not prepared.nonlinear_low
+    for effect, (parameter, value, tolerance) in wanted.items():
+        best, low, high = found[effect][parameter]
+        assert best == pytest.approx(value, rel=tolerance)
+        assert low < best < high
+
+
+@pytest.mark.slow
+def test_single_effect_is_not_split_in_two(study_config, tmp_path):
+    prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", MASS))
+    assert (
+        prepared.adopted["name"].split("@")[0] == "added_mass"
+        and "+" not in prepared.adopted["name"]
+    )
+
+
+@pytest.mark.slow
+def test_contact_in_lowest_record_defers_linear_effects(study_config, tmp_path):
+    soft = ("root_stiffness@roots", {"translation": 1.0e8, "rotation": 420.0})
+    prepared = prepare(
+        study_config, file_of(study_config, tmp_path / "campaign.nc", soft, loads=(0.5, 1.0))
+    )
+    assert not prepared.linear_stage and prepared.adopted is None
+    assert "root_stiffness@roots" in prepared.screened
+    assert any(row["check"] == "lowest level" for row in prepared.checks)
+    untouched = prepare(study_config, file_of(study_config, tmp_path / "other.nc"))
+    assert untouched.linear_stage and untouched.adopted is None
+    assert "root_stiffness@roots" not in untouched.screened and set(untouched.screened) < set(
+        prepared.screened
+    )
+
+
+def test_adopted_gain_error_is_no_evidence_for_other_effects(study_config, tmp_path):
+    """With a channel's gain adopted, the bare model fits the lowest record: an effect that changes
+    nothing there gains nothing there.
+    """
+    path = file_of(study_config, tmp_path / "campaign.nc", gains=(1.5, 1.0, 1.0, 1.0, 1.0))
+    prepared = prepare(study_config, path)
+    assert prepared.adopted["name"] == "sensor_gain@apex_y"
+    bench = workbench(study_config, path, prepared, prepared.compared_s)
+    slight = bench.variant(Candidate("cubic_stiffness", "apex"), {"coefficient": 1.0e3})
+    response = (
+        bench.respond(bench.model(slight), bench.runs([bench.signals.lowest], 1))[0]
+        / bench.gains[:, None]
+    )
+    assert bench.low_reading(response) is None  # it answers as the bare model does
+    bench.low_response = 0.5 * bench.low_response  # what differs is read anew
+    known = linear_score(bench, None)
+    assert linear_score(bench, bench.low_reading(response)) == pytest.approx(
+        known, abs=10.0
+    )  # by what a fit scatters
+    bench.measuring = None
+    assert linear_score(bench, None) < known - 30.0
+
+
+@pytest.mark.slow
+def test_gain_error_and_stinger_are_separated(study_config, tmp_path):
+    path = file_of(study_config, tmp_path / "campaign.nc", STINGER, gains=(1.0, 1.4, 1.0, 1.0, 1.0))
+    prepared = prepare(study_config, path)
+    found = read(prepared)
+    assert isinstance(candidate_named(prepared.adopted["name"]), Pair) and set(found) == {
+        "lateral_stinger",
+        "sensor_gain",
+    }
+    assert found["sensor_gain"]["factor"][0] == pytest.approx(1.4, rel=0.03)
+    bench = workbench(study_config, path, prepared, prepared.compared_s)
+    adopt(bench, prepared)
+    assert bench.measuring.gain[1] == pytest.approx(found["sensor_gain"]["factor"][0])
+    assert bench.bare.omega[0] > 1.05 * attach(study_config, bench.campaign).omega[0]
+
+
+@pytest.mark.slow
+def test_nonlinear_substitutes_sit_where_a_spring_would(study_config, tmp_path):
+    """A rod at the shaker may be a friction or a stop there, not one at the top of a leg; what acts
+    all along the tube is never ruled out by a place.
+    """
+    prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", STINGER))
+    assert prepared.adopted["name"] == "lateral_stinger@along_y"
+    assert {"coulomb_friction@shaker", "clearance@shaker", "quadratic_drag@tube"} <= set(
+        prepared.in_place
+    )
+    assert not {name.split("@")[1] for name in prepared.in_place} & {"left_leg", "lower_y"}
+    assert set(prepared.in_place) < set(prepared.screened) and "gap@all" not in prepared.in_place
+    bench = workbench(study_config, tmp_path / "campaign.nc", prepared, prepared.compared_s)
+    assert prepared.still_linear and bench.reads_lowest
+    assert not workbench(
+        study_config,
+        tmp_path / "campaign.nc",
+        replace(prepared, still_linear=False),
+        prepared.screened_s,
+    ).reads_lowest  # as the first job saw it
+    bare = Workbench(study_config, bench.campaign, prepared.compared_s)
+    bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
+    there, elsewhere = (
+        gain_of_spring(bare, LinearChanges(bare), place, 6600.0) for place in ("shaker", "lower_y")
+    )
+    assert (
+        there == pytest.approx(prepared.adopted["gain"], abs=3.0) and elsewhere < 0.5 * there
+    )  # that rod is a spring between that point and the ground

@@ -1,0 +1,26 @@
+"""Which lowest records tell of linear effects by themselves."""
+
+from vibroimpact.discrepancy.prepared import Prepared, telling_modes
+
+LINEAR = Prepared([], None, linear_stage=True)
+BENT = Prepared([], None, linear_stage=True, nonlinear_low=True)
+SHOWN = [0, 2, 4]
+
+
+def test_linear_record_determines_effects_by_its_modes():
+    assert telling_modes(LINEAR, SHOWN) == SHOWN
+    assert telling_modes(LINEAR, SHOWN, for_all=True) is None  # a bank is for other campaigns
+
+
+def test_nonlinear_record_defers_linear_effects():
+    """A preload beside nine times the damping: the damping was no candidate, and {offset,
+    square-law drag} was told.
+    """
+    assert telling_modes(BENT, SHOWN) is None
+    assert (
+        telling_modes(BENT, SHOWN, quick=True) == SHOWN
+    )  # where it must be quick, the three that come nearest are simulated
+
+
+def test_record_without_modes_determines_no_effect():
+    assert telling_modes(Prepared([], None, linear_stage=False), None) is None

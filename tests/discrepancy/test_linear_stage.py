@@ -1,0 +1,237 @@
+"""The linear stage: frequencies, damping, gains and delays of a low record are read back from its
+waveform.
+"""
+
+import numpy as np
+import pytest
+
+from vibroimpact.campaign.file import CampaignError, Channel, Level, campaign_dataset
+from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy.attach import attach, with_channel_points
+from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
+from vibroimpact.discrepancy.linear_record import LinearRecord
+from vibroimpact.discrepancy.linear_stage import fit_modes
+from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
+from vibroimpact.excitation.random_force import band_limited_noise
+
+RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
+PLACES = {
+    "apex_y": ([0.0, 0.0, 1.0], [0, 1, 0]),
+    "bend_y": ([0.2121, 0.0, 0.9121], [0, 1, 0]),
+    "leg_y": ([-0.3, 0.0, 0.55], [0, -1, 0]),
+    "apex_x": ([0.0, 0.0, 1.0], [1, 0, 0]),
+}
+FACTORS, DAMPED, GAINS = {0: 1.004, 2: 0.997}, {0: 1.1, 2: 0.9}, np.array([1.03, 0.99, 1.0, 1.0])
+
+
+def campaign_of(response, force):
+    """A campaign of one low and one high record."""
+    channels = [
+        Channel(name, tuple(point), tuple(direction), "m s-2", "acceleration")
+        for name, (point, direction) in PLACES.items()
+    ]
+    drive = Channel("shaker", (-0.2121, 0.0, 0.9121), (0.0, 1.0, 0.0), "N", "generic")
+    return campaign_dataset(
+        force,
+        response,
+        channels,
+        [drive],
+        [Level("low", GAP), Level("high", GAP)],
+        RATE,
+        start_up="rest",
+    )
+
+
+@pytest.fixture(scope="module")
+def rig(study_config):
+    """(Workbench, fit): a record of a tube whose modes, gains and one clock are not the model's,
+    with noise.
+    """
+    samples = int(RATE * SECONDS)
+    shape = band_limited_noise(np.random.default_rng(3), samples, RATE, (5.0, 200.0))
+    force = np.stack([0.3 * shape, 5.0 * shape])[:, None]
+    blank = campaign_of(np.zeros((2, len(PLACES), samples)), force)
+    model = attach(study_config, blank)
+    modes = np.array(sorted(FACTORS))
+    true = linear.corrected(
+        model,
+        linear.Nuisance(
+            modes,
+            np.array([FACTORS[m] for m in modes]),
+            np.array([DAMPED[m] for m in modes]),
+            GAINS,
+        ),
+    )
+    schedule = schedule_of(blank, study_config.integration, SECONDS)
+    response = (
+        simulate_records(
+            true, schedule, Forces(force, schedule), [(0, GAP, 0)], ["acceleration"] * len(PLACES)
+        )[0]
+        * GAINS[:, None]
+    )
+    response[1] = np.roll(response[1], 4)
+    response = (
+        response
+        + 0.01
+        * np.random.default_rng(4).standard_normal(response.shape)
+        * response.std(axis=-1).max()
+    )
+    bench = Workbench(study_config, campaign_of(np.stack([response, response]), force))
+    return bench, bench.measured_fit
+
+
+def test_frequencies_and_damping_are_read_back(rig):
+    bench, fit = rig
+    for mode, factor in FACTORS.items():
+        place = list(fit.modes).index(mode)
+        assert np.exp(fit.log_frequency[place]) == pytest.approx(factor, abs=2e-4)
+        assert np.exp(fit.log_damping[place]) == pytest.approx(DAMPED[mode], abs=0.05)
+
+
+def test_the_rest_is_noise(rig):
+    _, fit = rig
+    assert fit.residual[[0, 1, 2]].max() < 1.5
+
+
+def test_gains_are_read_back(rig):
+    bench, fit = rig
+    shapes = bench.bare.sensor_shapes[fit.modes].T[:3]
+    seen = np.abs(shapes) > 0.1 * np.abs(shapes).max(axis=0)
+    ratio = np.where(seen, fit.participation[:3] / np.where(seen, shapes, 1.0), np.nan)
+    np.testing.assert_allclose(np.nanmean(ratio, axis=1), GAINS[:3], atol=0.006)
+
+
+def test_channel_delay_is_estimated(rig):
+    _, fit = rig
+    np.testing.assert_allclose(fit.delay[:3], [0.0, 4.0 / RATE, 0.0], atol=5e-5)
+
+
+@pytest.mark.parametrize(
+    "late",
+    [{0: 7.0e-3}, {2: -12.0e-3}, {0: 3.0e-3, 1: 9.0e-3}],
+    ids=["7 ms", "12 ms early", "two channels"],
+)
+def test_large_channel_delay_is_removed_before_the_fit(rig, late):
+    """Between its resonances no phase of each mode stands for milliseconds: what the channel leaves
+    is no sign that the fit is of another structure.
+    """
+    bench, fit = rig
+    responses = bench.valid(bench.signals.response[bench.signals.lowest]).copy()
+    for channel, delay in late.items():
+        lines = np.fft.rfft(responses[channel], 2 * responses.shape[1])
+        turned = lines * np.exp(
+            -2j * np.pi * np.fft.rfftfreq(2 * responses.shape[1], 1.0 / RATE) * delay
+        )
+        responses[channel] = np.fft.irfft(turned)[: responses.shape[1]]
+    found = fit_modes(
+        bench.linear_record, responses, bench.bare, bench.signals.kinds, bench.signals.noise_in_band
+    )
+    expected = fit.delay + np.array([late.get(channel, 0.0) for channel in range(len(PLACES))])
+    np.testing.assert_allclose(found.delay[:3], expected[:3], atol=3.0e-5)
+    np.testing.assert_allclose(found.log_frequency, fit.log_frequency, atol=3.0e-4)
+
+
+def test_nuisances_within_priors_are_not_significant(rig):
+    bench, fit = rig
+    _, _, chi_square, pulls = corrected_nuisance(bench)
+    values = linear.difference(
+        bench.measured_reading, linear.reading_of_model(bench.bare, fit.modes), fit.covariance
+    )[0]
+    assert chi_square < 2.0 * len(values)
+    assert pulls[list(fit.modes).index(0)] == pytest.approx(np.log(1.004) / 0.003, abs=0.15)
+
+
+def test_linear_responses_are_those_of_the_integration(rig, study_config):
+    """Frequency-domain responses of the modes against the march in time: the same record from rest,
+    line by line.
+    """
+    bench, _ = rig
+    record = bench.signals.lowest
+    marched = simulate_records(
+        bench.bare, bench.schedule, bench.forces, bench.runs([record], 1), bench.signals.kinds
+    )[0]
+    lines = LinearRecord(bench.signals.force[record], RATE, bench.signals.band_Hz)
+    fit = fit_modes(lines, marched, bench.bare, bench.signals.kinds, np.full(len(PLACES), 1e-6))
+    assert np.abs(fit.log_frequency).max() < 5e-5 and np.abs(fit.log_damping).max() < 1e-2
+    assert fit.share[[0, 1, 2]].max() < 4e-3
+
+
+def test_plate_clearances_are_taken_from_the_campaign(study_config):
+    force = np.ones((2, 1, 64))
+    campaign = campaign_of(np.zeros((2, len(PLACES), 64)), force)
+    model = attach(
+        study_config,
+        campaign.assign(
+            support_gap=(("record", "support"), GAP * np.array([[1.0, 1.5], [1.0, 1.5]]))
+        ),
+    )
+    np.testing.assert_allclose(model.gap_factor, np.where(model.support_of_point == 0, 1.0, 1.5))
+    with pytest.raises(CampaignError, match="differs from record to record"):
+        attach(
+            study_config,
+            campaign.assign(
+                support_gap=(("record", "support"), GAP * np.array([[1.0, 1.5], [1.0, 1.2]]))
+            ),
+        )
+    with pytest.raises(CampaignError, match="3 supports, the model 2"):
+        attach(
+            study_config, campaign.assign(support_gap=(("record", "support"), np.full((2, 3), GAP)))
+        )
+
+
+def test_modes_far_from_the_model_are_found(study_config):
+    samples = int(RATE * SECONDS)
+    force = 0.2 * band_limited_noise(np.random.default_rng(5), samples, RATE, (5.0, 200.0))[
+        None, None
+    ].repeat(2, axis=0)
+    blank = campaign_of(np.zeros((2, len(PLACES), samples)), force)
+    model = attach(study_config, blank)
+    factors = {0: 1.17, 2: 0.88}
+    modes = np.array(sorted(factors))
+    true = linear.corrected(
+        model,
+        linear.Nuisance(modes, np.array(list(factors.values())), np.ones(2), np.ones(len(PLACES))),
+    )
+    schedule = schedule_of(blank, study_config.integration, SECONDS)
+    response = simulate_records(
+        true, schedule, Forces(force, schedule), [(0, GAP, 0)], ["acceleration"] * len(PLACES)
+    )[0]
+    noise = 0.01 * response.std(axis=-1).max()
+    response = response + noise * np.random.default_rng(6).standard_normal(response.shape)
+    record = LinearRecord(force[0], RATE, (5.0, 200.0))
+    fit = fit_modes(
+        record,
+        response,
+        model,
+        np.array(["acceleration"] * len(PLACES)),
+        np.full(len(PLACES), noise * np.sqrt(195.0 / 1024.0)),
+    )
+    for mode, factor in factors.items():
+        assert np.exp(fit.log_frequency[list(fit.modes).index(mode)]) == pytest.approx(
+            factor, rel=1e-3
+        )
+    assert fit.residual[:3].max() < 1.5 and not fit.delay.any()
+
+
+def test_mass_may_sit_at_a_channel_point(study_config):
+    blank = campaign_of(np.zeros((2, len(PLACES), 64)), np.zeros((2, 1, 64)))
+    blank["channel_point"][2] = [-0.3, 0.0, 0.533]
+    points = with_channel_points(study_config, blank).points
+    assert points["leg_y"] == (-0.3, 0.0, 0.533)
+    assert set(points) == {*study_config.points, "leg_y", "bend_y"}  # the apex has a name already
+
+
+def test_channel_named_like_a_point_does_not_move_it(study_config):
+    blank = campaign_of(np.zeros((2, len(PLACES), 64)), np.zeros((2, 1, 64)))
+    blank["channel_name"][2], blank["channel_point"][2] = "shaker", [-0.3, 0.0, 0.533]
+    points = with_channel_points(study_config, blank).points
+    assert points["shaker"] == study_config.points["shaker"]
+    assert points["at_shaker"] == (-0.3, 0.0, 0.533)
+
+
+def test_start_up_is_excluded_for_records_under_way(rig, study_config):
+    bench, _ = rig
+    under_way = Workbench(study_config, bench.campaign.assign_attrs(start_up="stationary"))
+    assert bench.settled.all()
+    assert np.flatnonzero(under_way.settled)[0] == 4 * RATE == SECONDS * RATE / 4
+    assert not np.allclose(under_way.measured_features, bench.measured_features)

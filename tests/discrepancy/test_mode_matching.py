@@ -1,0 +1,60 @@
+"""Corrections and free damping find the tube's modes among those of a plate."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.config.reading import check_config
+from vibroimpact.discrepancy import nuisance as linear
+from vibroimpact.discrepancy.linearised import same_modes
+from vibroimpact.discrepancy.null import unseen_damping
+from vibroimpact.reduction.reduced_model import build_model
+
+PLATE = {
+    "mass_kg": 0.7,
+    "stiffness_N_per_m": 2.5e5,
+}  # 95.1 Hz, between the third and the fourth mode
+SEEN = np.array([0, 2, 4, 5])
+
+
+@pytest.fixture(scope="module")
+def values(study_config):
+    """The study's configuration with both plates flexible, in plain values."""
+    plain = study_config.model_dump(mode="json")
+    return plain | {"supports": [support | {"plate": PLATE} for support in plain["supports"]]}
+
+
+@pytest.fixture(scope="module")
+def with_plates(values):
+    """The model of it."""
+    return build_model(check_config(values, "with plates"))
+
+
+def test_modes_are_matched_by_shape(study_model, with_plates):
+    found = same_modes(with_plates, SEEN, study_model)
+    assert found.tolist() == [0, 2, 8, 9]
+    assert with_plates.omega[found] == pytest.approx(study_model.omega[SEEN])
+
+
+def test_correction_follows_the_mode_not_its_number(study_model, with_plates):
+    nuisance = linear.Nuisance(
+        SEEN, np.array([1.0, 1.0, 1.01, 1.0]), np.array([1.0, 1.0, 1.2, 1.0]), np.ones(1)
+    )
+    moved = linear.corrected(with_plates, nuisance, study_model)
+    assert np.flatnonzero(moved.damping != with_plates.damping).tolist() == [8]
+    assert moved.omega[8] == pytest.approx(1.01 * study_model.omega[4])
+
+
+def test_free_damping_affects_only_unobserved_tube_modes(values, study_model, with_plates):
+    bench = SimpleNamespace(
+        model=lambda variant: with_plates,
+        bare=study_model,
+        linear_stage=True,
+        modes_told=True,
+        measured_fit=SimpleNamespace(modes=SEEN),
+    )
+    damped = unseen_damping(bench, values, 0.6)
+    changed = np.flatnonzero(damped.damping != with_plates.damping)
+    assert not set(changed) & {0, 2, 8, 9} and not set(changed) & {3, 4, 5, 6}
+    assert {1, 7} <= set(changed)

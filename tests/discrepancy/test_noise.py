@@ -1,0 +1,64 @@
+"""The noise of a channel: the floor of its spectrum, also where impacts lie above the excited
+band.
+"""
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy.signals import noise_of
+
+RATE, BAND = 2048.0, (5.0, 200.0)
+
+
+def seen(seconds, *filled, strength=(10.0, 10.0)):
+    """(channel, sample) of white noise of RMS 0.1 and 1, with a response so many times as strong in
+    bands (low, high) Hz.
+    """
+    samples, rng = int(seconds * RATE), np.random.default_rng(4)
+    noise = np.array([[0.1], [1.0]])
+    frequency = np.fft.rfftfreq(samples, 1.0 / RATE)
+    response = np.zeros((2, samples))
+    for (low, high), times in zip(filled, strength, strict=False):
+        spectrum = np.fft.rfft(rng.standard_normal((2, samples))) * (
+            (frequency >= low) & (frequency < high)
+        )
+        response += times * noise * np.fft.irfft(spectrum, samples)
+    return noise * rng.standard_normal((2, samples)) + response
+
+
+@pytest.mark.parametrize("seconds", [10, 20, 49])
+def test_noise_without_contact_is_the_level_above_the_band(seconds):
+    assert noise_of({}, seen(seconds, BAND), RATE, BAND) == pytest.approx([0.1, 1.0], rel=0.05)
+
+
+@pytest.mark.parametrize("seconds", [20, 49])
+def test_impacts_are_not_noise(seconds):
+    assert noise_of({}, seen(seconds, (9.0, 1024.0)), RATE, BAND) == pytest.approx(
+        [0.1, 1.0], rel=0.2
+    )
+
+
+def test_noise_is_bounded_by_the_quietest_band():
+    assert noise_of({}, seen(20, (0.0, 100.0), (100.0, 1024.0)), RATE, BAND) == pytest.approx(
+        [1.0, 10.0], rel=0.1
+    )
+
+
+def test_impacts_that_fade_with_frequency_are_not_noise():
+    """As at 0.5 N a stop met now and then: three times the noise's density above the band, and
+    nothing but noise in the uppermost fifth.
+    """
+    assert noise_of(
+        {}, seen(20, (5.0, 200.0), (200.0, 620.0), strength=(10.0, 1.4)), RATE, BAND
+    ) == pytest.approx([0.1, 1.0], rel=0.05)
+
+
+def test_single_quiet_band_does_not_set_the_noise():
+    """Of a thousand channels of 20 s seven were read more than 0.5 dB low, one by 3.5 dB: what they
+    hold was taken for motion then.
+    """
+    rng = np.random.default_rng(0)
+    read = np.concatenate(
+        [noise_of({}, rng.standard_normal((25, int(20 * RATE))), RATE, BAND) for _ in range(40)]
+    )
+    assert np.abs(20.0 * np.log10(read)).max() < 0.5
