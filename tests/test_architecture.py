@@ -45,6 +45,7 @@ PACKAGES = (
     "effects",
     "discrepancy",
     "completion",
+    "acceptance",
     "validation",
     "reports",
     "figures",

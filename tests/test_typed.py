@@ -8,7 +8,13 @@ import pytest
 LIBRARY = Path(__file__).parents[1] / "src" / "vibroimpact"
 
 # Packages without complete type hints so far. One leaves this list when its test passes.
-NOT_YET_TYPED = ("completion", "discrepancy", "f16", "figures", "validation")
+NOT_YET_TYPED = (
+    "acceptance",
+    "completion",
+    "discrepancy",
+    "figures",
+    "validation",
+)
 PACKAGES = sorted(
     {path.relative_to(LIBRARY).parts[0].split(".")[0] for path in LIBRARY.rglob("*.py")}
 )

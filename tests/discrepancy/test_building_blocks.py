@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.discrepancy_results import made_up_verdict
+from vibroimpact.acceptance.rates import judged, rates
 from vibroimpact.discrepancy import naming
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.emulator import Emulator
@@ -20,7 +21,6 @@ from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.null import Null
 from vibroimpact.discrepancy.screening import NINETY, _above, _best, _profile
-from vibroimpact.discrepancy.suite import judged, rates
 
 RATE = 2048.0
 

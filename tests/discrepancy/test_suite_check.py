@@ -3,7 +3,7 @@
 import pytest
 
 from tests.discrepancy_results import made_up_verdict
-from vibroimpact.discrepancy.suite_check import CHECKS, table
+from vibroimpact.acceptance.quick_check import CHECKS, table
 
 
 def verdict(kind, *sets, factor=None):

@@ -7,8 +7,8 @@ import json
 import pytest
 
 from tests.unit.test_suite_page import effect, truth_of, verdict_of
-from vibroimpact.discrepancy.dag import suite_name, suite_of
-from vibroimpact.discrepancy.suite_difference import AGREE, agreement, differences
+from vibroimpact.acceptance.shards import suite_name, suite_of
+from vibroimpact.acceptance.verdict_agreement import AGREE, agreement, differences
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.verdict.file import write_verdict
 

@@ -6,8 +6,8 @@ import pytest
 
 from tests.discrepancy.test_suite_difference import written
 from tests.unit.test_suite_page import effect, verdict_of
-from vibroimpact.discrepancy.dag import numbers_added, numbers_judged, shard_of
-from vibroimpact.discrepancy.suite import rates, read, read_shards, read_table
+from vibroimpact.acceptance.rates import rates, read, read_shards, read_table
+from vibroimpact.acceptance.shards import numbers_added, numbers_judged, shard_of
 from vibroimpact.records import write_table
 
 FOUND = effect("dry_friction", "mu", 0.21, 0.16, 0.24)

@@ -9,13 +9,13 @@ import pytest
 from scipy.special import expit, logit
 
 from tests.discrepancy_results import made_up_verdict
-from vibroimpact.discrepancy.detection import (
+from vibroimpact.acceptance.detection_limit import (
     detection,
     detection_curve,
     detection_limit,
     probability,
 )
-from vibroimpact.discrepancy.suite import SAME_QUANTITY, confusion, judged, rates, standing
+from vibroimpact.acceptance.rates import SAME_QUANTITY, confusion, judged, rates, standing
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.figures.suite.sheets import suite_figures
 from vibroimpact.reports.suite_page import suite_page, suite_sentence

@@ -5,7 +5,7 @@
 # suite_difference compares such a suite with the plain one. count=judged writes the page of the
 # campaigns that have a verdict; add=FILE,FILE adds the campaigns.csv of shards that were judged
 # elsewhere.
-from vibroimpact.discrepancy.dag import (
+from vibroimpact.acceptance.shards import (
     SUITE_NAME,
     SUITE_S,
     frozen_seed,

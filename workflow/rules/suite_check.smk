@@ -1,5 +1,5 @@
 # A small suite: a few hidden effects in quick mode. It fails where a verdict is wrong.
-from vibroimpact.discrepancy.suite_check import CHECKS
+from vibroimpact.acceptance.quick_check import CHECKS
 
 SUITE_CHECK = "results/suite_check"
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from vibroimpact.discrepancy.detection import detection
-from vibroimpact.discrepancy.suite import confusion, rates, read_shards
+from vibroimpact.acceptance.detection_limit import detection
+from vibroimpact.acceptance.rates import confusion, rates, read_shards
 from vibroimpact.figures.suite.sheets import suite_figures
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table, write_text

@@ -3,7 +3,7 @@
 import pickle
 from pathlib import Path
 
-from vibroimpact.discrepancy.dag import suite_of
+from vibroimpact.acceptance.shards import suite_of
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact.job_log import redirect_output
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign

@@ -3,8 +3,8 @@
 import pickle
 from pathlib import Path
 
-from vibroimpact.discrepancy.dag import suite_of
-from vibroimpact.discrepancy.suite_run import left_out, run_sealed
+from vibroimpact.acceptance.sealed_run import left_out, run_sealed
+from vibroimpact.acceptance.shards import suite_of
 from vibroimpact.job_log import redirect_output
 from vibroimpact_truth.campaign import LEVELS, make_campaign
 from vibroimpact_truth.draw import draw_plans

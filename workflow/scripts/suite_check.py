@@ -1,6 +1,6 @@
 """Compare the quick verdicts of the sealed campaigns with the expected ones; fail where wrong."""
 
-from vibroimpact.discrepancy.suite_check import table
+from vibroimpact.acceptance.quick_check import table
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
 from vibroimpact.verdict.file import read_verdict

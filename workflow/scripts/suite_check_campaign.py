@@ -3,7 +3,7 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from vibroimpact.discrepancy.suite_check import CHECKS, COMPARED_S, SECONDS, SEED
+from vibroimpact.acceptance.quick_check import CHECKS, COMPARED_S, SECONDS, SEED
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact.job_log import redirect_output
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vibroimpact.discrepancy.suite_difference import agreement, differences
+from vibroimpact.acceptance.verdict_agreement import agreement, differences
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
 

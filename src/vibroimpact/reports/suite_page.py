@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from vibroimpact.discrepancy.suite import TARGETS
+from vibroimpact.acceptance.rates import TARGETS
 
 from .discrepancy_page import digits, embedded, in_words, percent
 from .page_style import STYLE

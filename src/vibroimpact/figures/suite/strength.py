@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.discrepancy.detection import (
+from vibroimpact.acceptance.detection_limit import (
     FEWEST,
     POWER,
     WEAKEST,
@@ -13,7 +13,7 @@ from vibroimpact.discrepancy.detection import (
     probability,
     single_effects,
 )
-from vibroimpact.discrepancy.suite import share
+from vibroimpact.acceptance.rates import share
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, label_of, number, shown
 

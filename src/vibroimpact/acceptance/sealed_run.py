@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .whole import run_campaign
+from vibroimpact.discrepancy.whole import run_campaign
 
 
 def left_out(plan_effects, arm):

@@ -4,7 +4,7 @@ how far estimates moved.
 
 import numpy as np
 
-from .suite import read, share
+from .rates import read, share
 
 # quantity -> whether two judged rows agree in it
 AGREE = {

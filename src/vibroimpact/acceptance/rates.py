@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy import stats
 
+from vibroimpact.discrepancy.misfit import excess
 from vibroimpact.verdict.content import OPEN
 from vibroimpact.verdict.file import read_verdict
-
-from .misfit import excess
 
 FAULT_CHECKS = {
     "clipping",
