@@ -328,3 +328,20 @@ def test_test_names_are_short():
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
     }
     assert {name: file for name, file in names.items() if len(name) > 60} == {}
+
+
+def test_no_line_is_longer_than_100_columns():
+    folders = ("src", "tests", "workflow", "examples", "benchmarks", "config", "docs")
+    endings = {".py", ".pyi", ".smk", ".yaml", ".toml", ".html", ".css", ".in"}
+    files = [file for folder in folders for file in (ROOT / folder).rglob("*")]
+    files = [file for file in [*files, *ROOT.glob("*")] if file.suffix in endings]
+    files += [ROOT / "Makefile", ROOT / "Snakefile", ROOT / ".ci" / "run"]
+    built = {"_build", "generated"}
+    long = [
+        f"{file.relative_to(ROOT)}:{number}"
+        for file in files
+        if not built & set(file.parts)
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1)
+        if len(line) > 100
+    ]
+    assert long == []

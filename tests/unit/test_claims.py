@@ -72,7 +72,10 @@ def curves(model):
         :, None
     ].repeat(SEEDS, axis=1)
     wiggle = 1.0 + 0.01 * np.arange(-1, 2)
-    tables = lambda values, methods: {method: np.outer(values, wiggle) for method in methods}  # noqa: E731
+
+    def tables(values, methods):
+        return {method: np.outer(values, wiggle) for method in methods}
+
     summary = [
         {"gap_m": 3e-4, "load_rms_N": load, "method": method, "k_median": value}
         for load, value in zip(LOAD, k, strict=True)
