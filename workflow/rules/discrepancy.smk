@@ -2,34 +2,7 @@
 # `snakemake -j2 discrepancy --config campaign=FILE [model=config/x.yaml]`.
 # bank=FOLDER takes the simulations of the candidates from another campaign of the same model, loads
 # and gaps; draw=1, 2, ... simulates with other seeds.
-from vibroimpact.discrepancy.dag import (
-    NULL_PARTS,
-    finalist_names,
-    pair_names,
-    screened_files,
-    screened_names,
-)
-
-
-def path_files(wildcards):
-    """The files of the candidates that are screened, after the linear stage."""
-    names = screened_names(checkpoints._discrepancy_prepare.get().output.prepared)
-    return [str(file) for file in screened_files(names, DISCREPANCY, BANK)]
-
-
-def finalist_files(wildcards):
-    """The files of the finalists of the screening."""
-    names = finalist_names(checkpoints._discrepancy_screening.get().output.screening)
-    return [f"{DISCREPANCY}/finalists/{name}.npz" for name in names]
-
-
-def pair_files(wildcards):
-    """The files of the pairs of effects to simulate."""
-    return [
-        f"{DISCREPANCY}/pairs/{name}.npz"
-        for name in pair_names(checkpoints._discrepancy_pairs.get().output.pairs)
-    ]
-
+from vibroimpact.discrepancy.dag import NULL_PARTS
 
 BANK = REQUEST.get("bank", "")
 NULLS = [f"{DISCREPANCY}/null/{part}.npz" for part in range(NULL_PARTS)]
