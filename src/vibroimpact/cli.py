@@ -24,10 +24,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments: those of the command line where None. Raises SystemExit with code 2 for arguments
     that are no command.
     """
-    asked = _parser().parse_args(arguments)
-    command: Callable[[argparse.Namespace], int] = asked.command
+    options = _parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], int] = options.command
     try:
-        code = command(asked)
+        code = command(options)
         sys.stdout.flush()
         return code
     except BrokenPipeError:  # the reader of a pipe, such as `| head`, has closed it
@@ -86,18 +86,18 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _check(asked: argparse.Namespace) -> int:
+def _check(options: argparse.Namespace) -> int:
     """Check a file. Return 1 where it has problems."""
-    checked = _campaign if _is_netcdf(asked.file) else _configuration
-    summary, problems = checked(asked.file)
+    checked = _campaign if _is_netcdf(options.file) else _configuration
+    summary, problems = checked(options.file)
     for problem in problems:
         print(problem, file=sys.stderr)
     if summary:
-        print(f"{asked.file}: {summary}")
+        print(f"{options.file}: {summary}")
     return 0 if summary else 1
 
 
-def _schema(asked: argparse.Namespace) -> int:
+def _schema(options: argparse.Namespace) -> int:
     """Print the JSON schema."""
     import json
 
@@ -107,7 +107,7 @@ def _schema(asked: argparse.Namespace) -> int:
     return 0
 
 
-def _reference(asked: argparse.Namespace) -> int:
+def _reference(options: argparse.Namespace) -> int:
     """Print the key reference."""
     from vibroimpact.config.key_reference import markdown
 
