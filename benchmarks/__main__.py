@@ -1,10 +1,13 @@
 """The project beside what a user would otherwise pick, measured in one run.
 
-python -m benchmarks                    everything: results/benchmark/, docs/performance.md and its
-figure python -m benchmarks --quick            the same in small, to results/benchmark_quick/, the
-page beside the tables python -m benchmarks --page             page and figure anew from the tables
-of the last run python -m benchmarks --peers plain --no-growth --quick      our kernel beside the
-plain numba loop, in seconds
+python -m benchmarks
+    everything: results/benchmark/, docs/performance.md and its figure
+python -m benchmarks --quick
+    the same in small, to results/benchmark_quick/, the page beside the tables
+python -m benchmarks --page
+    page and figure anew from the tables of the last run
+python -m benchmarks --peers plain --no-growth --quick
+    our kernel beside the plain numba loop, in seconds
 """
 
 import argparse

@@ -281,6 +281,15 @@ def test_there_is_a_script_for_every_rule():
     assert names == [file.stem for file in SCRIPTS]
 
 
+def test_public_rules_and_no_others_describe_themselves():
+    described = {}
+    for file in [*RULES, *ROOT.glob("examples/*/*.smk"), ROOT / "Snakefile"]:
+        found = re.findall(r'^ *(?:rule|checkpoint) (\w+):\n( *""")?', file.read_text(), flags=re.M)
+        described |= {name: bool(docstring) for name, docstring in found}
+    assert {"all", "f16", "_simulate"} <= set(described)
+    assert {n for n, has in described.items() if has == n.startswith("_")} == set()
+
+
 def test_rules_have_the_same_anatomy():
     assert {
         name: keys

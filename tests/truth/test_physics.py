@@ -8,7 +8,9 @@ import netCDF4
 import numpy as np
 import pytest
 
+from vibroimpact_truth.amounts import AMOUNTS
 from vibroimpact_truth.campaign import Plan, forces, simulate_records
+from vibroimpact_truth.hidden import EFFECTS
 from vibroimpact_truth.strength import ABOVE_NOISE, BANDS, HIGHEST_HZ, LOWEST_HZ, band_powers
 
 DEV_NULL = next(
@@ -69,6 +71,15 @@ def test_an_effect_of_nothing_changes_nothing(effect, neutral):
         run(effects=effects, duration=0.25)[:, :300] for effects in ((), ((effect, neutral),))
     )
     np.testing.assert_allclose(same, bare, rtol=0.0, atol=1e-6 * np.abs(bare).max())
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_every_hidden_effect_changes_the_record(effect):
+    drawn = AMOUNTS[effect]
+    parameters = drawn.parameters((drawn.strong or drawn.medium)[0], np.random.default_rng(1))
+    bare, hidden = (run(effects=effects, duration=0.3) for effects in ((), ((effect, parameters),)))
+    assert np.isfinite(hidden).all()
+    assert np.abs(hidden - bare).max() > 1e-6 * np.abs(bare).max()
 
 
 @pytest.mark.parametrize(

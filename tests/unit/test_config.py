@@ -379,12 +379,14 @@ def test_a_config_can_not_be_changed():
 @pytest.mark.parametrize("kinds", ["study", "other_kinds"])
 def test_every_key_changes_the_parameters_of_some_stage(kinds, request):
     values = check_config(request.getfixturevalue(kinds), "mine").model_dump(mode="json")
-    before = {stage: select(copy.deepcopy(values), keys) for stage, keys in STAGE_KEYS.items()}
+    # The validation reads the whole study and would count for every key.
+    stages = {stage: keys for stage, keys in STAGE_KEYS.items() if stage != "validation"}
+    before = {stage: select(copy.deepcopy(values), keys) for stage, keys in stages.items()}
     unused = []
     for place, _ in leaves(values):
         changed = copy.deepcopy(values)
         put(changed, place, "another value")
-        if all(select(changed, keys) == before[stage] for stage, keys in STAGE_KEYS.items()):
+        if all(select(changed, keys) == before[stage] for stage, keys in stages.items()):
             unused.append(place)
     assert unused == []
 
