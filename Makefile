@@ -37,6 +37,7 @@ help: ## list the targets
 		re.findall(r'^([a-z-]+):.*?## (.*)', open('Makefile').read(), re.M)]"
 
 study: $(READY) ## the study of CONFIG: simulation, spectra, identification, tables, figures
+	@$(BIN)/python -m vibroimpact check $(CONFIG)
 	$(BIN)/snakemake -j$(JOBS) --configfile $(CONFIG)
 
 smoke: $(READY) ## the same study made tiny, in under a minute
