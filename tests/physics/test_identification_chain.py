@@ -7,15 +7,11 @@ c doubles the first mode's damping ratio at each k. At k = 1e3 N/m the first fre
 
 import numpy as np
 import pytest
-import xarray as xr
 
-from vibroimpact.excitation.random_force import band_limited_noise
+from tests.linear_records import LinearRecords, statistics
 from vibroimpact.identify.identify_case import identify_case
 from vibroimpact.linear.poles import first_pole
 from vibroimpact.linear.responses import frf
-from vibroimpact.random_streams import random_generator
-from vibroimpact.spectra.window_leakage import spectral_kernel
-from vibroimpact.study.case_spectra import case_spectra
 
 DOUBLING = {
     1.0e3: 28.0656,
@@ -31,8 +27,7 @@ IDENTIFIED = ("peak_half", "peak_quarter", "peak_25th", "lscf", "ods", "broadban
 # against a change, it does not prove the bias is nil. Over 800 seeds of other streams the bias of
 # the peak methods was at most 0.5 % in k and 1.8 % in c; lscf keeps about +0.2 of one record's
 # scatter in k (docs/method.md).
-SEEDS, STREAM = 64, "chain"
-SEGMENT_S, HIGHEST_HZ = 10.0, 120.0
+SEEDS = 64
 SENSORS = ("apex.y", "bend_45.y", "left_leg.y", "right_leg.y")
 
 
@@ -42,93 +37,10 @@ def output_shapes(model):
     return np.concatenate([model.sensor_shapes[:, columns], model.line_shapes], axis=1)
 
 
-def statistics():
-    """What identify_case reads of a record beside its spectra; the contact forces play no part
-    here.
-    """
-    ones = (("contact_point", "direction"), np.ones((10, 2)))
-    return xr.Dataset(
-        {"force_displacement": ones, "displacement_square": ones},
-        attrs={"load_rms_N": 1.0, "gap_m": 1.0e-3},
-    )
-
-
-def exact_spectra(config, model, k, c, window):
-    """Spectra as case_spectra gives them, without any scatter: "segments" whose mean is the
-    expected averaged spectrum.
-
-    Segment j holds the exact response at a frequency shifted by the kernel's offset j, weighted
-    with the root of the kernel.
-    """
-    kernel = spectral_kernel(window, SEGMENT_S)
-    fine, bins = kernel.oversampling, round(HIGHEST_HZ * SEGMENT_S)
-    index = np.arange(-kernel.half_width, bins * fine + kernel.half_width + 1)
-    frequency = np.abs(index) / (SEGMENT_S * fine)
-    response = frf(model, k, c, frequency, output_shapes(model))
-    response = np.where(index < 0, response.conj(), response) * (
-        frequency >= config.excitation.band_Hz[0] - 1.0e-9
-    )
-    taps = [
-        np.sqrt(weight * kernel.weights.size) * response[:, tap : tap + bins * fine + 1 : fine]
-        for tap, weight in enumerate(kernel.weights)
-    ]
-    values = np.stack(taps, axis=1)
-    low = np.arange(bins + 1) / SEGMENT_S
-    band = (low >= 8.0 - 1.0e-9) & (low <= 60.0 + 1.0e-9)
-    data = {}
-    for name, part, dims in (
-        ("sensor_spectra", values[:4], ("driven_sensor", "segment", "low_frequency")),
-        ("line_spectra", values[4:][..., band], ("line_point", "segment", "line_frequency")),
-    ):
-        data |= {name + "_re": (dims, part.real), name + "_im": (dims, part.imag)}
-    coords = {"driven_sensor": list(SENSORS), "low_frequency": low, "line_frequency": low[band]}
-    return xr.Dataset(
-        data | {"effective_averages": ((), np.inf)},
-        coords,
-        {"window": window, "segment_s": SEGMENT_S},
-    )
-
-
-class LinearTube:
-    """Records of the linear tube with one (k, c): forces of the study's seeds, exact responses at
-    2048 Hz, 49 s.
-    """
-
-    def __init__(self, config, model, k, c):
-        self.config = config
-        self.rate = round(config.record.sampling_frequency_Hz)
-        self.samples = round(config.record.duration_s * self.rate)
-        self.period = 51 * self.rate  # a little longer than the record, and quick to transform
-        frequency = np.fft.rfftfreq(self.period, 1.0 / self.rate)
-        low, high = config.excitation.band_Hz
-        self.lines = np.flatnonzero((frequency >= low) & (frequency <= high))
-        self.response = frf(model, k, c, frequency[self.lines], output_shapes(model)).astype(
-            np.complex64
-        )
-
-    def record(self, seed):
-        """The record of one seed as far as case_spectra reads it."""
-        force = band_limited_noise(
-            random_generator(self.config.seed, seed, STREAM),
-            self.period,
-            self.rate,
-            self.config.excitation.band_Hz,
-        )
-        lines = np.zeros((len(self.response), self.period // 2 + 1), np.complex64)
-        lines[:, self.lines] = self.response * np.fft.rfft(force)[self.lines]
-        motion = np.fft.irfft(lines, self.period, axis=-1)[:, : self.samples].astype(np.float32)
-        return xr.Dataset(
-            {
-                "displacement": (("sensor", "time"), motion[:4]),
-                "acceleration": (("sensor", "time"), motion[:1].repeat(4, 0)),
-                "line_displacement": (("line_point", "time"), motion[4:]),
-            },
-            {"sensor": list(SENSORS)},
-        )
-
-    def spectra(self, seed):
-        """The spectra of one seed."""
-        return case_spectra(self.config, self.record(seed))
+def records(config, model, k, c):
+    """The records of the linear tube with one (k, c)."""
+    shapes = output_shapes(model)
+    return LinearRecords(config, SENSORS, lambda frequency: frf(model, k, c, frequency, shapes))
 
 
 @pytest.fixture(scope="module")
@@ -136,9 +48,9 @@ def chain(study_config, study_model):
     """{k: {method: Estimates of all seeds}} on records."""
     results = {}
     for k in RESOLVED:
-        tube = LinearTube(study_config, study_model, k, DOUBLING[k])
+        tube = records(study_config, study_model, k, DOUBLING[k])
         cases = [
-            identify_case(study_config, study_model, statistics(), tube.spectra(seed))[0]
+            identify_case(study_config, study_model, statistics(10), tube.spectra(seed))[0]
             for seed in range(SEEDS)
         ]
         results[k] = {
@@ -173,8 +85,8 @@ def test_exact_spectra_give_the_support_back(study_config, study_model, window, 
     estimates, _ = identify_case(
         study_config,
         study_model,
-        statistics(),
-        exact_spectra(study_config, study_model, k, c, window),
+        statistics(10),
+        records(study_config, study_model, k, c).exact(window),
     )
     for estimate in estimates[: len(IDENTIFIED)]:
         assert estimate.quality != "unresolved", estimate
@@ -187,9 +99,9 @@ def test_exact_spectra_give_the_support_back(study_config, study_model, window, 
 @pytest.mark.parametrize("k", RESOLVED)
 def test_ignoring_window_leakage_biases_the_support(study_config, study_model, k):
     # The same Hann spectra, but the methods are told that no window was used.
-    spectra = exact_spectra(study_config, study_model, k, 0.0, "hann").assign_attrs(window="none")
+    spectra = records(study_config, study_model, k, 0.0).exact("hann").assign_attrs(window="none")
     errors = damping_errors(
-        identify_case(study_config, study_model, statistics(), spectra)[0], k, 0.0
+        identify_case(study_config, study_model, statistics(10), spectra)[0], k, 0.0
     )
     assert errors["peak_half"] > 0.025 and errors["peak_quarter"] > 0.02, errors
 
@@ -198,14 +110,14 @@ def test_near_the_free_tube_no_method_claims_a_stiffness(study_config, study_mod
     estimates, _ = identify_case(
         study_config,
         study_model,
-        statistics(),
-        exact_spectra(study_config, study_model, 1.0e3, DOUBLING[1.0e3], "hann"),
+        statistics(10),
+        records(study_config, study_model, 1.0e3, DOUBLING[1.0e3]).exact("hann"),
     )
-    tube = LinearTube(study_config, study_model, 1.0e3, DOUBLING[1.0e3])
+    tube = records(study_config, study_model, 1.0e3, DOUBLING[1.0e3])
     cases = [
         estimates,
         *(
-            identify_case(study_config, study_model, statistics(), tube.spectra(seed))[0]
+            identify_case(study_config, study_model, statistics(10), tube.spectra(seed))[0]
             for seed in range(8)
         ),
     ]

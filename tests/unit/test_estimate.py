@@ -75,6 +75,8 @@ def test_rows_have_the_columns_of_the_consistency_table():
         "load_rms_N",
         "load_over_gap",
         "seed",
+        "group",
+        "direction",
         "method",
         "k_N_per_m",
         "k_standard_error",
@@ -83,6 +85,7 @@ def test_rows_have_the_columns_of_the_consistency_table():
         "frequency_Hz",
         "damping_ratio",
         "quality",
+        "reason",
     ]
     assert (
         [row["method"] for row in rows] == list(METHODS)

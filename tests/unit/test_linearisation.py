@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from vibroimpact.identify.secant import secant_stiffness
 from vibroimpact.identify.statistical_linearisation import band_power, statistical_linearisation
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -99,18 +98,3 @@ def test_power_in_a_band_is_the_integral_of_the_spectrum():
             )[0],
             rel=1.0e-6,
         )
-
-
-def test_secant_of_a_linear_support_is_its_stiffness():
-    generator = np.random.default_rng(3)
-    square = generator.uniform(1.0, 2.0, (10, 2)) * (
-        1.0e-3,
-        1.0,
-    )  # hardly any motion in the first direction
-    weight, support = np.full(10, 0.2), np.repeat([0, 1], 5)
-    k, error = secant_stiffness(3.0e5 * weight[:, None] * square, square, weight, support)
-    assert k == pytest.approx(3.0e5) and error == pytest.approx(0.0, abs=1.0e-6)
-    softer = np.where(support == 0, 2.0e5, 3.0e5)[:, None] * weight[:, None] * square
-    k, error = secant_stiffness(softer, square, weight, support)
-    assert 2.0e5 < k < 3.0e5 and error == pytest.approx(0.5e5)
-    assert np.isnan(secant_stiffness(softer[:5], square[:5], weight[:5], support[:5])[1])

@@ -1,15 +1,21 @@
 """Verdicts, spans over seeds, and how the gaps collapse."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from vibroimpact.identify.estimate import METHODS, Estimate, table_rows, unresolved
+from vibroimpact.study.agreement_dataset import consistency_dataset
+from vibroimpact.study.equivalent_table import equivalent_rows
 from vibroimpact.study.method_agreement import (
+    COMPARED,
     collapse_rows,
-    consistency_dataset,
     consistency_rows,
     summary_rows,
 )
+
+ALL = SimpleNamespace(group="all", direction="y")
 
 
 def case(k, seed, load=5.0, gap=2.0e-4, silent=(), **others):
@@ -18,10 +24,12 @@ def case(k, seed, load=5.0, gap=2.0e-4, silent=(), **others):
     """
     estimates = [
         (
-            unresolved(method, "")
+            unresolved(method, f"{method} sees nothing")
             if method in silent
-            else Estimate(method, others.get(method, k), 0.1 * k, 50.0, 5.0)
-        )
+            else Estimate(
+                method, others.get(method, k), 0.1 * k, others.get(f"c_{method}", 50.0), 5.0
+            )
+        ).at(ALL)
         for method in METHODS
     ]
     return table_rows(estimates, {"gap_m": gap, "load_rms_N": load, "seed": seed})
@@ -40,7 +48,7 @@ def test_methods_within_a_quarter_of_the_median_agree():
     )
     lscf = found["lscf"]
     assert (lscf["k_median"], lscf["k_low"], lscf["k_high"]) == pytest.approx((1.0e5, 0.9e5, 1.3e5))
-    assert lscf["verdict"] == "agree" and lscf["ratio"] == pytest.approx(1.0)
+    assert lscf["verdict_k"] == "agree" and lscf["ratio"] == pytest.approx(1.0)
     assert found["ods"]["ratio"] == pytest.approx(0.8) and found["broadband"][
         "ratio"
     ] == pytest.approx(1.2)
@@ -49,20 +57,56 @@ def test_methods_within_a_quarter_of_the_median_agree():
 
 @pytest.mark.parametrize("method", ["lscf", "ods", "broadband"])
 def test_one_method_off_by_more_is_a_spread(method):
-    assert summary_of(case(1.0e5, 0, **{method: 1.3e5}))["secant"]["verdict"] == "spread"
-    assert summary_of(case(1.0e5, 0, **{method: 0.7e5}))["secant"]["verdict"] == "spread"
-    assert summary_of(case(1.0e5, 0, peak_half=9.0e5, secant=1.0))["lscf"]["verdict"] == "agree"
+    assert summary_of(case(1.0e5, 0, **{method: 1.3e5}))["lscf"]["verdict_k"] == "spread"
+    assert summary_of(case(1.0e5, 0, **{method: 0.7e5}))["lscf"]["verdict_k"] == "spread"
+    assert summary_of(case(1.0e5, 0, peak_half=9.0e5, secant=1.0))["lscf"]["verdict_k"] == "agree"
+
+
+@pytest.mark.parametrize("c, verdict", [(62.4, "agree"), (62.6, "spread"), (39.0, "spread")])
+def test_dampings_that_differ_by_a_quarter_do_not_agree(c, verdict):
+    found = summary_of(case(1.0e5, 0, c_broadband=c))
+    assert found["lscf"]["verdict_c"] == found["broadband"]["verdict_c"] == verdict
+    assert found["lscf"]["verdict_k"] == "agree"
+
+
+def test_only_compared_methods_carry_a_verdict():
+    found = summary_of(case(1.0e5, 0))
+    assert {name for name, row in found.items() if row["verdict_k"]} == set(COMPARED)
+    assert {name for name, row in found.items() if row["verdict_c"]} == {"lscf", "broadband"}
+
+
+def test_every_unresolved_row_says_why():
+    tables = [case(1.0e5, seed, silent=("ods",) if seed else ()) for seed in range(3)]
+    found = summary_of(*tables)
+    assert found["ods"]["reason"] == "not resolved in 2 of 3 seeds: ods sees nothing"
+    assert found["lscf"]["reason"] == ""
+    rows = summary_rows(consistency_rows([case(1.0e5, 0, silent=COMPARED)]))
+    assert all(row["reason"] for row in rows if not np.isfinite(row["k_median"]))
+
+
+def test_two_methods_recommend_a_stiffness_one_does_not():
+    values = {"lscf": 1.0e5, "ods": 1.2e5, "broadband": 3.0e5}
+    three = equivalent_rows(summary_rows(consistency_rows([case(1.0, 0, **values)])))[0]
+    assert (three["k_N_per_m"], three["k_low"], three["k_high"]) == (1.2e5, 1.0e5, 3.0e5)
+    assert (three["agreement_k"], three["reason_k"]) == ("spread", "")
+    two = consistency_rows([case(1.0, 0, silent=("ods",), **values)])
+    assert equivalent_rows(summary_rows(two))[0]["k_N_per_m"] == 2.0e5
+    one = consistency_rows([case(1.0, 0, silent=("ods", "lscf"), **values)])
+    alone = equivalent_rows(summary_rows(one), [("all", "x")])
+    assert np.isnan(alone[0]["k_N_per_m"]) and np.isnan(alone[0]["c_N_s_per_m"])
+    assert alone[0]["reason_k"] == "lscf: lscf sees nothing; ods: ods sees nothing"
+    assert alone[1]["direction"] == "x" and "does not move" in alone[1]["reason_k"]
 
 
 def test_method_unresolved_by_half_the_seeds_is_open():
     half = summary_of(case(1.0e5, 0), case(1.0e5, 1, silent=("ods",)))
-    assert half["ods"]["k_median"] == 1.0e5 and half["ods"]["verdict"] == "agree"
+    assert half["ods"]["k_median"] == 1.0e5 and half["ods"]["verdict_k"] == "agree"
     found = summary_of(
         case(1.0e5, 0), case(1.0e5, 1, silent=("ods",)), case(1.0e5, 2, silent=("ods",))
     )
     assert (
         np.isnan(found["ods"]["k_median"])
-        and found["lscf"]["verdict"] == "unresolved"
+        and found["lscf"]["verdict_k"] == "unresolved"
         and np.isnan(found["lscf"]["ratio"])
     )
 
@@ -77,6 +121,8 @@ def test_rows_are_ordered_and_the_dataset_holds_them():
         (1.0e-4, 5.0),
     ]
     dataset = consistency_dataset(rows, summary_rows(rows))
+    assert (dataset["group"].item(), dataset["direction"].item()) == ("all", "y")
+    dataset = dataset.isel(support_direction=0)
     assert dict(dataset.sizes) == {"gap": 2, "load": 2, "seed": 2, "method": 8}
     place = {"gap": 2.0e-4, "load": 10.0, "method": "lscf"}
     assert float(dataset["k"].sel(place | {"seed": 1})) == 2.0e5 and np.isnan(
@@ -87,7 +133,7 @@ def test_rows_are_ordered_and_the_dataset_holds_them():
     assert (
         int(dataset["quality"].sel({"gap": 2.0e-4, "load": 5.0, "seed": 0, "method": "ods"})) == 2
     )
-    assert dataset["verdict"].values.tolist() == [[2, 0], [0, 2]]
+    assert dataset["verdict_k"].values.tolist() == [[2, 0], [0, 2]]
 
 
 def test_scaled_gaps_collapse_on_one_curve():

@@ -40,11 +40,13 @@ for START, LOADS in loads_by_half_decade(STUDY.grid).items():
 rule _consistency:
     input:
         library=library("consistency"),
+        model=f"{RESULTS}/model.nc",
         tables=files_of_study("estimates", "csv"),
     output:
         table=f"{RESULTS}/consistency.csv",
         summary=f"{RESULTS}/consistency_summary.csv",
         collapse=f"{RESULTS}/consistency_collapse.csv",
+        equivalent=f"{RESULTS}/equivalent.csv",
         dataset=f"{RESULTS}/consistency.nc",
     log:
         f"{RESULTS}/logs/consistency.log",

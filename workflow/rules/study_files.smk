@@ -120,6 +120,7 @@ def targets():
             "consistency_summary.csv",
             "consistency_collapse.csv",
             "consistency.nc",
+            "equivalent.csv",
         )
     ]
     return [*tables, *figures, *series]

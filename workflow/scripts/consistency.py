@@ -1,23 +1,31 @@
 """Gather the estimates of all cases into the consistency tables."""
 
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
+from vibroimpact.linear.support_groups import unreached_supports
 from vibroimpact.provenance import origin
 from vibroimpact.records import read_table, write_record, write_table
+from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.agreement_dataset import consistency_dataset
+from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS, equivalent_rows
 from vibroimpact.study.method_agreement import (
     COLLAPSE_COLUMNS,
     collapse_rows,
-    consistency_dataset,
     consistency_rows,
     summary_rows,
 )
 
 redirect_output(snakemake.log[0])
+config = StageSettings(snakemake.params.config)
+model = read_model(snakemake.input.model)
 rows = consistency_rows([read_table(path) for path in snakemake.input.tables])
 summary = summary_rows(rows)
 write_table(rows, snakemake.output.table)
 write_table(summary, snakemake.output.summary)
 write_table(collapse_rows(summary), snakemake.output.collapse, COLLAPSE_COLUMNS)
+unreached = unreached_supports(model, config.identification.groups)
+write_table(equivalent_rows(summary, unreached), snakemake.output.equivalent, EQUIVALENT_COLUMNS)
 dataset = consistency_dataset(rows, summary)
 write_record(
     dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)),

@@ -261,6 +261,17 @@ class Identification(Section):
         " reported as unresolved.",
         examples=[[1.0e3, 1.0e8]],
     )
+    groups: Annotated[
+        Annotated[Literal["all", "each"], One]
+        | Annotated[tuple[Annotated[tuple[Name, ...], Not_empty], ...], List],
+        One_or_list,
+    ] = Field(
+        "all",
+        description="Supports that share one equivalent stiffness and damping in each direction:"
+        " `all`, `each` for itself, or a list of groups, each a list of names of supports. A"
+        " support in no group is one of its own.",
+        examples=[[["plate_1", "plate_2"], ["bar"]]],
+    )
 
 
 class Overlay(Section):

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .broadband import BroadbandFit
+from .identify_supports import SupportsCase, SupportsResult
 from .ods import DeflectionShape, ShapeMatch
 from .operational_pole import OperationalPole
 from .peak import LEVELS, PeakFit
@@ -69,6 +70,60 @@ def case_curves(
     return xr.Dataset(data, coords)
 
 
+def supports_curves(case: SupportsCase, result: SupportsResult) -> xr.Dataset:
+    """Return the curves of one case with several unknown supports, as case_curves does.
+
+    There is no map over one k and c; the covariance of ln k over the directions takes its place.
+    """
+    tube = case.tube
+    fitted = np.full((len(result.peaks), tube.frequency.size), np.nan)
+    for row, fit in zip(fitted, result.peaks.values(), strict=True):
+        if fit is not None:
+            row[fit.bins] = fit.curve
+    data = {
+        "peak_curve": _variable(
+            ("level", "low_frequency"), fitted, "m2 Hz-1", "fitted resonance curve"
+        ),
+        "peak_level": _variable("level", list(LEVELS.values()), "1", "peak over level"),
+    }
+    if result.pole is not None:
+        data |= _chart_variables(result.pole)
+    if result.shape is not None:
+        data |= _deflection_variables(result.shape)
+    if result.shapes is not None:
+        data["best_mac"] = _variable((), result.shapes.mac, "1", "mean MAC of the shapes")
+    if result.spectra is not None:
+        count = len(tube.directions)
+        data |= {
+            "best_correlation": _variable(
+                (), result.spectra.correlation, "1", "smallest correlation coefficient of a sensor"
+            ),
+            "broadband_curve": _variable(
+                "broadband_frequency",
+                result.spectra.curve[tube.sensors.broadband],
+                "m2 Hz-1",
+                "best PSD of the linear structure",
+            ),
+            "log_stiffness_covariance": _variable(
+                ("support_direction", "other_support_direction"),
+                result.spectra.covariance[:count, :count],
+                "1",
+                "covariance of the logarithms of the stiffnesses, broadband comparison",
+            ),
+        }
+    coords = {
+        "level": list(result.peaks),
+        "low_frequency": ("low_frequency", tube.frequency, {"units": "Hz"}),
+        "broadband_frequency": (
+            "broadband_frequency",
+            tube.frequency[tube.broadband],
+            {"units": "Hz"},
+        ),
+        "support_direction": [direction.name for direction in tube.directions],
+    }
+    return xr.Dataset(data, coords)
+
+
 def _chart_variables(pole: OperationalPole) -> dict[str, tuple]:
     """Return the stabilisation chart as variables over `pole`."""
     chart = pole.chart
@@ -96,6 +151,15 @@ def _chart_variables(pole: OperationalPole) -> dict[str, tuple]:
 
 def _shape_variables(measured: DeflectionShape, match: ShapeMatch) -> dict[str, tuple]:
     """Return the deflection shape and its MAC over k as variables."""
+    return _deflection_variables(measured) | {
+        "mac_k": _variable("mac_k", match.k_grid, "N m-1", "support stiffness"),
+        "mac": _variable("mac_k", match.mac_grid, "1", "MAC with the linear tube's shape"),
+        "best_mac": _variable((), match.mac, "1", "largest MAC"),
+    }
+
+
+def _deflection_variables(measured: DeflectionShape) -> dict[str, tuple]:
+    """Return the deflection shape as variables."""
     turned = measured.shape * np.exp(-0.5j * np.angle(np.sum(measured.shape**2)))
     turned = turned if turned.real[np.argmax(np.abs(turned))] > 0.0 else -turned
     return {
@@ -109,9 +173,6 @@ def _shape_variables(measured: DeflectionShape, match: ShapeMatch) -> dict[str, 
             "value", measured.singular_values, "1", "singular value over the first"
         ),
         "ods_band": _variable("edge", np.array(measured.band_Hz), "Hz", "band of the shape"),
-        "mac_k": _variable("mac_k", match.k_grid, "N m-1", "support stiffness"),
-        "mac": _variable("mac_k", match.mac_grid, "1", "MAC with the linear tube's shape"),
-        "best_mac": _variable((), match.mac, "1", "largest MAC"),
     }
 
 

@@ -1,11 +1,13 @@
 """From what each method fitted to one case to graded estimates of the equivalent support."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .broadband import BroadbandFit
@@ -15,7 +17,7 @@ from .ods import DeflectionShape, ShapeMatch
 from .operational_pole import OperationalPole
 from .peak import PeakFit
 from .reference_tube import ReferenceTube
-from .secant import secant_stiffness
+from .secant import secant_support
 from .segment_scatter import jackknife_influences, segment_covariance
 from .statistical_linearisation import Linearisation, statistical_linearisation
 
@@ -101,34 +103,53 @@ def estimate_from_broadband(fit: BroadbandFit | None, tube: ReferenceTube) -> Es
 
 
 def comparison_estimates(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset
+    config: ConfigPart,
+    model: ModalModel,
+    record: xr.Dataset,
+    directions: Sequence[SupportDirection],
 ) -> list[Estimate]:
-    """Return the Estimates of statistical linearisation and of the secant stiffness.
+    """Return the Estimates of statistical linearisation and of the secant, for each direction.
 
     Neither uses the spectrum of a response.
     """
-    if config.excitation.kind == "band_limited":
-        load, gap = float(record.attrs["load_rms_N"]), float(record.attrs["gap_m"])
-        case = _linearisation(model, load, gap, tuple(config.excitation.band_Hz))
-        predicted = Estimate(
-            method="statistical_linearisation",
-            k=case.k,
-            k_standard_error=0.0,
-            frequency=case.frequency,
-            damping_ratio=case.damping_ratio,
-        )
-        if not case.settled:
-            predicted = mark_weak(predicted, "the iteration did not settle")
-    else:
-        predicted = unresolved("statistical_linearisation", "needs a force of flat PSD in a band")
-    k, error = secant_stiffness(
-        record["force_displacement"].values,
-        record["displacement_square"].values,
-        model.contact_weight,
-        model.support_of_point,
-    )
-    secant = Estimate("secant", k, error, note="standard error from the scatter over supports")
-    return [predicted, secant]
+    found = [_linearised(config, model, record, direction) for direction in directions]
+    return found + [_secant(model, record, direction) for direction in directions]
+
+
+def _linearised(
+    config: ConfigPart, model: ModalModel, record: xr.Dataset, direction: SupportDirection
+) -> Estimate:
+    """Return the Estimate of statistical linearisation."""
+    method = "statistical_linearisation"
+    if config.excitation.kind != "band_limited":
+        return unresolved(method, "needs a force of flat PSD in a band").at(direction)
+    load, gap = float(record.attrs["load_rms_N"]), float(record.attrs["gap_m"])
+    case = _linearisation(model, load, gap, tuple(config.excitation.band_Hz))
+    k = case.stiffness_of(direction)
+    if not np.isfinite(k):
+        note = "needs a direction along an axis"
+        return unresolved(method, note, case.frequency, case.damping_ratio).at(direction)
+    predicted = Estimate(
+        method=method,
+        k=k,
+        k_standard_error=0.0,
+        frequency=case.frequency,
+        damping_ratio=case.damping_ratio,
+    ).at(direction)
+    return predicted if case.settled else mark_weak(predicted, "the iteration did not settle")
+
+
+def _secant(model: ModalModel, record: xr.Dataset, direction: SupportDirection) -> Estimate:
+    """Return the Estimate of the secant stiffness and damping."""
+    found = secant_support(record, model, direction)
+    return Estimate(
+        "secant",
+        found.k,
+        found.k_standard_error,
+        found.c,
+        found.c_standard_error,
+        note="standard error from the scatter over supports",
+    ).at(direction)
 
 
 @lru_cache(maxsize=32)

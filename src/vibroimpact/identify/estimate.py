@@ -1,10 +1,14 @@
 """The estimate of an equivalent support by one method, and its quality."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
+
+from vibroimpact.linear.support_groups import SupportDirection
 
 PEAK_METHODS = ("peak_half", "peak_quarter", "peak_25th")
 METHODS = (*PEAK_METHODS, "lscf", "ods", "broadband", "statistical_linearisation", "secant")
@@ -28,6 +32,7 @@ class Estimate:
     frequency, damping_ratio: of the pole behind the estimate (Hz, undamped); NaN for none.
     quality: ok, weak or unresolved. It judges k with the error of the model included.
     note: the reason for the quality.
+    group, direction: the supports that share k and c, and the direction that they act in.
     """
 
     method: str
@@ -39,6 +44,12 @@ class Estimate:
     damping_ratio: float = np.nan
     quality: str = "ok"
     note: str = ""
+    group: str = ""
+    direction: str = ""
+
+    def at(self, support: SupportDirection) -> Estimate:
+        """Return the estimate as that of a group of supports in one direction."""
+        return replace(self, group=support.group, direction=support.direction)
 
 
 def unresolved(
@@ -103,6 +114,11 @@ def mark_weak(estimate: Estimate, note: str) -> Estimate:
     return replace(estimate, quality=quality, note=_joined(estimate.note, note))
 
 
+def reason_needed(estimate: Estimate) -> bool:
+    """Return True when the quality of k or a missing c must be explained."""
+    return estimate.quality != "ok" or (estimate.note != "" and not np.isfinite(estimate.c))
+
+
 def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> list[dict]:
     """Return one dict per Estimate with the columns of consistency.csv.
 
@@ -117,6 +133,8 @@ def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> 
                 "load_rms_N": float(attributes["load_rms_N"]),
                 "load_over_gap": float(attributes["load_rms_N"]) / float(attributes["gap_m"]),
                 "seed": int(attributes["seed"]),
+                "group": values["group"],
+                "direction": values["direction"],
                 "method": values["method"],
                 "k_N_per_m": values["k"],
                 "k_standard_error": values["k_standard_error"],
@@ -125,6 +143,7 @@ def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> 
                 "frequency_Hz": values["frequency"],
                 "damping_ratio": values["damping_ratio"],
                 "quality": values["quality"],
+                "reason": values["note"] if reason_needed(estimate) else "",
             }
         )
     return rows

@@ -8,11 +8,12 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.linear.support_groups import reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.spectra.welch import complex_values
+from vibroimpact.spectra.welch import complex_values, driven_axis
 
 from .broadband import BroadbandFit, identify_broadband
-from .case_curves import case_curves
+from .case_curves import case_curves, supports_curves
 from .case_estimates import (
     comparison_estimates,
     estimate_from_broadband,
@@ -21,14 +22,17 @@ from .case_estimates import (
     estimate_from_shape,
 )
 from .estimate import Estimate
+from .identify_supports import SupportsCase, estimates_of_supports
 from .ods import DeflectionShape, ShapeMatch, deflection_shape, match_shape
 from .operational_pole import OperationalPole, PoleSearch, operational_pole
 from .peak import LEVELS, PeakFit, find_peak, fit_peak
 from .reference_tube import Bins, ReferenceTube, Sensors
+from .secant import MOMENTS
 from .segment_scatter import effective_duration
+from .supports_tube import SupportsTube
 
 # Variables of the two files that identify_case uses.
-RECORD_READ = ("force_displacement", "displacement_square")
+RECORD_READ = MOMENTS
 SPECTRA_READ = (
     "sensor_spectra_re",
     "sensor_spectra_im",
@@ -47,10 +51,12 @@ def identify_case(
     A method that cannot resolve the support returns an unresolved estimate with a note.
 
     config: with excitation, spectra and identification.
-    record: statistics of the case (force_displacement, displacement_square, attributes load_rms_N
-        and gap_m).
+    record: statistics of the case (secant.MOMENTS, attributes load_rms_N and gap_m).
     spectra: dataset of study.case_spectra.
     """
+    directions, _ = reached_supports(model, config.identification.groups)
+    if len(directions) > 1:
+        return _identify_each(config, model, record, spectra)
     tube = reference_tube(config, model, spectra)
     case = CaseSpectra(spectra, tube)
     peaks = {
@@ -66,8 +72,21 @@ def identify_case(
         estimate_from_shape(shape, tube, case.averages),
         estimate_from_broadband(broad, tube),
     ]
-    estimates += comparison_estimates(config, model, record)
+    estimates += comparison_estimates(config, model, record, directions)
+    estimates = [estimate.at(directions[0]) for estimate in estimates]
     return estimates, case_curves(case, peaks, pole, shape, broad)
+
+
+def _identify_each(
+    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+) -> tuple[list[Estimate], xr.Dataset]:
+    """Return what identify_case returns, for several unknown supports."""
+    tube = _supports_tube(model, config.identification.groups, *_layout(config, spectra))
+    case = SupportsCase(spectra, tube, config.identification)
+    result = case.fit()
+    estimates = estimates_of_supports(case, result)
+    estimates += comparison_estimates(config, model, record, tube.directions)
+    return estimates, supports_curves(case, result)
 
 
 def reference_tube(config: ConfigPart, model: ModalModel, spectra: xr.Dataset) -> ReferenceTube:
@@ -75,8 +94,13 @@ def reference_tube(config: ConfigPart, model: ModalModel, spectra: xr.Dataset) -
 
     It is built once per process for the same model and settings.
     """
+    return _reference_tube(model, *_layout(config, spectra))
+
+
+def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
+    """Return (Bins, Sensors, band of the force, band of the comparison, stiffness range)."""
     identification = config.identification
-    axis = "." + str(spectra["driven_sensor"].values[0]).rsplit(".", 1)[1]
+    axis = "." + driven_axis(config.excitation.direction)
     names = tuple(str(name) for name in spectra["driven_sensor"].values)
     sensors = Sensors(
         names=names,
@@ -97,14 +121,20 @@ def reference_tube(config: ConfigPart, model: ModalModel, spectra: xr.Dataset) -
     force_band = (0.0, float("inf"))
     if excitation.kind == "band_limited":
         force_band = tuple(excitation.band_Hz)
-    return _reference_tube(
-        model,
+    return (
         bins,
         sensors,
         force_band,
         tuple(identification.broadband.band_Hz),
         tuple(identification.stiffness_range_N_per_m),
     )
+
+
+@lru_cache(maxsize=2)
+def _supports_tube(model, groups, bins, sensors, force_band, broadband_band, stiffness_range):
+    reached = reached_supports(model, groups)
+    bands = (force_band, broadband_band)
+    return SupportsTube(model, reached, bins, sensors, bands, stiffness_range)
 
 
 @lru_cache(maxsize=2)

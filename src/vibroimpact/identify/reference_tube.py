@@ -61,6 +61,18 @@ class Sensors:
     references: tuple
 
 
+def compared_bins(
+    frequency: np.ndarray, bins: Bins, force_band_Hz: Sequence[float], band_Hz: Sequence[float]
+) -> slice:
+    """Return the bins (of frequency in Hz) of a band that lie inside the band of the force."""
+    margin = 2.0 * bins.spacing_Hz  # the window smears the edges of the force's band
+    low = max(band_Hz[0], force_band_Hz[0] + margin)
+    high = min(band_Hz[1], force_band_Hz[1] - margin)
+    return slice(
+        int(np.searchsorted(frequency, low - 1e-9)), int(np.searchsorted(frequency, high + 1e-9))
+    )
+
+
 class ReferenceTube:
     """Responses of the linear tube with any (k, c) at the sensors and along the shape line."""
 
@@ -94,13 +106,7 @@ class ReferenceTube:
             model.line_shapes, slice(bins.line_first * fine, bins.line_last * fine + 1, fine)
         )
         self.excited = (self.frequency >= force_band_Hz[0]) & (self.frequency <= force_band_Hz[1])
-        margin = 2.0 * bins.spacing_Hz  # the window smears the edges of the force's band
-        low = max(broadband_Hz[0], force_band_Hz[0] + margin)
-        high = min(broadband_Hz[1], force_band_Hz[1] - margin)
-        self.broadband = slice(
-            int(np.searchsorted(self.frequency, low - 1e-9)),
-            int(np.searchsorted(self.frequency, high + 1e-9)),
-        )
+        self.broadband = compared_bins(self.frequency, bins, force_band_Hz, broadband_Hz)
 
     @cached_property
     def at_broadband(self) -> FamilyResponse:

@@ -1,28 +1,112 @@
-"""Secant stiffness of a simulated record, from the contact forces themselves."""
+"""Secant stiffness and damping of a support, from the contact forces of a simulated record.
+
+With f the restoring force and u the displacement along a direction, k = E[f u] / E[u²] and
+c = E[f v] / E[v²], v the velocity: of all linear supports, the one whose force is nearest to f in
+the mean square where u and v are uncorrelated. Where a support is not symmetric, about its mean: a
+preload or a one-sided stop has no part in the stiffness. c counts the power that leaves the
+direction: what friction and damping dissipate, and what the contact hands to the other direction.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
+
+from vibroimpact.contact.laws import ContactLaws
+from vibroimpact.linear.support_groups import SupportDirection
+from vibroimpact.reduction.modal_model import ModalModel
+
+# Moments of a record that secant_support reads.
+MOMENTS = (
+    "force_displacement",
+    "displacement_square",
+    "displacement_product",
+    "velocity_square",
+    "velocity_product",
+    "displacement_mean",
+    "force_mean",
+    "contact_power",
+)
+SMALL_OFFSET = 1.0e-3  # of the gap: an imperfection, not an asymmetry
 
 
-def secant_stiffness(
-    force_displacement: np.ndarray,
-    displacement_square: np.ndarray,
-    weight: np.ndarray,
-    support: np.ndarray,
-) -> tuple[float, float]:
-    """Return (k in N/m per support, its standard error): E[f u] / E[u²] over a record.
+@dataclass(frozen=True)
+class SecantSupport:
+    """The secant stiffness and damping of a group of supports in one direction.
 
-    Both means are summed over the points of a support. Only the direction with the larger motion
-    counts; the forces of the other belong to another motion. The standard error is the scatter over
-    the supports, NaN for a single one.
-
-    force_displacement: (contact_point, direction) mean of force times displacement in N m.
-    displacement_square: (contact_point, direction) m².
-    weight: (contact_point,) share of the support's stiffness.
-    support: (contact_point,) number of the support.
+    k, c: N/m and N s/m per support. The standard errors are the scatter over the supports, NaN for
+        a single one.
     """
-    direction = int(np.argmax(displacement_square.sum(axis=0)))
-    work = np.bincount(support, force_displacement[:, direction])
-    square = np.bincount(support, weight * displacement_square[:, direction])
-    each = work / square
+
+    k: float
+    k_standard_error: float
+    c: float
+    c_standard_error: float
+
+
+def secant_support(
+    record: xr.Dataset, model: ModalModel, direction: SupportDirection
+) -> SecantSupport:
+    """Return the SecantSupport of a record, summed over the points of the group's supports.
+
+    record: with MOMENTS, each over contact points, and directions or not; gap_m as attribute.
+    """
+    moments = {name: record[name].values[direction.rows] for name in MOMENTS}
+    along = direction.along
+    work = _projected_force(moments["force_displacement"], along)
+    square = _projected_square(
+        moments["displacement_square"], moments["displacement_product"], along
+    )
+    speed = _projected_square(moments["velocity_square"], moments["velocity_product"], along)
+    power = _projected_force(moments["contact_power"], along)
+    if not symmetric(model, float(record.attrs["gap_m"])):
+        mean = np.sum(moments["displacement_mean"] * along, axis=1)
+        force = np.sum(moments["force_mean"] * along, axis=1)
+        work, square = work - force * mean, square - mean**2
+    support = model.support_of_point[direction.rows]
+    weight = model.contact_weight[direction.rows]
+    return SecantSupport(
+        *_ratio(work, square, weight, support), *_ratio(power, speed, weight, support)
+    )
+
+
+def symmetric(model: ModalModel, gap_m: float) -> bool:
+    """Return True when motion and mirrored motion meet the same supports: the mean is 0 then."""
+    laws: ContactLaws = model.contact_laws
+    offset = np.abs(model.centre_offset).max(initial=0.0) > SMALL_OFFSET * gap_m
+    if offset or np.any(model.constant_force) or np.any(laws.lobes % 2 == 1):
+        return False
+    for point in np.unique(laws.land_point):
+        normals = laws.land_normal[laws.land_point == point]
+        facing = np.all(np.isclose(normals[:, None], -normals[None]), axis=-1).any(axis=1)
+        if not facing.all():
+            return False
+    return True
+
+
+def _projected_force(moment: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return (point,) the moment of the force along a direction with the motion along it.
+
+    The force of an oblique direction is along it alone, so that both parts belong to it.
+    """
+    oblique = np.all(np.abs(along) > 0.0, axis=1)
+    return np.where(oblique, moment.sum(axis=1), np.sum(moment * along**2, axis=1))
+
+
+def _projected_square(square: np.ndarray, product: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return (point,) the mean square along a direction."""
+    return np.sum(square * along**2, axis=1) + 2.0 * product * along[:, 0] * along[:, 1]
+
+
+def _ratio(
+    moment: np.ndarray, square: np.ndarray, weight: np.ndarray, support: np.ndarray
+) -> tuple[float, float]:
+    """Return (moment per square over all supports, standard error from their scatter)."""
+    moments = np.bincount(support, moment)
+    squares = np.bincount(support, weight * square)
+    there = np.unique(support)
+    if not np.all(squares[there] > 0.0):
+        return np.nan, np.nan
+    each = moments[there] / squares[there]
     error = np.std(each, ddof=1) / np.sqrt(each.size) if each.size > 1 else np.nan
-    return float(work.sum() / square.sum()), float(error)
+    return float(moments.sum() / squares.sum()), float(error)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erfc
 
+from vibroimpact.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
 
 TOLERANCE = 1.0e-6
@@ -16,15 +17,27 @@ PASSES = 200
 class Linearisation:
     """The linearised contacts.
 
-    k: N/m per support.
+    k: N/m per support, over all supports and directions that the force moves.
+    work, square: (contact_point, 2) N m and m², whose sums over the points of a group give its k;
+        0 where the force moves nothing.
     frequency, damping_ratio: of the first mode (Hz) with the linearised contacts.
     settled: whether the iteration converged.
     """
 
     k: float
+    work: np.ndarray
+    square: np.ndarray
     frequency: float
     damping_ratio: float
     settled: bool
+
+    def stiffness_of(self, direction: SupportDirection) -> float:
+        """Return k in N/m per support of a group in one direction, NaN for an oblique one."""
+        squared = direction.along**2
+        if not np.all((squared == 0.0) | (squared == 1.0)):
+            return np.nan
+        place = (direction.rows, np.argmax(squared, axis=1))
+        return float(np.sum(self.work[place]) / np.sum(self.square[place]))
 
 
 def statistical_linearisation(
@@ -50,7 +63,8 @@ def statistical_linearisation(
     shapes = model.contact_shapes[modes].reshape(len(modes), -1)
     rows = np.flatnonzero((shapes != 0.0).any(axis=0))
     shapes, point = shapes[:, rows], rows // 2
-    gap = gap_m * model.gap_factor[point]
+    own_gap = model.contact_laws.gap[point]
+    gap = np.where(np.isnan(own_gap), gap_m * model.gap_factor[point], own_gap)
     stiffness = np.zeros(rows.size)
     force_psd = load_rms_N**2 / (band_Hz[1] - band_Hz[0])
     settled, relaxation, change_before = False, 0.7, np.inf
@@ -69,8 +83,18 @@ def statistical_linearisation(
             relaxation = min(1.0, 1.1 * relaxation)
         change_before = change
         stiffness = stiffness + relaxation * (wanted - stiffness)
-    total = np.sum(stiffness * variance) / np.sum(model.contact_weight[point] * variance)
-    return Linearisation(float(total), float(frequency), float(ratio), settled)
+    work, square = (np.zeros(2 * model.contact_shapes.shape[1]) for _ in range(2))
+    work[rows] = stiffness * variance
+    square[rows] = model.contact_weight[point] * variance
+    total = np.sum(work[rows]) / np.sum(square[rows])
+    return Linearisation(
+        float(total),
+        work.reshape(-1, 2),
+        square.reshape(-1, 2),
+        float(frequency),
+        float(ratio),
+        settled,
+    )
 
 
 def _contact_variance(

@@ -14,6 +14,8 @@ from scipy.fft import rfft  # three times as fast as numpy for many channels of 
 
 from vibroimpact.config.stage_settings import ConfigPart
 
+LEAST_PART = 0.1  # of an excitation's largest component, for an axis to count as driven
+
 
 @dataclass(frozen=True)
 class SegmentSpectra:
@@ -177,6 +179,17 @@ def effective_averages(
 def driven_axis(direction: Sequence[float] | np.ndarray) -> str:
     """Return "x", "y" or "z": the global axis closest to the excitation's direction (3,)."""
     return "xyz"[int(np.argmax(np.abs(direction)))]
+
+
+def driven_axes(direction: Sequence[float] | np.ndarray) -> tuple[str, ...]:
+    """Return the global axes that the excitation's direction (3,) has a part along.
+
+    A part counts from LEAST_PART of the largest on.
+    """
+    parts = np.abs(np.asarray(direction, dtype=float))
+    return tuple(
+        axis for axis, part in zip("xyz", parts, strict=True) if part >= LEAST_PART * parts.max()
+    )
 
 
 def highest_kept_frequency_Hz(config: ConfigPart) -> float:

@@ -5,7 +5,7 @@ Variables of the dataset, with X the segment spectra of a channel:
 - psd_{displacement,acceleration}_{mean,min,max} (sensor, frequency): one-sided, unit²/Hz; mean,
   smallest and largest over segments
 - sensor_spectra_{re,im} (driven_sensor, segment, low_frequency): X of the sensors in the driven
-  direction, m/sqrt(Hz)
+  directions, m/sqrt(Hz)
 - line_spectra_{re,im} (line_point, segment, line_frequency): X along the shape line, m/sqrt(Hz)
 
 A cross-spectrum is the mean over segments of X conj(Y).
@@ -21,7 +21,7 @@ import xarray as xr
 
 from vibroimpact.spectra.welch import (
     SegmentTransform,
-    driven_axis,
+    driven_axes,
     effective_averages,
     highest_kept_frequency_Hz,
     segment_layout,
@@ -61,8 +61,10 @@ class CaseSpectra:
             SegmentTransform(rate, spectra, dtype, highest),
         ]
         frequency, line_frequency = (transform.frequency for transform in self._transforms)
-        driven = "." + driven_axis(config.excitation.direction)
-        self._driven = [index for index, name in enumerate(sensors) if name.endswith(driven)]
+        driven = driven_axes(config.excitation.direction)
+        self._driven = [
+            index for index, name in enumerate(sensors) if name.rsplit(".", 1)[-1] in driven
+        ]
         self._low = int(np.sum(frequency <= highest_kept_frequency_Hz(config)))
         self._band = line_frequency >= lowest
         self._buffer = np.empty((2 * len(sensors) + line_points, self._length), dtype)

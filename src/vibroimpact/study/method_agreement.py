@@ -1,26 +1,30 @@
 """The consistency table: all methods on all cases, their scatter over seeds, their agreement.
 
-Rows are dicts with the columns of estimate.table_rows. k (N/m) and c (N s/m) are per support; NaN
-is unresolved.
+Rows are dicts with the columns of estimate.table_rows. k (N/m) and c (N s/m) are per support of a
+group in one direction; NaN is unresolved.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import product
+from itertools import combinations
 
 import numpy as np
-import xarray as xr
 
-from vibroimpact.identify.estimate import METHODS, QUALITIES
+from vibroimpact.identify.estimate import METHODS
 
 COMPARED = ("lscf", "ods", "broadband")  # one of each of the three independent kinds of method
-AGREEMENT = 0.25  # largest relative distance from the median of the three
+COMPARED_DAMPING = ("lscf", "broadband")  # a shape tells no damping
+# Largest relative distance of a stiffness from the median of the three, and of two dampings from
+# each other, over the smaller.
+AGREEMENT = 0.25
 VERDICTS = ("agree", "spread", "unresolved")
 SUMMARY_COLUMNS = (
     "gap_m",
     "load_rms_N",
     "load_over_gap",
+    "group",
+    "direction",
     "method",
     "k_median",
     "k_low",
@@ -29,13 +33,27 @@ SUMMARY_COLUMNS = (
     "c_low",
     "c_high",
     "ratio",
-    "verdict",
+    "verdict_k",
+    "verdict_c",
+    "reason",
 )
-COLLAPSE_COLUMNS = ("method", "load_over_gap", "k_smallest", "k_largest", "gaps", "k_ratio")
+COLLAPSE_COLUMNS = (
+    "group",
+    "direction",
+    "method",
+    "load_over_gap",
+    "k_smallest",
+    "k_largest",
+    "gaps",
+    "k_ratio",
+)
 
 
 def consistency_rows(tables: Iterable[list[dict]]) -> list[dict]:
-    """Return the rows of all cases, ordered by gap (largest first), load, seed and method."""
+    """Return the rows of all cases, ordered by gap (largest first), load, seed and method.
+
+    Rows of one method keep their order, that of the groups and directions.
+    """
     rows = [row for table in tables for row in table]
     return sorted(
         rows,
@@ -49,40 +67,57 @@ def consistency_rows(tables: Iterable[list[dict]]) -> list[dict]:
 
 
 def summary_rows(rows: list[dict]) -> list[dict]:
-    """Return the rows of consistency_summary.csv: statistics over seeds per gap, load and method.
+    """Return the rows of consistency_summary.csv: statistics over seeds.
 
-    k and c: median, smallest and largest over seeds. A median needs a resolved value of at least
-    half the seeds; fewer would be a chance selection.
+    There is a row per gap, load, group, direction and method. k and c: median, smallest and largest
+    over seeds. A median needs a resolved value of at least half the seeds; fewer would be a chance
+    selection.
     ratio: k_median over the median of the k_median of the three compared methods.
-    verdict: one for each gap and load. "agree" when the three methods are resolved and within 25 %
-    of their median, "spread" when they are resolved and not, else "unresolved".
+    verdict_k: "agree" when the three compared methods are resolved and within 25 % of their median,
+        "spread" when they are resolved and not, else "unresolved".
+    verdict_c: likewise of the two methods that tell c; they agree when they differ by at most 25 %
+        of the smaller.
+    A verdict stands in the rows of the methods that were compared, and is empty in all others.
+    reason: why k or c is not resolved; empty where both are, or where the method never tells c.
     """
-    groups: dict[tuple[float, float], dict[str, list[dict]]] = {}
-    for row in rows:
-        methods = groups.setdefault((row["gap_m"], row["load_rms_N"]), {})
-        methods.setdefault(row["method"], []).append(row)
     summary = []
-    for (gap_m, load_rms_N), methods in groups.items():
+    for place, methods in _by_place(rows).items():
         spans = {
             method: {"k": _span(cases, "k_N_per_m"), "c": _span(cases, "c_N_s_per_m")}
             for method, cases in methods.items()
         }
-        centre, verdict = _verdict(
-            [spans[method]["k"][0] for method in COMPARED if method in spans]
+        stiffness = [spans[method]["k"][0] for method in COMPARED if method in spans]
+        centre, verdict_k = stiffness_verdict(stiffness)
+        verdict_c = damping_verdict(
+            [spans[method]["c"][0] for method in COMPARED_DAMPING if method in spans]
         )
+        gap_m, load_rms_N, group, direction = place
         for method, span in spans.items():
             values = (
                 gap_m,
                 load_rms_N,
                 load_rms_N / gap_m,
+                group,
+                direction,
                 method,
                 *span["k"],
                 *span["c"],
                 span["k"][0] / centre,
-                verdict,
+                verdict_k if method in COMPARED else "",
+                verdict_c if method in COMPARED_DAMPING else "",
+                _reason(methods[method], span),
             )
             summary.append(dict(zip(SUMMARY_COLUMNS, values, strict=True)))
     return summary
+
+
+def _by_place(rows: list[dict]) -> dict[tuple, dict[str, list[dict]]]:
+    """Return {(gap, load, group, direction): {method: rows of the seeds}}."""
+    places: dict[tuple, dict[str, list[dict]]] = {}
+    for row in rows:
+        place = (row["gap_m"], row["load_rms_N"], row["group"], row["direction"])
+        places.setdefault(place, {}).setdefault(row["method"], []).append(row)
+    return places
 
 
 def _span(cases: list[dict], column: str) -> tuple[float, float, float]:
@@ -97,13 +132,40 @@ def _span(cases: list[dict], column: str) -> tuple[float, float, float]:
     return float(np.median(resolved)), float(resolved.min()), float(resolved.max())
 
 
-def _verdict(medians: list[float]) -> tuple[float, str]:
+def stiffness_verdict(medians: Sequence[float]) -> tuple[float, str]:
     """Return (median of the three, verdict) of the compared methods' medians of k."""
     if len(medians) < len(COMPARED) or not np.all(np.isfinite(medians)):
         return np.nan, "unresolved"
     centre = float(np.median(medians))
     near = np.all(np.abs(np.array(medians) - centre) <= AGREEMENT * centre)
     return centre, "agree" if near else "spread"
+
+
+def damping_verdict(medians: Sequence[float]) -> str:
+    """Return the verdict of the medians of c of the methods that tell it."""
+    if len(medians) < len(COMPARED_DAMPING) or not np.all(np.isfinite(medians)):
+        return "unresolved"
+    near = all(
+        abs(one - other) <= AGREEMENT * min(abs(one), abs(other))
+        for one, other in combinations(medians, 2)
+    )
+    return "agree" if near else "spread"
+
+
+def _reason(cases: list[dict], span: dict[str, tuple]) -> str:
+    """Return why k or c of a method is not resolved, from the reasons of its seeds."""
+    if np.isfinite(span["k"][0]):
+        if np.isfinite(span["c"][0]) or cases[0]["method"] not in COMPARED_DAMPING:
+            return ""
+        column = "c_N_s_per_m"
+    else:
+        column = "k_N_per_m"
+    missing = [row for row in cases if not np.isfinite(row[column])]
+    reasons = [str(row.get("reason") or "") for row in missing]
+    stated = next((reason for reason in reasons if reason), "no value")
+    if len(missing) == len(cases):
+        return stated
+    return f"not resolved in {len(missing)} of {len(cases)} seeds: {stated}"
 
 
 def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:
@@ -114,100 +176,30 @@ def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:
     the load / gap of all gaps. Rows are those with values of at least points_per_gap gaps, with the
     columns COLLAPSE_COLUMNS: k and load_over_gap in N/m.
     """
-    rows = []
-    for method in METHODS:
-        curves: dict[float, list[tuple[float, float]]] = {}
-        for row in summary:
-            if row["method"] == method and row["k_median"] > 0.0:
-                curves.setdefault(row["gap_m"], []).append((row["load_over_gap"], row["k_median"]))
-        logs = {gap: np.log(np.array(sorted(points))).T for gap, points in curves.items()}
-        for place in sorted({point for log_place, _ in logs.values() for point in log_place}):
-            values = [
-                np.interp(place, *log)
-                for log in logs.values()
-                if log[0][0] - 1e-9 <= place <= log[0][-1] + 1e-9
-            ]
-            if len(values) >= points_per_gap:
-                low, high = np.exp(min(values)), np.exp(max(values))
-                rows.append(
-                    {
-                        "method": method,
-                        "load_over_gap": float(np.exp(place)),
-                        "k_smallest": float(low),
-                        "k_largest": float(high),
-                        "gaps": len(values),
-                        "k_ratio": float(high / low),
-                    }
-                )
-    return rows
-
-
-def consistency_dataset(rows: list[dict], summary: list[dict]) -> xr.Dataset:
-    """Return both tables as one Dataset, qualities and verdicts as flags.
-
-    Estimates have dimensions (gap, load, seed, method), the summary (gap, load, method).
-    """
-    gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
-    loads = sorted({row["load_rms_N"] for row in rows})
-    seeds = sorted({row["seed"] for row in rows})
-    place = {key: (gaps.index(key[0]), loads.index(key[1])) for key in product(gaps, loads)}
-    columns = {
-        "k_N_per_m": ("k", "N m-1"),
-        "k_standard_error": ("k_standard_error", "N m-1"),
-        "c_N_s_per_m": ("c", "N s m-1"),
-        "c_standard_error": ("c_standard_error", "N s m-1"),
-        "frequency_Hz": ("frequency", "Hz"),
-        "damping_ratio": ("damping_ratio", "1"),
-    }
-    data: dict[str, tuple] = {}
-    dims = ("gap", "load", "seed", "method")
-    shape = (len(gaps), len(loads), len(seeds), len(METHODS))
-    for column, (name, unit) in columns.items():
-        about = {"units": unit, "long_name": column.replace("_", " ")}
-        data[name] = (dims, np.full(shape, np.nan), about)
-    data["quality"] = (
-        dims,
-        np.full(shape, len(QUALITIES) - 1, np.int8),
-        _flags(QUALITIES, "quality of the estimate"),
-    )
-    for row in rows:
-        index = (
-            *place[row["gap_m"], row["load_rms_N"]],
-            seeds.index(row["seed"]),
-            METHODS.index(row["method"]),
-        )
-        for column, (name, _) in columns.items():
-            data[name][1][index] = row[column]
-        data["quality"][1][index] = QUALITIES.index(row["quality"])
-    for column in SUMMARY_COLUMNS[4:-1]:
-        unit = {"k": "N m-1", "c": "N s m-1"}.get(column[0], "1")
-        values = np.full((len(gaps), len(loads), len(METHODS)), np.nan)
-        for row in summary:
-            at = place[row["gap_m"], row["load_rms_N"]]
-            values[(*at, METHODS.index(row["method"]))] = row[column]
-        about = {"units": unit, "long_name": column.replace("_", " ") + " over seeds"}
-        data[column] = (("gap", "load", "method"), values, about)
-    verdicts = np.full((len(gaps), len(loads)), len(VERDICTS) - 1, np.int8)
+    curves: dict[tuple, dict[float, list[tuple[float, float]]]] = {}
     for row in summary:
-        verdicts[place[row["gap_m"], row["load_rms_N"]]] = VERDICTS.index(row["verdict"])
-    data["verdict"] = (
-        ("gap", "load"),
-        verdicts,
-        _flags(VERDICTS, "agreement of lscf, ods and broadband"),
-    )
-    coords = {
-        "gap": ("gap", gaps, {"units": "m", "long_name": "radial gap"}),
-        "load": ("load", loads, {"units": "N", "long_name": "RMS load"}),
-        "seed": seeds,
-        "method": list(METHODS),
-    }
-    return xr.Dataset(data, coords, {"title": "vibroimpact consistency of the identifications"})
+        if row["k_median"] > 0.0:
+            place = (row["group"], row["direction"], row["method"])
+            points = curves.setdefault(place, {}).setdefault(row["gap_m"], [])
+            points.append((row["load_over_gap"], row["k_median"]))
+    order = sorted(curves, key=lambda place: METHODS.index(place[2]))
+    return [row for place in order for row in _collapse_of(place, curves[place], points_per_gap)]
 
 
-def _flags(meanings: Sequence[str], long_name: str) -> dict:
-    return {
-        "units": "1",
-        "long_name": long_name,
-        "flag_values": np.arange(len(meanings), dtype=np.int8),
-        "flag_meanings": " ".join(meanings),
-    }
+def _collapse_of(
+    place: tuple, curves: dict[float, list[tuple[float, float]]], points_per_gap: int
+) -> list[dict]:
+    """Return the rows of one group, direction and method."""
+    rows = []
+    logs = {gap: np.log(np.array(sorted(points))).T for gap, points in curves.items()}
+    for level in sorted({point for levels, _ in logs.values() for point in levels}):
+        values = [
+            np.interp(level, *log)
+            for log in logs.values()
+            if log[0][0] - 1e-9 <= level <= log[0][-1] + 1e-9
+        ]
+        if len(values) >= points_per_gap:
+            low, high = float(np.exp(min(values))), float(np.exp(max(values)))
+            found = (*place, float(np.exp(level)), low, high, len(values), high / low)
+            rows.append(dict(zip(COLLAPSE_COLUMNS, found, strict=True)))
+    return rows

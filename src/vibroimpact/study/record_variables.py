@@ -54,6 +54,27 @@ VARIABLES: dict[str, tuple[tuple, str, str, str]] = {
         "mean of restoring force times displacement",
     ),
     "displacement_square": (("contact_point", "direction"), "f8", "m2", "mean square displacement"),
+    "displacement_mean": (("contact_point", "direction"), "f8", "m", "mean displacement"),
+    "displacement_product": (
+        ("contact_point",),
+        "f8",
+        "m2",
+        "mean product of the displacements in the two directions",
+    ),
+    "velocity_square": (("contact_point", "direction"), "f8", "m2 s-2", "mean square velocity"),
+    "velocity_product": (
+        ("contact_point",),
+        "f8",
+        "m2 s-2",
+        "mean product of the velocities in the two directions",
+    ),
+    "force_mean": (("contact_point", "direction"), "f8", "N", "mean restoring force"),
+    "contact_power": (
+        ("contact_point", "direction"),
+        "f8",
+        "W",
+        "mean power that the structure gives to the support",
+    ),
     "energy": (
         ("energy_term", "energy_time"),
         "f8",

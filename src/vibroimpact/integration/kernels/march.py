@@ -119,6 +119,14 @@ def correct_and_predict(modal, state, tally, work, in_contact, phase):
 
 
 @inlined
+def keep_displacements(modal, state):
+    """Keep the row displacements of the start of the step, for velocities at its end."""
+    for g in range(modal.row_start.size - 1):
+        for r in range(modal.row_start[g], modal.force_row_start[g]):
+            store(state.row_displacement_before, r, load(state.row_displacement, r))
+
+
+@inlined
 def store_rows(modal, special, state, trace, u, work, quiet):
     """Make the end of the step the start of the next on contact and element rows, and record it on
     the trace. quiet: no force, neither now nor before.
@@ -193,6 +201,8 @@ def march(modal, contact, laws, state, tally, output, trace, work, drive):
             if in_contact:
                 state.group_active[:] = 1
             tally_drive(modal, state, tally, work, in_contact)
+            if phase == RATIO - 1:
+                keep_displacements(modal, state)
             if quiet:
                 store_rows(modal, special, state, trace, work.u_free, work, True)
             else:

@@ -101,6 +101,7 @@ class State(NamedTuple):
     dq: np.ndarray  # (mode, lane) increment that leads to q_next_free
     group_active: np.ndarray  # (group,) int64: 0 while nothing has moved the group's modes
     row_displacement: np.ndarray  # (row, lane) m
+    row_displacement_before: np.ndarray  # (row, lane) m, one step before the last of a tick
     row_velocity: np.ndarray  # (row, lane) m/s, only where there are Laws; see row_velocity
     row_force: np.ndarray  # (row, lane) N, on the structure at the end of the last step
     row_force_before: np.ndarray  # (row, lane) N, one step earlier
@@ -128,7 +129,14 @@ class Tally(NamedTuple):
     impact_velocity_peak: np.ndarray  # (support, lane) m/s
     sliding_work: np.ndarray  # (support, lane) J: normal force times sliding distance
     force_displacement: np.ndarray  # (row, lane) N m sum of force times displacement
-    square_displacement: np.ndarray  # (row, lane) m² sum, every RATIO-th step
+    row_work: np.ndarray  # (row, lane) J, trapezoidal sum of f du on contact rows
+    row_force: np.ndarray  # (row, lane) N sum on contact rows
+    # The next five are summed every RATIO-th step; velocities are differences over one step.
+    square_displacement: np.ndarray  # (row, lane) m² sum
+    displacement_sum: np.ndarray  # (row, lane) m sum
+    square_velocity: np.ndarray  # (row, lane) (m/s)² sum
+    product_displacement: np.ndarray  # (point, lane) m² sum of u_1 u_2
+    product_velocity: np.ndarray  # (point, lane) (m/s)² sum of v_1 v_2
     element_work: np.ndarray  # (element, lane) J, trapezoidal sum of f du
     slip_work: np.ndarray  # (element, lane) J, slider force times slip
     residual: np.ndarray  # (lane,) largest relative change in the last pass of the iteration

@@ -64,8 +64,14 @@ def tally_contact(modal, contact, state, tally, work):
                 load(work.force, r2),
             )
             du1, du2 = u1 - load(state.row_displacement, r1), u2 - load(state.row_displacement, r2)
-            contact_work = fma(0.5 * (f1 + load(state.row_force, r1)), du1, contact_work)
-            contact_work = fma(0.5 * (f2 + load(state.row_force, r2)), du2, contact_work)
+            mean1 = 0.5 * (f1 + load(state.row_force, r1))
+            mean2 = 0.5 * (f2 + load(state.row_force, r2))
+            contact_work = fma(mean1, du1, contact_work)
+            contact_work = fma(mean2, du2, contact_work)
+            store(tally.row_work, r1, fma(mean1, du1, load(tally.row_work, r1)))
+            store(tally.row_work, r2, fma(mean2, du2, load(tally.row_work, r2)))
+            add_to(tally.row_force, r1, f1)
+            add_to(tally.row_force, r2, f2)
             store(tally.force_displacement, r1, fma(f1, u1, load(tally.force_displacement, r1)))
             store(tally.force_displacement, r2, fma(f2, u2, load(tally.force_displacement, r2)))
             if contact.plain[p] != 0:  # |f| times the slip across it; else see tally_laws
@@ -191,13 +197,25 @@ def tally_stress(modal, state, tally, output, phase, channels):
 
 @inlined
 def tally_displacement(modal, state, contact, tally):
-    """Add the squares of the row displacements; False when a lane has diverged: a row is beyond
-    the limit or not a number.
+    """Add the moments of the row displacements and velocities; False when a lane has diverged: a
+    row is beyond the limit or not a number.
     """
     within = in_every_lane(True)
+    per_step = 1.0 / modal.dt
     for g in range(modal.row_start.size - 1):
         for r in range(modal.row_start[g], modal.force_row_start[g]):
             u = load(state.row_displacement, r)
             store(tally.square_displacement, r, fma(u, u, load(tally.square_displacement, r)))
             within = within & (contact.limit > magnitude(u))
+            add_to(tally.displacement_sum, r, u)
+            v = per_step * (u - load(state.row_displacement_before, r))
+            store(tally.square_velocity, r, fma(v, v, load(tally.square_velocity, r)))
+    for p in range(contact.row_1.size):
+        r1, r2 = contact.row_1[p], contact.row_2[p]
+        u1, u2 = load(state.row_displacement, r1), load(state.row_displacement, r2)
+        v1 = per_step * (u1 - load(state.row_displacement_before, r1))
+        v2 = per_step * (u2 - load(state.row_displacement_before, r2))
+        product = load(tally.product_displacement, p)
+        store(tally.product_displacement, p, fma(u1, u2, product))
+        store(tally.product_velocity, p, fma(v1, v2, load(tally.product_velocity, p)))
     return all_lanes(within)

@@ -1,0 +1,97 @@
+"""The quality of the stiffnesses and dampings that a method gives for several supports."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.linear.support_groups import SupportDirection
+
+from .estimate import FREQUENCY_ERROR, UNRESOLVED_ABOVE, WEAK_ABOVE, Estimate, mark_weak
+from .information import what_is_known
+from .support_fit import SupportSearch
+
+EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched is the edge's
+# c is resolved when its standard error is below one of these: of its own size, and as a loss factor
+# omega c / k at the main peak.
+C_ERROR, LOSS_ERROR = 0.5, 0.15
+
+
+@dataclass(frozen=True)
+class MethodResult:
+    """The supports that a method found.
+
+    k, c: (direction,) N/m and N s/m; c is NaN where the method does not tell it.
+    covariance: (2 direction, 2 direction) of (ln k, c).
+    by_frequency: (2 direction,) change of (ln k, c) per relative error of the model's frequencies;
+        None where the covariance holds the model's error.
+    frequency, damping_ratio: of the pole, Hz and fraction; NaN for none.
+    """
+
+    method: str
+    k: np.ndarray
+    c: np.ndarray
+    covariance: np.ndarray
+    by_frequency: np.ndarray | None
+    frequency: float = np.nan
+    damping_ratio: float = np.nan
+
+
+def graded_supports(
+    found: MethodResult, directions: Sequence[SupportDirection], search: SupportSearch
+) -> list[Estimate]:
+    """Return the Estimate of each direction; k and c are NaN where they are not resolved."""
+    count = len(directions)
+    total = found.covariance
+    if found.by_frequency is not None:
+        shift = FREQUENCY_ERROR * found.by_frequency
+        total = total + np.outer(shift, shift)
+    names = [direction.name for direction in directions]
+    estimates = []
+    for index, direction in enumerate(directions):
+        k, error = found.k[index], float(np.sqrt(total[index, index]))
+        estimate = Estimate(
+            method=found.method,
+            k=float(k),
+            k_standard_error=float(k * np.sqrt(found.covariance[index, index])),
+            frequency=found.frequency,
+            damping_ratio=found.damping_ratio,
+        ).at(direction)
+        reason = _why_unresolved(k, error, search)
+        if not reason and error > UNRESOLVED_ABOVE:
+            reason = f"standard error {min(error, 99.0):.0%} of k: " + what_is_known(
+                names, total[:count, :count], index
+            )
+        if reason:
+            estimate = replace(
+                estimate, k=np.nan, k_standard_error=np.nan, quality="unresolved", note=reason
+            )
+            estimates.append(estimate)
+            continue
+        if error > WEAK_ABOVE:
+            estimate = mark_weak(estimate, f"standard error {error:.0%} of k")
+        c_error = float(np.sqrt(total[count + index, count + index]))
+        estimates.append(_with_damping(estimate, found.c[index], c_error, search))
+    return estimates
+
+
+def _why_unresolved(k: float, error: float, search: SupportSearch) -> str:
+    """Return why no method could tell this k, or an empty text."""
+    low, high = search.stiffness_range
+    if not np.isfinite(k) or not np.isfinite(error):
+        return "no finite support has this response"
+    if np.log(k / low) < EDGE:
+        return f"k is at or below the lower end of the range, {low:.3g} N/m"
+    if np.log(high / k) < EDGE:
+        return f"k is at or above the upper end of the range, {high:.3g} N/m"
+    return ""
+
+
+def _with_damping(estimate: Estimate, c: float, error: float, search: SupportSearch) -> Estimate:
+    """Return the estimate with c where it is resolved, or with the reason."""
+    if not np.isfinite(c):
+        return estimate
+    if error > C_ERROR * abs(c) and error * search.omega > LOSS_ERROR * estimate.k:
+        note = f"c = {c:.3g} +- {error:.2g} N s/m not resolved"
+        return replace(estimate, note="; ".join(part for part in (estimate.note, note) if part))
+    return replace(estimate, c=float(c), c_standard_error=error)

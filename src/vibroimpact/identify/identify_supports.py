@@ -1,0 +1,222 @@
+"""All identification methods on one case with several supports, each for itself.
+
+The broadband comparison and the shapes give the stiffness and damping of every group of supports in
+every direction that the force reaches. The poles move these by the smallest step that gives the
+main mode the measured pole.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.spectra.welch import complex_values
+
+from .estimate import Estimate, mark_weak, unresolved
+from .graded_supports import MethodResult, graded_supports
+from .ods import DeflectionShape, deflection_shape
+from .operational_pole import OperationalPole, PoleSearch, operational_pole
+from .peak import LEVELS, PeakFit, find_peak, fit_peak
+from .pole_step import PoleStep, step_to_pole
+from .segment_scatter import effective_duration
+from .support_fit import SupportSearch
+from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
+from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
+from .supports_tube import SupportsTube
+
+# Below these the motion is not that of the linear structure: see case_estimates.
+LOWEST_MAC = 0.9
+LOWEST_CORRELATION = 0.8
+SHAPE_LOSS = 0.1  # loss factor of the supports where the search by shapes starts
+
+
+@dataclass(frozen=True)
+class SupportsResult:
+    """What the methods found in one case.
+
+    frequency: (frequency,) Hz of the sensors' spectra.
+    peaks: {method: PeakFit or None}.
+    pole, shape, spectra, shapes: of the other methods, None where they found nothing.
+    """
+
+    frequency: np.ndarray
+    peaks: dict[str, PeakFit | None]
+    pole: OperationalPole | None
+    shape: DeflectionShape | None
+    spectra: SpectraFit | None
+    shapes: ShapesFit | None
+
+
+class SupportsCase:
+    """The spectra of one case, and the fit of each method to them."""
+
+    def __init__(self, spectra: xr.Dataset, tube: SupportsTube, config: ConfigPart) -> None:
+        self.tube, self.config = tube, config
+        self.averages = float(spectra["effective_averages"])
+        self.outputs = complex_values(spectra, "sensor_spectra")
+        self.line = complex_values(spectra, "line_spectra")
+        self.line_frequency = spectra["line_frequency"].values
+        response = self.outputs[tube.sensors.response]
+        self.segments = response.real**2 + response.imag**2
+        self.psd = self.segments.mean(axis=0)
+        self.peak = find_peak(tube.frequency, self.psd, config.peak_search_Hz)
+        self.search = SupportSearch(tube.stiffness_range, 2.0 * np.pi * self.peak[0])
+
+    def fit(self) -> SupportsResult:
+        """Return the SupportsResult."""
+        spectra = self.by_spectra()
+        peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
+        pole = None
+        if spectra is not None:
+            values = spectra.values
+            other = self.tube.other_modes(values.k, values.c)
+            for method, level in LEVELS.items():
+                peaks[method] = fit_peak(
+                    self.tube.frequency,
+                    self.psd,
+                    self.tube.kernel,
+                    level,
+                    self.peak,
+                    other,
+                    self.averages,
+                    self.segments,
+                )
+            pole = self.operational_pole(spectra)
+        shape = self.main_shape(peaks["peak_25th"])
+        return SupportsResult(
+            self.tube.frequency, peaks, pole, shape, spectra, self.by_shapes(spectra)
+        )
+
+    def by_spectra(self) -> SpectraFit | None:
+        """Return the SpectraFit, or None where the force has no power in the band."""
+        tube = self.tube
+        values = self.outputs[:, :, tube.broadband]
+        if values.shape[-1] == 0:
+            return None
+        segments = (values.real**2 + values.imag**2).swapaxes(0, 1)
+        comparison = SpectraComparison(tube.structure, tube.at_broadband, tube.kernel, segments)
+        coarse = CoarseCost(comparison, tube.at_broadband_bins)
+        starts = self.search.coarse_starts(coarse, len(tube.directions))
+        return comparison.fit(self.search, starts, tube.lowest_stable_damping, self.averages)
+
+    def by_shapes(self, spectra: SpectraFit | None) -> ShapesFit | None:
+        """Return the ShapesFit, or None where nothing along the line moves."""
+        tube, kernel = self.tube, self.tube.kernel
+        if not np.any(tube.model.line_shapes[tube.structure.modes]):
+            return None
+        measured = block_shapes(self.line, self.line_frequency, kernel, self.averages)
+        fine = tube.structure.frequency[tube.at_line.part]
+        comparison = ShapeComparison(
+            tube.structure, tube.at_line, measured, self.search, tube.force_psd(fine)
+        )
+        taps = slice(kernel.half_width, -kernel.half_width or None, kernel.oversampling)
+        coarse = ShapeComparison(
+            tube.structure,
+            tube.at_line_bins,
+            replace(measured, weights=measured.weights[:, taps]),
+            self.search,
+            tube.force_psd(self.line_frequency),
+        )
+        starts = self.search.coarse_starts(coarse.cost, len(tube.directions), (SHAPE_LOSS,))
+        return comparison.fit(starts, tube.lowest_stable_damping)
+
+    def operational_pole(self, spectra: SpectraFit) -> OperationalPole | None:
+        """Return the OperationalPole of the main peak, or None."""
+        lscf, tube = self.config.lscf, self.tube
+        search = PoleSearch(tube.frequency, tuple(lscf.band_Hz), tube.bins.window, lscf.max_order)
+        values = spectra.values
+        return operational_pole(
+            self.outputs,
+            tube.sensors.references,
+            search,
+            self.peak,
+            self.averages,
+            effective_duration(self.averages, tube.kernel),
+            tube.cross_spectra(values.k, values.c),
+        )
+
+    def main_shape(self, fit: PeakFit | None) -> DeflectionShape | None:
+        """Return the shape of the band above 1/25 of the main peak, or None without a peak."""
+        if fit is None:
+            return None
+        edges = np.clip(fit.edges_Hz, self.line_frequency[0], self.line_frequency[-1])
+        if edges[1] - edges[0] < self.tube.bins.spacing_Hz:
+            return None
+        return deflection_shape(self.line, self.line_frequency, tuple(edges))
+
+
+def estimates_of_supports(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
+    """Return the Estimates of all methods for every direction, method by method."""
+    found: list[Estimate] = []
+    poles: dict[str, Any] = {**result.peaks, "lscf": result.pole}
+    for method, fit in poles.items():
+        estimates = _estimates_by_pole(case, result, method, fit)
+        if method == "lscf" and result.pole is not None and not result.pole.stable:
+            note = f"no single pole is stable from order to order; order {result.pole.order} taken"
+            estimates = [mark_weak(estimate, note) for estimate in estimates]
+        found += estimates
+    return found + _estimates_by_shapes(case, result) + _estimates_by_spectra(case, result)
+
+
+def _unresolved(case: SupportsCase, method: str, note: str, **pole: float) -> list[Estimate]:
+    return [unresolved(method, note, **pole).at(direction) for direction in case.tube.directions]
+
+
+def _estimates_by_pole(
+    case: SupportsCase,
+    result: SupportsResult,
+    method: str,
+    fit: PeakFit | OperationalPole | None,
+) -> list[Estimate]:
+    """Return the Estimates of the step that a pole adds to the broadband comparison."""
+    if result.spectra is None:
+        return _unresolved(case, method, "the force has no power in the band of the comparison")
+    if fit is None:
+        return _unresolved(case, method, "no resonance could be fitted to the main peak")
+    start = result.spectra
+    pole = (fit.frequency, fit.damping_ratio, fit.covariance)
+    covariance = start.covariance if np.any(start.covariance) else _shape_of(start)
+    step: PoleStep | None = step_to_pole(
+        case.tube.structure, start.values.k, start.values.c, covariance, pole
+    )
+    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
+    if step is None:
+        return _unresolved(case, method, "no supports give the main mode this pole", **known)
+    scatter = step.covariance if np.any(start.covariance) else np.zeros_like(step.covariance)
+    found = MethodResult(method, step.k, step.c, scatter, step.by_frequency, **known)
+    return graded_supports(found, case.tube.directions, case.search)
+
+
+def _shape_of(fit: SpectraFit) -> np.ndarray:
+    """Return a covariance without the scatter's size, of spectra that have none."""
+    return np.linalg.pinv(fit.values.jacobian.T @ fit.values.jacobian, hermitian=True)
+
+
+def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
+    """Return the Estimates of the shapes: k alone."""
+    fit = result.shapes
+    if fit is None:
+        return _unresolved(case, "ods", "the force moves no point of the shape line")
+    # The error of the model is part of the covariance already.
+    found = MethodResult(
+        "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
+    )
+    estimates = graded_supports(found, case.tube.directions, case.search)
+    if fit.mac < LOWEST_MAC:
+        estimates = [mark_weak(item, f"mean MAC only {fit.mac:.2f}") for item in estimates]
+    return estimates
+
+
+def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
+    """Return the Estimates of the broadband comparison."""
+    fit = result.spectra
+    if fit is None:
+        return _unresolved(case, "broadband", "the force has no power in the band")
+    found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
+    estimates = graded_supports(found, case.tube.directions, case.search)
+    if fit.correlation < LOWEST_CORRELATION:
+        note = f"smallest correlation of a sensor only {fit.correlation:.2f}"
+        estimates = [mark_weak(item, note) for item in estimates]
+    return estimates

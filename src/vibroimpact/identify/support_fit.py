@@ -1,0 +1,151 @@
+"""The stiffness and damping of every support direction by bounded least squares.
+
+A method gives a residual and its derivatives by ln k and c of each direction. The search starts at
+equal stiffnesses, follows each direction in turn over the whole range, and ends in scipy's
+trust-region method.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+STIFFNESSES = 13  # places of a coarse search along the stiffness of one direction
+SWEEPS = 2
+STEPS = 40
+TOLERANCE = 1.0e-9
+LOSSES = (0.0, 0.1, 0.4)  # loss factors omega c / k of the supports that a search starts from
+
+# What a method gives: (residual (residual,), jacobian (residual, 2 direction)) at (k, c).
+Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+LowestDamping = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a search starts: ln k (direction,) and one loss factor omega c / k at the main peak."""
+
+    log_k: np.ndarray
+    loss: float
+
+
+@dataclass(frozen=True)
+class SupportValues:
+    """The stiffness and damping of each direction, and how well a method knows them.
+
+    k, c: (direction,) N/m and N s/m.
+    jacobian: (residual, 2 direction), derivatives by (ln k, c) of all directions.
+    residual: (residual,).
+    """
+
+    k: np.ndarray
+    c: np.ndarray
+    jacobian: np.ndarray
+    residual: np.ndarray
+
+
+@dataclass(frozen=True)
+class SupportSearch:
+    """Where a method searches.
+
+    stiffness_range: N/m.
+    omega: rad/s of the main peak, which scales the damping.
+    """
+
+    stiffness_range: tuple[float, float]
+    omega: float
+
+    def coarse_starts(
+        self,
+        cost: Callable[[np.ndarray, np.ndarray], float],
+        directions: int,
+        losses: Sequence[float] = LOSSES,
+    ) -> list[Start]:
+        """Return a Start for each loss factor, near the smallest cost(k, c) with it."""
+        starts = []
+        for loss in losses:
+
+            def at_loss(log_k: np.ndarray, loss: float = loss) -> float:
+                k = np.exp(log_k)
+                return cost(k, loss * k / self.omega)
+
+            starts.append(Start(self._swept(at_loss, directions), loss))
+        return starts
+
+    def _swept(self, cost: Callable[[np.ndarray], float], directions: int) -> np.ndarray:
+        """Return (direction,) ln k near the smallest cost(ln k), by sweeps over one at a time."""
+        low, high = np.log(self.stiffness_range)
+        places = np.linspace(low, high, STIFFNESSES)
+        costs = [cost(np.full(directions, place)) for place in places]
+        log_k = np.full(directions, places[int(np.argmin(costs))])
+        best = min(costs)
+        for _ in range(SWEEPS if directions > 1 else 0):
+            for index in range(directions):
+                for place in places:
+                    trial = log_k.copy()
+                    trial[index] = place
+                    value = cost(trial)
+                    if value < best:
+                        best, log_k = value, trial
+        return log_k
+
+    def best_of(
+        self, evaluate: Evaluate, starts: Sequence[Start], lowest_c: LowestDamping
+    ) -> SupportValues:
+        """Return the SupportValues of the smallest |residual|² from several starts.
+
+        Arguments as in minimise.
+        """
+        found = [self.minimise(evaluate, start, lowest_c) for start in starts]
+        return min(found, key=lambda values: float(values.residual @ values.residual))
+
+    def minimise(self, evaluate: Evaluate, start: Start, lowest_c: LowestDamping) -> SupportValues:
+        """Return the SupportValues of the smallest |residual|² near a start.
+
+        evaluate: function of (k, c) that returns (residual (residual,), jacobian (residual,
+            2 direction) by ln k and c).
+        lowest_c: function of k (direction,) in N/m that gives the c (direction,) in N s/m below
+            which the structure is unstable.
+        """
+        from scipy.optimize import least_squares  # half a second to import
+
+        log_k, count = start.log_k, len(start.log_k)
+        low, high = np.log(self.stiffness_range)
+        # The damping is searched in units of k / omega at the start, so that all are near 1.
+        unit = np.exp(log_k) / self.omega
+        scale = np.concatenate([np.ones(count), unit])
+        bounds = (
+            np.concatenate([np.full(count, low), lowest_c(np.exp(log_k)) / unit]),
+            np.concatenate([np.full(count, high), np.full(count, np.inf)]),
+        )
+        state: dict[str, np.ndarray] = {}
+
+        def error(values: np.ndarray) -> np.ndarray:
+            residual, jacobian = evaluate(np.exp(values[:count]), values[count:] * unit)
+            state["values"], state["slope"] = values.copy(), jacobian * scale
+            return residual
+
+        def slope(values: np.ndarray) -> np.ndarray:
+            if not np.array_equal(state["values"], values):
+                error(values)
+            return state["slope"]
+
+        margin = 1.0e-6 * (high - low)
+        values = np.concatenate(
+            [np.clip(log_k, low + margin, high - margin), np.full(count, start.loss)]
+        )
+        found = least_squares(
+            error,
+            np.clip(values, bounds[0] + 1.0e-9, bounds[1]),
+            jac=slope,
+            bounds=bounds,
+            x_scale="jac",
+            xtol=TOLERANCE,
+            ftol=TOLERANCE,
+            gtol=TOLERANCE,
+            max_nfev=STEPS,
+        )
+        k, c = np.exp(found.x[:count]), found.x[count:] * unit
+        residual, jacobian = evaluate(k, c)
+        return SupportValues(k, c, jacobian, residual)

@@ -1,0 +1,175 @@
+"""Groups of supports that share one equivalent stiffness and damping in each direction.
+
+A group acts in every transverse direction of its supports: each has a k and a c of its own. A
+support whose stops are parallel planes acts along their normal alone. Directions are named after
+the global axis that they lie along, so that supports on a bend and on a leg can share a direction.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+ALIGNED = 0.999  # least cosine of the angle to a global axis that gives a direction its name
+PARALLEL = 1.0e-9  # largest sine of the angle between the normals of parallel stops
+ALL, EACH = "all", "each"
+
+
+@dataclass(frozen=True, eq=False)
+class SupportDirection:
+    """A group of supports in one direction: it has one k and one c.
+
+    group, direction: their names.
+    supports: names of the supports of the group that act in this direction.
+    contact: (mode, contact_row) kg^-1/2, contact shapes along the direction times the root of the
+        point's share of its support's stiffness.
+    rows: (contact_row,) contact points.
+    along: (contact_row, 2), the direction in the two contact directions of the point.
+    """
+
+    group: str
+    direction: str
+    supports: tuple[str, ...]
+    contact: np.ndarray
+    rows: np.ndarray
+    along: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """Return the name of the group and the direction."""
+        return f"{self.group}.{self.direction}"
+
+
+def grouped_supports(
+    support_names: Sequence[str], groups: str | Sequence[Sequence[str]]
+) -> dict[str, tuple[str, ...]]:
+    """Return {group: names of its supports} of identification.groups.
+
+    groups: "all", "each", or lists of names of supports; a support that they leave out is a group
+        of its own. A group is named after its supports, as in plate_1+plate_2.
+    """
+    if groups == ALL:
+        return {ALL: tuple(support_names)}
+    listed = [] if groups == EACH else [tuple(members) for members in groups]
+    named = {name for members in listed for name in members}
+    listed += [(name,) for name in support_names if name not in named]
+    return {"+".join(members): members for members in listed}
+
+
+def support_directions(
+    model: ModalModel, groups: str | Sequence[Sequence[str]]
+) -> list[SupportDirection]:
+    """Return the SupportDirections of all groups, in the order of groups and contact points."""
+    acting = [acting_directions(model, point) for point in range(len(model.support_of_point))]
+    found = []
+    for group, members in grouped_supports(model.support_names, groups).items():
+        rows: dict[str, list[tuple[int, np.ndarray]]] = {}
+        for point, directions in enumerate(acting):
+            if model.support_names[model.support_of_point[point]] in members:
+                for along in directions:
+                    rows.setdefault(_label(model, point, directions, along), []).append(
+                        (point, along)
+                    )
+        for direction, entries in sorted(rows.items()):
+            found.append(_support_direction(model, group, direction, entries))
+    return found
+
+
+def acting_directions(model: ModalModel, point: int) -> list[np.ndarray]:
+    """Return the unit vectors (2,), in the two contact directions, that a contact point acts along.
+
+    There is one for parallel stops, two for any other obstacle.
+    """
+    laws = model.contact_laws
+    normals = laws.land_normal[laws.land_point == point]
+    if len(normals):
+        first = normals[0]
+        across = normals @ np.array([-first[1], first[0]])
+        if np.all(np.abs(across) < PARALLEL):
+            return [first]
+    return [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
+
+
+def _label(model: ModalModel, point: int, directions: list, along: np.ndarray) -> str:
+    """Return the name of a direction: a global axis, `normal` of oblique stops, first or second."""
+    vector = along @ model.contact_directions[point]
+    axis = int(np.argmax(np.abs(vector)))
+    if abs(vector[axis]) > ALIGNED:
+        return "xyz"[axis]
+    if len(directions) == 1:
+        return "normal"
+    return ("first", "second")[int(np.argmax(np.abs(along)))]
+
+
+def _support_direction(
+    model: ModalModel, group: str, direction: str, entries: list[tuple[int, np.ndarray]]
+) -> SupportDirection:
+    points = np.array([point for point, _ in entries])
+    along = np.array([vector for _, vector in entries])
+    shapes = np.einsum("mpd,pd->mp", model.contact_shapes[:, points], along)
+    names = (model.support_names[model.support_of_point[point]] for point in points)
+    return SupportDirection(
+        group=group,
+        direction=direction,
+        supports=tuple(dict.fromkeys(names)),
+        contact=shapes * np.sqrt(model.contact_weight[points]),
+        rows=points,
+        along=along,
+    )
+
+
+def reached_modes(
+    model: ModalModel, directions: Sequence[SupportDirection]
+) -> tuple[np.ndarray, list[bool]]:
+    """Return (mode indices (mode,), whether each direction is reached) of what the force moves.
+
+    A force moves modes; these move supports, which move further modes. Raises ValueError when no
+    support is moved.
+    """
+    moved = np.any(model.drive_shapes != 0.0, axis=1)
+    reached = [False] * len(directions)
+    while True:
+        before = moved.copy()
+        for index, direction in enumerate(directions):
+            touching = np.any(direction.contact != 0.0, axis=1)
+            if np.any(moved & touching):
+                reached[index] = True
+                moved |= touching
+        if np.array_equal(moved, before):
+            break
+    if not any(reached):
+        raise ValueError(
+            "the force moves no contact point: no support stiffness can be seen from it"
+        )
+    return np.flatnonzero(moved), reached
+
+
+@lru_cache(maxsize=2)
+def reached_supports(
+    model: ModalModel, groups: str | tuple[tuple[str, ...], ...]
+) -> tuple[tuple[SupportDirection, ...], np.ndarray]:
+    """Return (the SupportDirections that the force moves, indices of the modes that it moves).
+
+    They are the unknowns of the identification. Raises ValueError where the force moves none.
+
+    groups: identification.groups.
+    """
+    directions = support_directions(model, groups)
+    modes, reached = reached_modes(model, directions)
+    return tuple(itertools.compress(directions, reached)), modes
+
+
+def unreached_supports(
+    model: ModalModel, groups: str | tuple[tuple[str, ...], ...]
+) -> list[tuple[str, str]]:
+    """Return (group, direction) of what the force does not move."""
+    reached = {direction.name for direction in reached_supports(model, groups)[0]}
+    return [
+        (direction.group, direction.direction)
+        for direction in support_directions(model, groups)
+        if direction.name not in reached
+    ]

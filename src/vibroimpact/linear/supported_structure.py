@@ -1,0 +1,158 @@
+"""The linear structure whose supports each have a stiffness and damping of their own.
+
+With B (mode, contact_row) the contact shapes and s (contact_row,) the dynamic stiffness k + i omega
+c of the group and direction of each row, the structure without supports gives the compliance
+G = B^T R B and the contact displacements g_d and g_o per unit force at the drive and at an output,
+with R the modal receptances. Woodbury's formula leaves
+
+    h = h_free - g_o^T diag(s) y_d,    (I + G diag(s)) y_d = g_d,
+    dh/ds_row = -y_o,row y_d,row,      (I + G diag(s)) y_o = g_o.
+
+One small solve per frequency gives the response and its derivatives with respect to all
+stiffnesses and dampings.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .support_groups import SupportDirection
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """Outputs of the structure without supports on some frequencies.
+
+    free: (frequency, output, channel) m/N.
+    contact: (frequency, contact_row, output) m/N, output per unit contact force.
+    part: selects the frequencies.
+    """
+
+    free: np.ndarray
+    contact: np.ndarray
+    part: slice | np.ndarray
+
+
+class SupportedStructure:
+    """The responses of a structure to its force channels with any support stiffness and damping.
+
+    directions: the SupportDirections that the force reaches.
+    modes: (mode,) indices of the modes that it moves.
+    frequency: (frequency,) Hz.
+    owner: (contact_row,) index into directions.
+    """
+
+    def __init__(
+        self,
+        model: ModalModel,
+        directions: Sequence[SupportDirection],
+        modes: np.ndarray,
+        frequency: np.ndarray,
+    ) -> None:
+        """Compute the compliances of the structure without supports."""
+        self.directions, self.modes, self.frequency = tuple(directions), modes, frequency
+        self.omega, self.damping = model.omega[modes], model.damping[modes]
+        self.drive = model.drive_shapes[modes]
+        self.contact = np.hstack([direction.contact[modes] for direction in directions])
+        sizes = [direction.contact.shape[1] for direction in directions]
+        self.owner = np.repeat(np.arange(len(directions)), sizes)
+        laplace = 2j * np.pi * frequency[:, None]
+        self._receptance = 1.0 / (laplace**2 + laplace * self.damping + self.omega**2)
+        self._compliance = self._products(self.contact, self.contact)
+        self._reached = self._products(self.contact, self.drive)
+
+    def _products(
+        self, left: np.ndarray, right: np.ndarray, part: slice | np.ndarray = slice(None)
+    ) -> np.ndarray:
+        """Return (frequency, left column, right column) left^T R right."""
+        pairs = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
+        return (self._receptance[part] @ pairs).reshape(-1, left.shape[1], right.shape[1])
+
+    def observed(self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)) -> Observed:
+        """Return the Observed of outputs with shapes (mode of the model, output)."""
+        outputs = shapes[self.modes]
+        free = self._products(outputs, self.drive, part)
+        return Observed(free, self._products(self.contact, outputs, part), part)
+
+    def dynamic_stiffness(
+        self, k: np.ndarray, c: np.ndarray, part: slice | np.ndarray = slice(None)
+    ) -> np.ndarray:
+        """Return (frequency, contact_row) k + i omega c in N/m; k, c (direction,)."""
+        laplace = 2j * np.pi * self.frequency[part, None]
+        return k[self.owner] + laplace * c[self.owner]
+
+    def frf(self, observed: Observed, k: np.ndarray, c: np.ndarray) -> np.ndarray:
+        """Return the responses (frequency, output, channel) in m/N; k N/m, c N s/m (direction,)."""
+        support = self.dynamic_stiffness(k, c, observed.part)
+        matrix = self._coupled(support, observed.part)
+        moved = np.linalg.solve(matrix, self._reached[observed.part])
+        return observed.free - observed.contact.swapaxes(1, 2) @ (support[..., None] * moved)
+
+    def frf_slope(
+        self, observed: Observed, k: np.ndarray, c: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return (responses (frequency, output, channel), their derivatives (direction, ...)).
+
+        The derivatives are by the dynamic stiffness of each direction.
+        """
+        support = self.dynamic_stiffness(k, c, observed.part)
+        reached = self._reached[observed.part]
+        channels = reached.shape[2]
+        moved = np.linalg.solve(
+            self._coupled(support, observed.part),
+            np.concatenate([reached, observed.contact], axis=2),
+        )
+        driven, seen = moved[..., :channels], moved[..., channels:].swapaxes(1, 2)
+        response = observed.free - observed.contact.swapaxes(1, 2) @ (support[..., None] * driven)
+        slopes = [
+            -seen[:, :, rows] @ driven[:, rows]
+            for rows in (self.owner == index for index in range(len(self.directions)))
+        ]
+        return response, np.array(slopes)
+
+    def _coupled(self, support: np.ndarray, part: slice | np.ndarray) -> np.ndarray:
+        """Return (frequency, contact_row, contact_row) I + G diag(s)."""
+        matrix = self._compliance[part] * support[:, None, :]
+        rows = np.arange(matrix.shape[1])
+        matrix[:, rows, rows] += 1.0
+        return matrix
+
+    def undamped_modes(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return (omega (value,) rad/s ascending, vectors (mode, value)) with k (direction,)."""
+        stiffness = np.diag(self.omega**2) + (self.contact * k[self.owner]) @ self.contact.T
+        squares, vectors = np.linalg.eigh(stiffness)
+        return np.sqrt(np.maximum(squares, 0.0)), vectors
+
+    def support_motion(self, shapes: np.ndarray) -> np.ndarray:
+        """Return (direction, shape) 1/kg, the square of the motion at each direction's contacts.
+
+        shapes: (mode, shape).
+        """
+        square = (self.contact.T @ shapes) ** 2
+        return np.array(
+            [square[self.owner == index].sum(axis=0) for index in range(len(self.directions))]
+        )
+
+    def pole(self, k: np.ndarray, c: np.ndarray, near: complex) -> tuple[complex, np.ndarray]:
+        """Return (the pole nearest to `near` in rad/s, its derivatives (direction,) by k).
+
+        The derivative by c is the pole times that by k.
+
+        k, c: (direction,) N/m and N s/m.
+        """
+        stiffness = np.diag(self.omega**2) + (self.contact * k[self.owner]) @ self.contact.T
+        damping = np.diag(self.damping) + (self.contact * c[self.owner]) @ self.contact.T
+        size = len(self.omega)
+        state = np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness, -damping]])
+        poles, vectors = np.linalg.eig(state)
+        chosen = int(np.argmin(np.abs(poles - near)))
+        pole, shape = poles[chosen], vectors[:size, chosen]
+        # The matrices are symmetric: the left vector is the right one, not conjugated.
+        scale = shape @ (2.0 * pole * shape + damping @ shape)
+        moved = (self.contact.T @ shape) ** 2
+        return complex(pole), -np.bincount(
+            self.owner, moved.real, len(self.directions)
+        ) / scale - 1j * np.bincount(self.owner, moved.imag, len(self.directions)) / scale

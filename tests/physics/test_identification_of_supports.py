@@ -1,0 +1,211 @@
+"""Linear structures with known, unequal supports: every method returns each of them.
+
+On exact spectra within 2 %; on records the mean over seeds within two of its standard errors.
+"""
+
+import numpy as np
+import pytest
+import yaml
+
+from tests.linear_records import LinearRecords, statistics
+from vibroimpact.config.reading import check_config
+from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.linear.responses import frf
+from vibroimpact.linear.support_groups import reached_supports, support_directions
+from vibroimpact.linear.supported_structure import SupportedStructure
+from vibroimpact.reduction.reduced_model import build_model
+
+STRAIGHT = """
+study: three_plates
+structure:
+  kind: path
+  section: {outer_diameter_m: 0.01905, wall_thickness_m: 0.00109}
+  material: {young_modulus_Pa: 2.02e+11, poisson_ratio: 0.3, density_kg_per_m3: 8330.0}
+  start_m: [0.0, 0.0, 0.0]
+  start_direction: [0.0, 0.0, 1.0]
+  segments: [{kind: straight, length_m: 3.0}]
+  start: {kind: clamped}
+  end: {kind: pinned}
+damping: {kind: modal, other_ratio: 0.01}
+supports:
+  - {name: plate_1, at_m: [0.0, 0.0, 0.8], height_m: 0.02, points: 3, stiffness_N_per_m: 2.0e+6}
+  - {name: plate_2, at_m: [0.0, 0.0, 1.6], height_m: 0.02, points: 3, stiffness_N_per_m: 2.0e+6}
+  - {name: plate_3, at_m: [0.0, 0.0, 2.4], height_m: 0.02, points: 3, stiffness_N_per_m: 2.0e+6}
+points: {span_1: [0.0, 0.0, 0.4], span_2: [0.0, 0.0, 1.1], span_3: [0.0, 0.0, 2.0],
+  span_4: [0.0, 0.0, 2.7], drive: [0.0, 0.0, 1.3]}
+excitation: {kind: band_limited, point: drive, direction: [0.0, 1.0, 0.0], band_Hz: [2.0, 200.0]}
+grid: {load_rms_N: [1.0], gap_m: [0.3e-3], seeds: 2}
+record:
+  sensors: {points: [span_1, span_2, span_3, span_4], directions: [x, y]}
+  shape_line: {points: 39, direction: y}
+identification:
+  response_point: span_2
+  peak_search_Hz: [4.0, 60.0]
+  lscf: {band_Hz: [4.0, 90.0], references: [span_2, span_3]}
+  broadband: {point: span_2, band_Hz: [4.0, 99.0]}
+  stiffness_range_N_per_m: [1.0e+2, 1.0e+8]
+  groups: each
+"""
+SUPPORTS = {"plate_1": (2.0e5, 60.0), "plate_2": (3.0e4, 20.0), "plate_3": (1.0e5, 40.0)}
+SEEDS = 24
+
+
+def structure(**changes):
+    """(configuration, model) of the straight tube with changed sections."""
+    data = yaml.safe_load(STRAIGHT)
+    for section, values in changes.items():
+        data[section] = {**data[section], **values}
+    config = check_config(data, "three plates")
+    return config, build_model(config)
+
+
+@pytest.fixture(scope="module")
+def straight():
+    return structure()
+
+
+def records(config, model, values):
+    """LinearRecords of the structure with the support of each direction in values {name: (k, c)},
+    a name being that of the group or of the direction.
+    """
+    axes = [axis for axis, part in zip("xyz", config.excitation.direction, strict=True) if part]
+    sensors = [name for name in model.sensor_names if name[-1] in axes]
+    columns = [model.sensor_names.index(name) for name in sensors]
+    shapes = np.concatenate([model.sensor_shapes[:, columns], model.line_shapes], axis=1)
+    directions, modes = reached_supports(model, config.identification.groups)
+    k, c = np.array([values.get(d.name, values.get(d.group)) for d in directions], float).T
+
+    def respond(frequency):
+        tube = SupportedStructure(model, directions, modes, frequency)
+        return tube.frf(tube.observed(shapes), k, c)[..., 0].T
+
+    return LinearRecords(config, sensors, respond)
+
+
+def identified(config, model, spectra):
+    """{(method, group, direction): Estimate} of the methods that read spectra."""
+    points = len(model.support_of_point)
+    estimates, _ = identify_case(config, model, statistics(points), spectra)
+    return {
+        (estimate.method, estimate.group, estimate.direction): estimate
+        for estimate in estimates
+        if estimate.method not in ("secant", "statistical_linearisation")
+    }
+
+
+def check_exact(found, values, methods):
+    """Every method has every k within 2 %, and every c within 2 % or a loss factor of 0.01."""
+    omega = 2.0 * np.pi * found["lscf", *next(iter(found))[1:]].frequency
+    for (method, group, direction), estimate in found.items():
+        if method in methods:
+            k, c = values.get(f"{group}.{direction}", values.get(group))
+            assert estimate.k == pytest.approx(k, rel=0.02), estimate
+            if method != "ods":
+                assert estimate.c == pytest.approx(c, rel=0.02, abs=0.01 * k / omega), estimate
+
+
+def test_equal_supports_respond_as_the_family_of_one(straight):
+    _, model = straight
+    directions, modes = reached_supports(model, "each")
+    frequency = np.array([5.0, 31.0, 88.0])
+    tube = SupportedStructure(model, directions, modes, frequency)
+    equal = (np.full(3, 1.0e5), np.full(3, 30.0))
+    one = frf(model, 1.0e5, 30.0, frequency, model.line_shapes)
+    assert tube.frf(tube.observed(model.line_shapes), *equal)[..., 0].T == pytest.approx(one)
+
+
+def test_slopes_are_those_of_differences(straight):
+    _, model = straight
+    directions, modes = reached_supports(model, "each")
+    tube = SupportedStructure(model, directions, modes, np.array([11.0, 52.0]))
+    seen = tube.observed(model.sensor_shapes)
+    k, c = np.array([2.0e5, 3.0e4, 8.0e5]), np.array([60.0, 20.0, 150.0])
+    _, slopes = tube.frf_slope(seen, k, c)
+    pole, pole_slopes = tube.pole(k, c, complex(0.0, 2.0 * np.pi * 20.0))
+    for index in range(3):
+        step = np.zeros(3)
+        step[index] = 1.0e-4 * k[index]
+        change = tube.frf(seen, k + step, c) - tube.frf(seen, k - step, c)
+        assert slopes[index] == pytest.approx(change / (2.0 * step[index]), rel=1e-5, abs=1e-20)
+        higher, lower = (tube.pole(k + sign * step, c, pole)[0] for sign in (1.0, -1.0))
+        assert pole_slopes[index] == pytest.approx((higher - lower) / (2.0 * step[index]), rel=1e-4)
+
+
+@pytest.mark.parametrize("window", ["hann", "none"])
+def test_each_support_of_a_straight_tube_comes_back(straight, window):
+    found = identified(*straight, records(*straight, SUPPORTS).exact(window))
+    assert {key[1:] for key in found} == {(name, "y") for name in SUPPORTS}
+    check_exact(found, SUPPORTS, ("ods", "broadband"))
+    resolved = [method for method, *_ in found if np.isfinite(found[method, "plate_2", "y"].k)]
+    assert "lscf" in resolved
+    check_exact(found, SUPPORTS, ("lscf",))
+
+
+def test_supports_of_a_group_share_their_values():
+    config, model = structure(identification={"groups": [["plate_1", "plate_3"]]})
+    values = {"plate_1+plate_3": (1.5e5, 50.0), "plate_2": (2.0e4, 10.0)}
+    found = identified(config, model, records(config, model, values).exact("hann"))
+    assert {key[1] for key in found} == set(values)
+    check_exact(found, values, ("ods", "broadband", "lscf"))
+
+
+def test_an_oblique_force_tells_both_directions():
+    config, model = structure(
+        identification={"groups": "all"}, excitation={"direction": [1.0, 2.0, 0.0]}
+    )
+    values = {"all.x": (5.0e4, 20.0), "all.y": (2.0e5, 60.0)}
+    found = identified(config, model, records(config, model, values).exact("hann"))
+    check_exact(found, values, ("broadband",))
+    assert found["ods", "all", "y"].k == pytest.approx(2.0e5, rel=0.02)
+    # The shape line shows y alone.
+    x = found["ods", "all", "x"]
+    assert np.isnan(x.k) and x.quality == "unresolved" and x.note
+
+
+def test_unequal_legs_of_a_u_tube_come_back(study_config, study_model):
+    each = study_config.identification.model_copy(update={"groups": "each"})
+    config = study_config.model_copy(update={"identification": each})
+    values = {"left": (2.0e5, 40.0), "right": (5.0e4, 20.0)}
+    found = identified(config, study_model, records(config, study_model, values).exact("hann"))
+    check_exact(found, values, ("ods", "broadband", "lscf"))
+
+
+def test_a_support_that_nothing_shows_is_left_open():
+    # So soft that its share in every shape and frequency is below the model's own error.
+    config, model = structure(identification={"stiffness_range_N_per_m": [1.0, 1.0e8]})
+    values = {**SUPPORTS, "plate_3": (3.0, 0.001)}
+    found = identified(config, model, records(config, model, values).exact("hann"))
+    for method in ("ods", "broadband", "lscf"):
+        soft = found[method, "plate_3", "y"]
+        assert np.isnan(soft.k) and np.isnan(soft.c) and soft.note, soft
+        assert found[method, "plate_1", "y"].k == pytest.approx(2.0e5, rel=0.05)
+
+
+def test_stops_in_parallel_planes_act_along_their_normal():
+    data = yaml.safe_load(STRAIGHT)
+    data["supports"][1]["profile"] = {"kind": "planes", "normals_deg": [90.0, 270.0]}
+    data["supports"][2]["profile"] = {"kind": "planes", "normals_deg": [30.0, 210.0]}
+    model = build_model(check_config(data, "bars"))
+    names = [direction.name for direction in support_directions(model, "each")]
+    assert names == ["plate_1.x", "plate_1.y", "plate_2.y", "plate_3.normal"]
+
+
+@pytest.mark.slow
+def test_records_give_each_support_back_on_average(straight):
+    made = records(*straight, SUPPORTS)
+    cases = [identified(*straight, made.spectra(seed)) for seed in range(SEEDS)]
+    for key in cases[0]:
+        method, group, _ = key
+        if method not in ("ods", "broadband", "lscf"):
+            continue
+        for name, truth in zip(("k", "c"), SUPPORTS[group], strict=True):
+            if (name, method) == ("c", "ods"):
+                continue
+            values = np.array([getattr(case[key], name) for case in cases])
+            errors = np.array([getattr(case[key], f"{name}_standard_error") for case in cases])
+            there = np.isfinite(values)
+            values, stated = values[there], np.sqrt(np.mean(errors[there] ** 2))
+            scatter = values.std(ddof=1)
+            error = scatter / np.sqrt(values.size)
+            print(key, name, values.size, f"{values.mean() / truth - 1.0:+.2%}",
+                  f"{(values.mean() - truth) / error:+.2f}", f"{scatter / stated:.2f}")
