@@ -204,8 +204,11 @@ def test_records_give_each_support_back_on_average(straight):
             values = np.array([getattr(case[key], name) for case in cases])
             errors = np.array([getattr(case[key], f"{name}_standard_error") for case in cases])
             there = np.isfinite(values)
+            assert np.mean(there) > 0.9
             values, stated = values[there], np.sqrt(np.mean(errors[there] ** 2))
             scatter = values.std(ddof=1)
-            error = scatter / np.sqrt(values.size)
-            print(key, name, values.size, f"{values.mean() / truth - 1.0:+.2%}",
-                  f"{(values.mean() - truth) / error:+.2f}", f"{scatter / stated:.2f}")
+            error = max(scatter, stated) / np.sqrt(values.size)
+            # lscf keeps some 0.3 of one record's scatter, as it does for one support.
+            allowed = 2.0 * error + (0.3 * scatter if method == "lscf" else 0.0)
+            assert abs(values.mean() - truth) < allowed, (key, name, values.mean() / truth - 1.0)
+            assert scatter < 1.5 * stated, (key, name, scatter / stated)

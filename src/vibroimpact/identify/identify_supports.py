@@ -21,7 +21,7 @@ from .operational_pole import OperationalPole, PoleSearch, operational_pole
 from .peak import LEVELS, PeakFit, find_peak, fit_peak
 from .pole_step import PoleStep, step_to_pole
 from .segment_scatter import effective_duration
-from .support_fit import SupportSearch
+from .support_fit import Start, SupportSearch
 from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
@@ -66,7 +66,8 @@ class SupportsCase:
 
     def fit(self) -> SupportsResult:
         """Return the SupportsResult."""
-        spectra = self.by_spectra()
+        shapes = self.by_shapes()
+        spectra = self.by_spectra(shapes)
         peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
         pole = None
         if spectra is not None:
@@ -85,12 +86,13 @@ class SupportsCase:
                 )
             pole = self.operational_pole(spectra)
         shape = self.main_shape(peaks["peak_25th"])
-        return SupportsResult(
-            self.tube.frequency, peaks, pole, shape, spectra, self.by_shapes(spectra)
-        )
+        return SupportsResult(self.tube.frequency, peaks, pole, shape, spectra, shapes)
 
-    def by_spectra(self) -> SpectraFit | None:
-        """Return the SpectraFit, or None where the force has no power in the band."""
+    def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
+        """Return the SpectraFit, or None where the force has no power in the band.
+
+        The supports of the shapes are one more start: spectra alone have more false minima.
+        """
         tube = self.tube
         values = self.outputs[:, :, tube.broadband]
         if values.shape[-1] == 0:
@@ -99,9 +101,11 @@ class SupportsCase:
         comparison = SpectraComparison(tube.structure, tube.at_broadband, tube.kernel, segments)
         coarse = CoarseCost(comparison, tube.at_broadband_bins)
         starts = self.search.coarse_starts(coarse, len(tube.directions))
+        if shapes is not None:
+            starts.append(Start(np.log(shapes.values.k), SHAPE_LOSS))
         return comparison.fit(self.search, starts, tube.lowest_stable_damping, self.averages)
 
-    def by_shapes(self, spectra: SpectraFit | None) -> ShapesFit | None:
+    def by_shapes(self) -> ShapesFit | None:
         """Return the ShapesFit, or None where nothing along the line moves."""
         tube, kernel = self.tube, self.tube.kernel
         if not np.any(tube.model.line_shapes[tube.structure.modes]):

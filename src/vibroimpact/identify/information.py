@@ -21,6 +21,7 @@ def what_is_known(names: Sequence[str], covariance: np.ndarray, index: int) -> s
     index: of the stiffness.
     """
     variances, vectors = np.linalg.eigh(covariance)
+    variances = np.maximum(variances, 0.0)  # a round-off below 0
     for variance, vector in zip(variances, vectors.T, strict=True):
         partners = np.flatnonzero(np.abs(vector) > SHOWN_POWER).tolist()
         if np.sqrt(variance) < KNOWN and abs(vector[index]) > LEAST_POWER and len(partners) > 1:
