@@ -21,13 +21,9 @@ from .quantities import (
 )
 
 Two_or_more = Field(min_length=2)
-Velocity = Annotated[
-    Number, Range("give the velocity of the flow in m/s", above=0, at_most=1000)
-]
+Velocity = Annotated[Number, Range("give the velocity of the flow in m/s", above=0, at_most=1000)]
 Fluid_density = Annotated[Number, Range("in kg/m3? water has 1000", above=0, at_most=3e4)]
-Line_psd = Annotated[
-    Number, Range("a density of power is positive", above=0), Unit("N²/m²/Hz")
-]
+Line_psd = Annotated[Number, Range("a density of power is positive", above=0), Unit("N²/m²/Hz")]
 Reduced = Annotated[Number, Range("give a positive number", above=0), Unit("1")]
 Tolerance = Annotated[
     Number, Range("a small fraction: 0.01 for one per cent", above=0, at_most=0.2), Unit("1")
@@ -52,8 +48,8 @@ class Stretch(Section):
     )
     factor: Positive_factor = Field(
         1.0,
-        description="Force per length on this stretch over that of the spectrum. For a stretch where"
-        " the flow is slower it is density times velocity² over their reference values.",
+        description="Force per length on this stretch over that of the spectrum. Where the flow has"
+        " another speed it is density times velocity² over those of the spectrum.",
         examples=[0.25],
     )
 
@@ -88,9 +84,9 @@ class TubeBundleSpectrum(Section):
     )
     shape: Literal["two_slopes", "low_pass"] = Field(
         "two_slopes",
-        description="Dimensionless PSD over the reduced frequency f D / V. Two slopes: 5e-3 / fr^0.5"
-        " up to 0.2, 4e-5 / fr^3.5 above. Low pass: 1.5e-3 / (1 + (fr / 0.1)^2.7). Both are of"
-        " frequencies of either sign; the force has twice that over the positive ones.",
+        description="Dimensionless PSD over the reduced frequency fr = f D / V. Two slopes:"
+        " 5e-3 / fr^0.5 up to 0.2, 4e-5 / fr^3.5 above. Low pass: 1.5e-3 / (1 + (fr / 0.1)^2.7)."
+        " Both are two-sided; the one-sided PSD is twice as large.",
         examples=["two_slopes"],
     )
     velocity_m_per_s: Velocity = Field(description=VELOCITY, examples=[2.0])
@@ -128,8 +124,8 @@ class TurbulentForce(Section):
     """The keys of turbulence that are not shared with other forces."""
 
     direction: Direction = Field(
-        description="Direction of the force. Its length does not matter, and its part along the tube"
-        " is left out.",
+        description="Direction of the force. Its length does not matter, and its part along the"
+        " tube is left out.",
         examples=[[0.0, 1.0, 0.0]],
     )
     both_directions: bool = Field(
@@ -142,7 +138,7 @@ class TurbulentForce(Section):
         (), description="Stretches that the flow acts on; none for the whole tube."
     )
     correlation_length_m: Length_m = Field(
-        description="Arc length over which the correlation of the force at two points falls to 1/e.",
+        description="Arc length over which the correlation of the force falls to 1/e.",
         examples=[0.065],
     )
     band_Hz: Band_Hz = Field(
@@ -157,6 +153,6 @@ class TurbulentForce(Section):
         0.01,
         description="Largest share of the variance of a mode's force that may be left out. It sets"
         " the number of independent forces. A mode above the band counts less, by (upper end of the"
-        " band / its frequency)^4.",
+        " band / its frequency)^4; a variance below 1e-4 of the largest counts as that.",
         examples=[0.01],
     )

@@ -124,7 +124,7 @@ def band(excitation: Excitation) -> Problems:
 
 
 def points_of_spectrum(structure: Tube, excitation: Excitation) -> Problems:
-    """Yield a problem unless the points of a spectrum are ascending, in pairs and cover the band."""
+    """Yield a problem unless the points of a spectrum are ascending pairs that cover the band."""
     if excitation.kind != "turbulence":
         return
     spectrum, low_high = excitation.spectrum, excitation.band_Hz

@@ -71,29 +71,22 @@ def _piece_integrals(length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 def _cubics(x: np.ndarray) -> np.ndarray:
     """Return (..., point) the cubics that are 1 at one of POINTS and 0 at the others."""
-    factors = [
-        [(x - other) / (own - other) for other in POINTS if other != own] for own in POINTS
-    ]
+    factors = [[(x - other) / (own - other) for other in POINTS if other != own] for own in POINTS]
     return np.stack([row[0] * row[1] * row[2] for row in factors], axis=-1)
 
 
-def independent_parts(
-    covariance: np.ndarray, weight: np.ndarray, tolerance: float
-) -> np.ndarray:
+def independent_parts(covariance: np.ndarray, allowed: np.ndarray) -> np.ndarray:
     """Return (function, part): factors of independent parts whose squares add to the covariance.
 
-    A Cholesky factor in the order of the functions. A function whose variance is already explained
-    by the parts before it, but for the tolerance over its weight, adds no part.
+    A Cholesky factor in the order of the functions. A function whose variance the parts before it
+    explain, but for what is allowed to be missing, adds no part.
 
     covariance: (function, function).
-    weight: (function,) from 0 to 1.
-    tolerance: largest weighted share of a variance that may be left out.
+    allowed: (function,) largest part of each variance that may be missing.
     """
-    rest = covariance.copy()
-    variance = np.diag(covariance)
-    parts = []
+    rest, parts = covariance.copy(), []
     for row in range(len(rest)):
-        if rest[row, row] * weight[row] <= tolerance * variance[row]:
+        if rest[row, row] <= allowed[row]:
             continue
         part = rest[:, row] / np.sqrt(rest[row, row])
         parts.append(part)

@@ -39,7 +39,6 @@ class SpectralForce:
 
     band_Hz: Sequence[float]
     psd: Callable[[np.ndarray], np.ndarray]
-    kind: str = "spectral"
 
 
 class ForceStream:
@@ -121,6 +120,9 @@ def _source(
     first_time_s: float,
 ) -> Any:
     """Return the source of blocks of a kind of excitation."""
+    if isinstance(excitation, SpectralForce):
+        lines = noise_lines(generator, samples, rate, excitation.band_Hz, excitation.psd)
+        return _Interpolated(*lines, exact_rms=False)
     source = excitation.signal if excitation.kind == "base_motion" else excitation
     if source.kind == "none":
         return _Formula(np.zeros_like, rate, 0.0)
@@ -133,9 +135,6 @@ def _source(
         return _WhiteNoise(generator)
     if source.kind == "band_limited":
         return _Interpolated(*noise_lines(generator, samples, rate, source.band_Hz))
-    if source.kind == "spectral":
-        lines = noise_lines(generator, samples, rate, source.band_Hz, source.psd)
-        return _Interpolated(*lines, exact_rms=False)
     values, duration = _measured(
         excitation.file, excitation.variable, excitation.sampling_frequency_Hz, rate
     )
@@ -237,8 +236,8 @@ class _Interpolated:
         windows = np.lib.stride_tricks.sliding_window_view(
             self._short[first : first + self._rows + TAPS - 1], TAPS
         )
-        # Many forces act at once where exact_rms is false. A copy makes the product several times as
-        # fast, but not with the same bits, which the other forces keep.
+        # Many forces act at once where exact_rms is false. A copy makes the product several times
+        # as fast, but with other last bits; the other forces keep theirs.
         return ((windows if self.exact_rms else windows.copy()) @ self._weights).ravel()
 
 

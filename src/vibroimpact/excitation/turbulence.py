@@ -22,6 +22,8 @@ from vibroimpact.structure.tube import TubeStructure
 from .correlated_field import POINTS, field_covariance, independent_parts
 from .line_force_spectrum import line_force_rms
 
+LEAST_VARIANCE = 1e-4  # of the most driven mode; below it a mode's force is not resolved relatively
+
 
 def drive_shapes(
     structure: TubeStructure | PointStructure,
@@ -41,9 +43,7 @@ def drive_shapes(
     Raises ValueError when the structure is no tube, or a stretch is off it.
     """
     if not isinstance(structure, TubeStructure):
-        raise ValueError(
-            "excitation.kind: turbulence needs a tube (structure.kind u_tube or path)"
-        )
+        raise ValueError("excitation.kind: turbulence needs a tube (structure.kind u_tube or path)")
     pieces = [
         (begin, end, factor, places, [_taken_rows(structure, place, shapes) for place in places])
         for begin, end, factor in _cut(
@@ -51,7 +51,6 @@ def drive_shapes(
         )
         for places in (begin + (end - begin) * POINTS,)
     ]
-    weight = np.concatenate([[1.0], _weight(omega, force.band_Hz[1])])
     channels = []
     for across in directions(structure.centreline, force):
         values = [
@@ -60,7 +59,8 @@ def drive_shapes(
         ]
         covariance = field_covariance(values, force.correlation_length_m)
         covariance /= covariance[0, 0]
-        channels.append(independent_parts(covariance, weight, force.tolerance)[1:])
+        allowed = force.tolerance * _reference(np.diag(covariance)[1:], omega, force.band_Hz[1])
+        channels.append(independent_parts(covariance, np.concatenate([[0.0], allowed]))[1:])
     return np.hstack(channels)
 
 
@@ -76,9 +76,7 @@ def load_of_spectrum(structure: ConfigPart, force: ConfigPart) -> float:
         for begin, end, factor in stretches(build_centreline(structure), force)
     ]
     ((variance,),) = field_covariance(pieces, force.correlation_length_m)
-    return float(
-        np.sqrt(variance) * line_force_rms(force, structure.section.outer_diameter_m)
-    )
+    return float(np.sqrt(variance) * line_force_rms(force, structure.section.outer_diameter_m))
 
 
 def stretches(line: Centreline, force: ConfigPart) -> list[tuple[float, float, float]]:
@@ -97,9 +95,7 @@ def stretches(line: Centreline, force: ConfigPart) -> list[tuple[float, float, f
     return sorted(found)
 
 
-def directions(
-    line: Centreline, force: ConfigPart
-) -> list[Callable[[float], np.ndarray]]:
+def directions(line: Centreline, force: ConfigPart) -> list[Callable[[float], np.ndarray]]:
     """Return the functions of an arc length in m that give the unit vectors (3,) of the force."""
 
     def first(place: float) -> np.ndarray:
@@ -140,7 +136,14 @@ def _sum_and_modes(
     return np.column_stack([np.ones(len(places)), np.array(along)])
 
 
-def _weight(omega: np.ndarray, highest_Hz: float) -> np.ndarray:
-    """Return (mode,): 1 in the band, above it the square of the ratio of static compliances."""
+def _reference(variance: np.ndarray, omega: np.ndarray, highest_Hz: float) -> np.ndarray:
+    """Return (mode,) the variance that the tolerance is a share of.
+
+    It is the mode's own variance, but no less than LEAST_VARIANCE of the largest one. Above the
+    band it grows by the square of the ratio of static compliances.
+
+    variance: (mode,) of the force on each mode.
+    """
     ratio = 2.0 * np.pi * highest_Hz / np.maximum(omega, 1e-300)
-    return np.minimum(ratio, 1.0) ** 4
+    least = LEAST_VARIANCE * variance.max(initial=0.0)
+    return np.maximum(variance, least) / np.minimum(ratio, 1.0) ** 4
