@@ -44,14 +44,12 @@ def drive_shapes(
     """
     if not isinstance(structure, TubeStructure):
         raise ValueError("excitation.kind: turbulence needs a tube (structure.kind u_tube or path)")
-    pieces = [
-        (begin, end, factor, places, [_taken_rows(structure, place, shapes) for place in places])
-        for begin, end, factor in _cut(
-            stretches(structure.centreline, force), structure.node_arc_length
-        )
-        for places in (begin + (end - begin) * POINTS,)
-    ]
-    channels = []
+    pieces, channels = [], []
+    acting = stretches(structure.centreline, force)
+    for begin, end, factor in _cut(acting, structure.node_arc_length):
+        places = begin + (end - begin) * POINTS
+        rows = [_taken_rows(structure, place, shapes) for place in places]
+        pieces.append((begin, end, factor, places, rows))
     for across in directions(structure.centreline, force):
         values = [
             (begin, end, factor * _sum_and_modes(across, places, rows))
