@@ -11,6 +11,7 @@ from vibroimpact.excitation.line_force_spectrum import (
     line_force_rms,
     log_interpolation,
     tube_bundle_spectrum,
+    two_phase_spectrum,
 )
 from vibroimpact.excitation.random_force import noise_lines
 
@@ -40,6 +41,22 @@ def test_dimensionless_spectra_have_the_published_values(shape, reduced, printed
 def test_the_two_slopes_meet():
     below, above = tube_bundle_spectrum(np.array([0.2, 0.2 * (1.0 + 1e-12)]), "two_slopes")
     assert below == pytest.approx(above, rel=1e-4)
+
+
+def test_the_two_phase_spectrum_at_a_void_fraction_of_a_quarter():
+    """By hand: 12.021 - 6.302625 + 1.98384375 - 0.26003125 = 7.4421875, at 500 kg/m2/s."""
+    force = section(
+        {
+            "kind": "two_phase",
+            "void_fraction": 0.25,
+            "velocity_m_per_s": 2.0,
+            "fluid_density_kg_per_m3": 250.0,
+        }
+    )
+    level = 10.0**7.4421875 / 0.068
+    assert two_phase_spectrum(0.5, 0.25, 500.0) == pytest.approx(4.0 * level / 6.25e10, rel=1e-12)
+    got = line_force_psd(force, 0.02, np.array([50.0]))[0]
+    assert got == pytest.approx(2.0 * 10.0**2 * 0.01 * 4.0 * level / 6.25e10, rel=1e-12)
 
 
 def test_the_force_per_length_has_the_scale_of_the_flow():

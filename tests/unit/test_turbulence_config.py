@@ -92,6 +92,11 @@ def test_turbulence_on_the_study_is_accepted(study):
         ),
         (
             "spectrum",
+            {**FORCE["spectrum"], "kind": "two_phase", "void_fraction": 80},
+            ["void_fraction = 80", "80 % is 0.8"],
+        ),
+        (
+            "spectrum",
             {**FORCE["spectrum"], "velocity_m_per_s": 0.0},
             ["velocity_m_per_s = 0.0", "in m/s"],
         ),

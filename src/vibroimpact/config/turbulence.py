@@ -25,6 +25,9 @@ Velocity = Annotated[Number, Range("give the velocity of the flow in m/s", above
 Fluid_density = Annotated[Number, Range("in kg/m3? water has 1000", above=0, at_most=3e4)]
 Line_psd = Annotated[Number, Range("a density of power is positive", above=0), Unit("N²/m²/Hz")]
 Reduced = Annotated[Number, Range("give a positive number", above=0), Unit("1")]
+Void_fraction = Annotated[
+    Number, Range("a fraction, not per cent: 80 % is 0.8", above=0, below=1), Unit("1")
+]
 Tolerance = Annotated[
     Number, Range("a small fraction: 0.01 for one per cent", above=0, at_most=0.2), Unit("1")
 ]
@@ -93,6 +96,21 @@ class TubeBundleSpectrum(Section):
     fluid_density_kg_per_m3: Fluid_density = Field(description=DENSITY, examples=[750.0])
 
 
+class TwoPhaseSpectrum(Section):
+    """The turbulence of a two-phase flow across a bundle of tubes, as steam generators are computed
+    with it (code_aster, DEFI_SPEC_TURB). The force falls with the square of the frequency.
+    """
+
+    kind: Literal["two_phase"] = Field(description="This kind of spectrum.", examples=["two_phase"])
+    void_fraction: Void_fraction = Field(
+        description="Share of the volume that is steam.", examples=[0.8]
+    )
+    velocity_m_per_s: Velocity = Field(description=VELOCITY, examples=[3.0])
+    fluid_density_kg_per_m3: Fluid_density = Field(
+        description="Density of the mixture outside the tube.", examples=[180.0]
+    )
+
+
 class ReducedTableSpectrum(Section):
     """A dimensionless PSD over the reduced frequency f D / V, given by points. Between them it is a
     straight line on two logarithmic axes, so that power laws are exact.
@@ -116,7 +134,8 @@ class ReducedTableSpectrum(Section):
 
 
 LineForceSpectrum = Annotated[
-    FlatSpectrum | TableSpectrum | TubeBundleSpectrum | ReducedTableSpectrum, By_kind
+    FlatSpectrum | TableSpectrum | TubeBundleSpectrum | TwoPhaseSpectrum | ReducedTableSpectrum,
+    By_kind,
 ]
 
 

@@ -13,6 +13,10 @@ CORNER = 0.2
 BELOW, ABOVE = (5.0e-3, 0.5), (4.0e-5, 3.5)
 # Of the low pass: value at 0, cut-off, exponent.
 LOW_PASS = (1.5e-3, 0.1, 2.7)
+# Of the two-phase spectrum: factors of the powers 1/2, 3/2, ... of the void fraction in the decimal
+# logarithm of its level, the divisor of the level, exponents of reduced frequency and mass flux.
+VOID_FACTORS = (24.042, -50.421, 63.483, -33.284)
+VOID_DIVISOR, TWO_PHASE_SLOPE, FLUX_EXPONENT = 6.8e-2, 2.0, 4.0
 INTERVALS = 20_000  # of the quadrature over the band, evenly spaced in the logarithm
 
 
@@ -46,6 +50,9 @@ def _inside_the_band(force: ConfigPart, diameter: float, frequency: np.ndarray) 
     reduced = frequency * time
     if spectrum.kind == "reduced_table":
         values = log_interpolation(reduced, spectrum.reduced_frequency, spectrum.reduced_psd)
+    elif spectrum.kind == "two_phase":
+        flux = spectrum.fluid_density_kg_per_m3 * spectrum.velocity_m_per_s
+        values = 2.0 * two_phase_spectrum(reduced, spectrum.void_fraction, flux)
     else:
         values = 2.0 * tube_bundle_spectrum(reduced, spectrum.shape)
     return force_per_length**2 * time * values
@@ -70,6 +77,26 @@ def tube_bundle_spectrum(reduced_frequency: np.ndarray, shape: str) -> np.ndarra
     return np.where(
         reduced <= CORNER, BELOW[0] * reduced ** -BELOW[1], ABOVE[0] * reduced ** -ABOVE[1]
     )
+
+
+def two_phase_spectrum(
+    reduced_frequency: np.ndarray, void_fraction: float, mass_flux: float
+) -> np.ndarray:
+    """Return the dimensionless two-sided PSD of the force of a two-phase flow across a bundle.
+
+    The scale is that of tube_bundle_spectrum, with the density of the mixture.
+
+    reduced_frequency: f D / V, above 0.
+    void_fraction: share of steam in the volume.
+    mass_flux: density of the mixture times velocity, kg/(m² s).
+
+    Source: code_aster, DEFI_SPEC_TURB (manual U4.44.31), default exponents of SPEC_LONG_COR_4; its
+    level is a fit over the void fraction, in routine coesp4.
+    """
+    powers = void_fraction ** (0.5 + np.arange(len(VOID_FACTORS)))
+    level = 10.0 ** (VOID_FACTORS @ powers) / VOID_DIVISOR
+    reduced = np.asarray(reduced_frequency, dtype=float)
+    return level / (reduced**TWO_PHASE_SLOPE * mass_flux**FLUX_EXPONENT)
 
 
 def log_interpolation(
