@@ -181,9 +181,21 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
         f"study '{config.study}': structure of kind {config.structure.kind},"
         f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
         f" excitation of kind {config.excitation.kind},"
-        f" {_count(len(all_cases(config.grid)), 'case')} {aim}",
+        f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}",
         [],
     )
+
+
+def _load_of_spectrum(config) -> str:
+    """Return what load a spectrum with a level stands for, "" for a force without one."""
+    force = config.excitation
+    if force.kind != "turbulence" or force.spectrum.kind == "flat":
+        return ""
+    from vibroimpact.excitation.turbulence import load_of_spectrum
+
+    velocity = getattr(force.spectrum, "velocity_m_per_s", None)
+    source = "its table" if velocity is None else f"{velocity:g} m/s"
+    return f"; {source} is a load_rms_N of {load_of_spectrum(config.structure, force):.4g}"
 
 
 def _problems_of_files(config) -> list[str]:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from . import geometry_checks
+from . import geometry_checks, turbulence_checks
 from . import name_checks as names
 from .excitation import Excitation
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
@@ -239,7 +239,7 @@ def _step_and_force(excitation: Excitation, integration: Integration) -> Problem
 def _highest_frequency(excitation: Excitation) -> float:
     """Return the highest excited frequency in Hz, 0 where none is stated."""
     source = excitation.signal if excitation.kind == "base_motion" else excitation
-    if source.kind == "band_limited":
+    if source.kind in ("band_limited", "turbulence"):
         return source.band_Hz[1]
     if source.kind == "measured":
         return (source.sampling_frequency_Hz or 0.0) / 2
@@ -309,9 +309,15 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     geometry_checks.gaps,
     geometry_checks.offsets,
     names.sensors_of_a_tube,
+    turbulence_checks.stretches,
+    turbulence_checks.direction,
+    turbulence_checks.points_of_spectrum,
     _step_and_modes,
 )
-POINT_CHECKS: tuple[Callable[..., Problems], ...] = (names.point_supports,)
+POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
+    names.point_supports,
+    turbulence_checks.needs_a_tube,
+)
 CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
     *POINT_CHECKS,
@@ -328,6 +334,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     _every_step,
     names.sensors,
     names.driven_direction_is_recorded,
+    turbulence_checks.band,
     _force,
     _overlay,
     _bands_in_order,

@@ -18,6 +18,7 @@ from .quantities import (
     Unit,
     Vector,
 )
+from .turbulence import TurbulentForce
 
 Factor = Annotated[Number, Unit("1")]
 DIRECTION = "Direction of the force. Its length does not matter."
@@ -201,4 +202,22 @@ class BaseMotion(Section):
     constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
 
 
-Excitation = Annotated[BandLimited | Measured | Harmonic | WhiteNoise | Still | BaseMotion, By_kind]
+class Turbulence(TurbulentForce):
+    """A Gaussian force per length along a tube, correlated over an arc length, as a turbulent flow
+    exerts it.
+
+    The load of a case is the RMS of the force in one direction, summed along the tube:
+    sqrt(integral of the PSD times the double integral of exp(-|s - s'| / correlation length)).
+    It scales the whole field. It is that RMS on average: records are not scaled to it. The command
+    `check` prints the load that a spectrum with a velocity or a table amounts to.
+    """
+
+    kind: Literal["turbulence"] = Field(
+        description="This kind of excitation.", examples=["turbulence"]
+    )
+    constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
+
+
+Excitation = Annotated[
+    BandLimited | Measured | Harmonic | WhiteNoise | Turbulence | Still | BaseMotion, By_kind
+]

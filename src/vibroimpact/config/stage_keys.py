@@ -29,6 +29,7 @@ MODEL = (
 SIMULATION = (
     "study",
     "seed",
+    "structure.section",
     "excitation",
     "integration",
     "grid.gap_m",

@@ -1,6 +1,6 @@
 """Band-limited Gaussian forces, and measured records resampled to the integration step."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -28,13 +28,20 @@ def band_limited_noise(
 
 
 def noise_lines(
-    generator: np.random.Generator, samples: int, rate: float, band: Sequence[float]
+    generator: np.random.Generator,
+    samples: int,
+    rate: float,
+    band: Sequence[float],
+    psd: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> tuple[np.ndarray, int, int]:
     """Return (lines (line,), number of the first one, period in samples) of band-limited noise.
 
     The noise is the real part of the sum over n of 2 lines_n exp(2 pi i n t / period), t the sample
     number. The lines are independent complex Gaussian numbers (Shinozuka and Deodatis 1991, random
-    amplitudes). Arguments and ForceError as for band_limited_noise.
+    amplitudes). Its variance is 1 on average.
+
+    psd: function of frequencies (line,) in Hz that returns the PSD in the band, on any scale; flat
+        by default. Other arguments and ForceError as for band_limited_noise.
     """
     length = fft_length(samples)
     low, high = int(np.ceil(band[0] * length / rate)), int(np.floor(band[1] * length / rate))
@@ -45,7 +52,10 @@ def noise_lines(
         )
     count = high - low + 1
     lines = generator.standard_normal(count) + 1j * generator.standard_normal(count)
-    return lines * (0.5 / np.sqrt(count)), low, length
+    if psd is None:
+        return lines * (0.5 / np.sqrt(count)), low, length
+    power = psd(np.arange(low, high + 1) * (rate / length))
+    return lines * (0.5 * np.sqrt(power / power.sum())), low, length
 
 
 def fft_length(samples: int) -> int:

@@ -55,6 +55,26 @@ def frf(
     return response
 
 
+def response_psd(
+    model: ModalModel,
+    k: float,
+    c: float,
+    frequency: np.ndarray | Sequence[float] | float,
+    output_shapes: np.ndarray,
+    kind: str = "displacement",
+) -> np.ndarray:
+    """Return (output, frequency) PSD of the response per PSD of the load, all channels together.
+
+    The forces of several channels, as turbulence has them, are independent and have the same PSD:
+    the sum over channels of the squared magnitude of frf. Unit and arguments as of frf, squared.
+    """
+    total = np.zeros((output_shapes.shape[1], np.size(frequency)))
+    for channel in range(model.drive_shapes.shape[1]):
+        response = frf(model, k, c, frequency, output_shapes, kind, channel)
+        total += response.real**2 + response.imag**2
+    return total
+
+
 def psd_family(
     model: ModalModel,
     k_grid: np.ndarray,

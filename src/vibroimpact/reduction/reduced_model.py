@@ -16,6 +16,7 @@ from vibroimpact.excitation.force_vectors import (
     turn_axis,
     with_base_mode,
 )
+from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.memo import Memo, content_key
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
@@ -67,7 +68,7 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         "full_mode_frequencies": full_frequencies,
         **_damping_and_element_fields(structure, omega, shapes, local_rows, config),
         **_contact_fields(structure, shapes, config),
-        **_force_fields(structure, shapes, config, point_rows),
+        **_force_fields(structure, omega, shapes, config, point_rows),
         "initial_displacement": _initial(structure, shapes, config.initial, "displacement_m"),
         "initial_velocity": _initial(structure, shapes, config.initial, "velocity_m_per_s"),
         **_sensor_fields(structure, shapes, config, point_rows),
@@ -125,12 +126,20 @@ def _contact_fields(structure: Any, shapes: np.ndarray, config: ConfigPart) -> d
 
 
 def _force_fields(
-    structure: Any, shapes: np.ndarray, config: ConfigPart, point_rows: Callable
+    structure: Any,
+    omega: np.ndarray,
+    shapes: np.ndarray,
+    config: ConfigPart,
+    point_rows: Callable,
 ) -> dict[str, Any]:
     """Return the fields of the case's force and of the constant force."""
-    driven = force_vector(structure, point_rows, config.excitation, _axis(config))
+    if config.excitation.kind == "turbulence":
+        driven = drive_shapes(structure, shapes, omega, config.excitation)
+    else:
+        force = force_vector(structure, point_rows, config.excitation, _axis(config))
+        driven = (force @ shapes)[:, None]
     constant = constant_force_vector(structure, point_rows, config.excitation)
-    return {"drive_shapes": (driven @ shapes)[:, None], "constant_force": constant @ shapes}
+    return {"drive_shapes": driven, "constant_force": constant @ shapes}
 
 
 def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:

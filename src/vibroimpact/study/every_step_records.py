@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from vibroimpact.excitation.force_channels import force_channels
 from vibroimpact.excitation.force_stream import normalised_force
 from vibroimpact.integration.every_step import Traces, integrate_every_step
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
@@ -31,12 +31,16 @@ def trace_cases(
     """
     rate = config.integration.steps_per_second
     steps = round(config.record.duration_s * rate)
+    channels = model.drive_shapes.shape[1]
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
         forces = np.stack(
-            [case.load_rms_N * _normalised_force(config, case.seed, steps, rate) for case in batch],
+            [
+                case.load_rms_N * _normalised_forces(config, case.seed, channels, steps, rate)
+                for case in batch
+            ],
             axis=-1,
-        )[:, None]
+        )
         offset = np.zeros((model.support_of_point.size, 2, len(batch)))
 
         def drive(at: int, count: int, forces: np.ndarray = forces) -> np.ndarray:
@@ -55,11 +59,17 @@ def trace_cases(
             yield case, _dataset(config, model, traces, lane, case)
 
 
-def _normalised_force(config: Any, seed: int, steps: int, rate: float) -> np.ndarray:
-    generator = random_generator(config.seed, seed, "force")
-    return normalised_force(
-        config.excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0
-    )
+def _normalised_forces(
+    config: Any, seed: int, channels: int, steps: int, rate: float
+) -> np.ndarray:
+    """Return (sample, force_channel) the force of a seed per newton of the load."""
+
+    def values(excitation: Any, generator: np.random.Generator) -> np.ndarray:
+        return normalised_force(
+            excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0
+        )
+
+    return np.stack(force_channels(config, seed, channels, values), axis=-1)
 
 
 def _dataset(config: Any, model: ModalModel, traces: Traces, lane: int, case: Case) -> xr.Dataset:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from vibroimpact.excitation.force_channels import force_channels
 from vibroimpact.excitation.force_stream import ForceStream
 from vibroimpact.integration.batch import ENERGY_TERMS, BatchResult, Schedule, integrate_batch
 from vibroimpact.integration.kernels.decimation import RATIO
@@ -34,7 +35,8 @@ def simulate_cases(
     A record does not depend on the other cases of the list. Its variables, dimensions and units
     are those of record_variables.VARIABLES.
 
-    config: the stage's settings, with study, seed, record, excitation and integration.
+    config: the stage's settings, with study, seed, record, excitation, integration and
+    structure.section.
     writer: where given, the records hold no time series. writer(schedule, batch) is a context
     manager, entered once per batch of cases; it yields put(first sample, {variable: (case, ...,
     sample)}), which receives the series piece by piece. See series_writer and spectra_writer.
@@ -55,8 +57,9 @@ def simulate_cases(
         config.integration.scheme,
     )
     with stopwatch("force"):
+        channels = model.drive_shapes.shape[1]
         forces = {
-            seed: seed_force(config, schedule, seed)
+            seed: seed_forces(config, schedule, seed, channels)
             for seed in sorted({case.seed for case in cases})
         }
     for first in range(0, len(cases), LANES):
@@ -82,17 +85,26 @@ def simulate_cases(
 
 
 def seed_force(config: Any, schedule: Schedule, seed: int) -> ForceStream:
-    """Return the force of a seed at every step of the run, with RMS 1 over the recorded window.
+    """Return the force of a seed in the first channel, see seed_forces."""
+    return seed_forces(config, schedule, seed, 1)[0]
 
+
+def seed_forces(config: Any, schedule: Schedule, seed: int, channels: int) -> list[ForceStream]:
+    """Return the force of a seed in each channel at every step of the run, per newton of the load.
+
+    It has RMS 1 over the recorded window, or on average over seeds where the excitation says so.
     All loads scale this force and all gaps share it. Scaling load and gap by a power of two
     therefore scales a record bit for bit.
     """
     rate = schedule.steps_per_second
     first = round(schedule.start_up * rate) + 1
     recorded = slice(first, first + round(schedule.duration * rate))
-    generator = random_generator(config.seed, seed, "force")
     first_time = -schedule.start_up - 1.0 / rate
-    return ForceStream(config.excitation, generator, schedule.steps + 2, rate, recorded, first_time)
+
+    def stream(excitation: Any, generator: np.random.Generator) -> ForceStream:
+        return ForceStream(excitation, generator, schedule.steps + 2, rate, recorded, first_time)
+
+    return force_channels(config, seed, channels, stream)
 
 
 def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
@@ -107,15 +119,20 @@ def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
     return draw * (config.integration.imperfection * case.gap_m)
 
 
-def _drive(batch: list[Case], forces: dict[int, ForceStream], stopwatch: Stopwatch) -> Callable:
+def _drive(
+    batch: list[Case], forces: dict[int, list[ForceStream]], stopwatch: Stopwatch
+) -> Callable:
     def drive(first: int, count: int) -> np.ndarray:
         with stopwatch("force"):
             unit = {
-                seed: forces[seed].values(first, count) for seed in {case.seed for case in batch}
+                seed: [stream.values(first, count) for stream in forces[seed]]
+                for seed in {case.seed for case in batch}
             }
-            out = np.empty((count, 1, len(batch)))
+            channels = len(forces[batch[0].seed])
+            out = np.empty((count, channels, len(batch)))
             for lane, case in enumerate(batch):
-                np.multiply(unit[case.seed], case.load_rms_N, out=out[:, 0, lane])
+                for channel, values in enumerate(unit[case.seed]):
+                    np.multiply(values, case.load_rms_N, out=out[:, channel, lane])
         return out
 
     return drive

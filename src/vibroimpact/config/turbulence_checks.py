@@ -1,0 +1,161 @@
+"""The checks of a turbulent force: where it acts, its direction, its band and its spectrum. Each
+yields (place, value, text), see checks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.geometry.centreline import Centreline, build_centreline
+
+from .excitation import Excitation
+from .geometry_checks import Tube, path_directions, points_on_the_tube
+from .structure import Structure
+from .turbulence import Stretch
+
+Problems = Iterator[tuple[str, Any, str]]
+
+LEAST_SINE = 0.05  # of the angle between force and tube: 3 degrees
+ALONG_TUBE = 2000  # places at which the angle is looked at
+TOLERANCE = 1e-9
+
+
+def needs_a_tube(structure: Structure, excitation: Excitation) -> Problems:
+    """Yield a problem: turbulence acts along a tube, and this structure is none."""
+    if excitation.kind == "turbulence":
+        yield (
+            "excitation.kind",
+            "turbulence",
+            f"acts along a tube, structure.kind is {structure.kind}: use band_limited",
+        )
+
+
+def stretches(structure: Tube, excitation: Excitation) -> Problems:
+    """Yield a problem unless the stretches of turbulence are on the tube and do not overlap."""
+    line = _centreline(structure)
+    if excitation.kind != "turbulence" or line is None:
+        return
+    taken = []
+    for index, stretch in enumerate(excitation.stretches):
+        place = f"excitation.stretches[{index}]"
+        off = [*_off_the_tube(structure, stretch, place)]
+        yield from off
+        if off:
+            continue
+        begin, end = _ends(line, stretch)
+        if end - begin < TOLERANCE:
+            yield (
+                f"{place}.to_m",
+                list(stretch.to_m),
+                "is the same place as from_m: move one of them",
+            )
+        taken.append((begin, end, index))
+    for (_, end, one), (begin, _, other) in pairwise(sorted(taken)):
+        if begin < end - TOLERANCE:
+            yield (
+                f"excitation.stretches[{other}]",
+                list(excitation.stretches[other].from_m),
+                f"overlaps stretches[{one}]: let one end where the other begins",
+            )
+
+
+def direction(structure: Tube, excitation: Excitation) -> Problems:
+    """Yield a problem unless the direction of turbulence is across the tube wherever it acts."""
+    line = _centreline(structure)
+    if excitation.kind != "turbulence" or line is None or not np.any(excitation.direction):
+        return
+    acting = [
+        _ends(line, stretch)
+        for stretch in excitation.stretches
+        if not any(_off_the_tube(structure, stretch, ""))
+    ]
+    along = np.asarray(excitation.direction) / np.linalg.norm(excitation.direction)
+    for begin, end in acting if excitation.stretches else [(0.0, line.length)]:
+        places = np.linspace(begin, end, ALONG_TUBE)
+        sines = [np.linalg.norm(np.cross(line.direction(place), along)) for place in places]
+        if min(sines) < LEAST_SINE:
+            at = line.position(places[int(np.argmin(sines))])
+            yield (
+                "excitation.direction",
+                list(excitation.direction),
+                (
+                    f"is along the tube at {np.round(at, 4).tolist()} m: give a direction across"
+                    " the tube wherever the force acts, or stretches without that place"
+                ),
+            )
+            return
+
+
+def _centreline(structure: Tube) -> Centreline | None:
+    """Return the centreline, or None where its directions are a problem already reported."""
+    return None if any(path_directions(structure)) else build_centreline(structure)
+
+
+def _off_the_tube(structure: Tube, stretch: Stretch, place: str) -> Problems:
+    """Yield a problem for each end of a stretch that is off the tube."""
+    for key in ("from_m", "to_m"):
+        for _, value, text in points_on_the_tube(structure, {key: getattr(stretch, key)}):
+            yield f"{place}.{key}", value, text
+
+
+def _ends(line: Centreline, stretch: Stretch) -> tuple[float, float]:
+    """Return the arc lengths in m of the ends of a stretch, ascending."""
+    begin, end = sorted(line.locate(at, "stretch") for at in (stretch.from_m, stretch.to_m))
+    return begin, end
+
+
+def band(excitation: Excitation) -> Problems:
+    """Yield a problem unless the band of turbulence is ascending and above 0."""
+    if excitation.kind != "turbulence":
+        return
+    low, high = excitation.band_Hz
+    if low >= high:
+        yield (
+            "excitation.band_Hz",
+            [low, high],
+            "is not in ascending order: give the lower end first",
+        )
+    elif low == 0.0:
+        yield "excitation.band_Hz", [low, high], "begins at 0: give a lower end above 0 Hz"
+
+
+def points_of_spectrum(structure: Tube, excitation: Excitation) -> Problems:
+    """Yield a problem unless the points of a spectrum are ascending pairs that cover the band."""
+    if excitation.kind != "turbulence":
+        return
+    spectrum, low_high = excitation.spectrum, excitation.band_Hz
+    if spectrum.kind == "table":
+        key, places, values = "frequency_Hz", spectrum.frequency_Hz, spectrum.psd_N2_per_m2_Hz
+        scale = 1.0
+    elif spectrum.kind == "reduced_table":
+        key, places, values = "reduced_frequency", spectrum.reduced_frequency, spectrum.reduced_psd
+        scale = structure.section.outer_diameter_m / spectrum.velocity_m_per_s
+    else:
+        return
+    yield from _points(f"excitation.spectrum.{key}", places, values)
+    low, high = (scale * end for end in low_high)
+    if places[0] > low * (1 + TOLERANCE) or places[-1] < high * (1 - TOLERANCE):
+        yield (
+            f"excitation.spectrum.{key}",
+            [places[0], places[-1]],
+            (
+                f"does not cover excitation.band_Hz, which is {low:.4g} to {high:.4g} on this axis:"
+                " narrow the band or add points"
+            ),
+        )
+
+
+def _points(place: str, places: Sequence[float], values: Sequence[float]) -> Problems:
+    """Yield a problem unless points are ascending and have one value each."""
+    if len(places) != len(values):
+        yield (
+            place,
+            len(places),
+            f"places have {len(values)} values of the PSD: give one value per place",
+        )
+    if any(after <= before for before, after in pairwise(places)):
+        yield place, list(places), "is not in ascending order: sort the points, each once"
