@@ -1,13 +1,26 @@
-"""The quality of the stiffnesses and dampings that a method gives for several supports."""
+"""The quality of the stiffnesses and dampings that a method gives for several supports.
 
-from collections.abc import Sequence
+A stiffness must differ from zero by the model's and chance's errors, as that of one support must:
+see estimate. The response depends on k through k/(1 + k G), with G the compliance of the structure
+where the support acts. So its sensitivity to k is (1 + k G)² times smaller than at k = 0, and the
+error of k as much larger.
+"""
+
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.linear.support_groups import SupportDirection
+from vibroimpact.linear.supported_structure import SupportedStructure
 
-from .estimate import FREQUENCY_ERROR, UNRESOLVED_ABOVE, WEAK_ABOVE, Estimate, mark_weak
+from .estimate import (
+    CHANCE_SIGMAS,
+    FREQUENCY_ERROR,
+    MODEL_SIGMAS,
+    UNRESOLVED_ABOVE,
+    WEAK_ABOVE,
+    Estimate,
+    mark_weak,
+)
 from .information import what_is_known
 from .support_fit import SupportSearch
 
@@ -38,14 +51,16 @@ class MethodResult:
 
 
 def graded_supports(
-    found: MethodResult, directions: Sequence[SupportDirection], search: SupportSearch
+    found: MethodResult, structure: SupportedStructure, search: SupportSearch
 ) -> list[Estimate]:
     """Return the Estimate of each direction; k and c are NaN where they are not resolved."""
+    directions = structure.directions
     count = len(directions)
     total = found.covariance
     if found.by_frequency is not None:
         shift = FREQUENCY_ERROR * found.by_frequency
         total = total + np.outer(shift, shift)
+    saturation = (1.0 + found.k * structure.own_compliance(found.k)) ** 2
     names = [direction.name for direction in directions]
     estimates = []
     for index, direction in enumerate(directions):
@@ -57,7 +72,12 @@ def graded_supports(
             frequency=found.frequency,
             damping_ratio=found.damping_ratio,
         ).at(direction)
+        chance = float(np.sqrt(found.covariance[index, index]))
+        floor = MODEL_SIGMAS * np.sqrt(max(error**2 - chance**2, 0.0)) + CHANCE_SIGMAS * chance
         reason = _why_unresolved(k, error, search)
+        if not reason and floor > saturation[index]:
+            least = k * floor / saturation[index]
+            reason = f"k = {k:.3g} N/m does not differ from 0 (least {least:.3g})"
         if not reason and error > UNRESOLVED_ABOVE:
             reason = f"standard error {min(error, 99.0):.0%} of k: " + what_is_known(
                 names, total[:count, :count], index

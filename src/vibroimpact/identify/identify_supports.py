@@ -21,7 +21,7 @@ from .operational_pole import OperationalPole, PoleSearch, operational_pole
 from .peak import LEVELS, PeakFit, find_peak, fit_peak
 from .pole_step import PoleStep, step_to_pole
 from .segment_scatter import effective_duration
-from .support_fit import Start, SupportSearch
+from .support_fit import Start, SupportSearch, inverse_information
 from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
@@ -110,7 +110,7 @@ class SupportsCase:
         tube, kernel = self.tube, self.tube.kernel
         if not np.any(tube.model.line_shapes[tube.structure.modes]):
             return None
-        measured = block_shapes(self.line, self.line_frequency, kernel, self.averages)
+        measured = block_shapes(self.line, self.line_frequency, kernel)
         fine = tube.structure.frequency[tube.at_line.part]
         comparison = ShapeComparison(
             tube.structure, tube.at_line, measured, self.search, tube.force_psd(fine)
@@ -190,12 +190,12 @@ def _estimates_by_pole(
         return _unresolved(case, method, "no supports give the main mode this pole", **known)
     scatter = step.covariance if np.any(start.covariance) else np.zeros_like(step.covariance)
     found = MethodResult(method, step.k, step.c, scatter, step.by_frequency, **known)
-    return graded_supports(found, case.tube.directions, case.search)
+    return graded_supports(found, case.tube.structure, case.search)
 
 
 def _shape_of(fit: SpectraFit) -> np.ndarray:
     """Return a covariance without the scatter's size, of spectra that have none."""
-    return np.linalg.pinv(fit.values.jacobian.T @ fit.values.jacobian, hermitian=True)
+    return inverse_information(fit.values.jacobian)
 
 
 def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
@@ -207,7 +207,7 @@ def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Est
     found = MethodResult(
         "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
     )
-    estimates = graded_supports(found, case.tube.directions, case.search)
+    estimates = graded_supports(found, case.tube.structure, case.search)
     if fit.mac < LOWEST_MAC:
         estimates = [mark_weak(item, f"mean MAC only {fit.mac:.2f}") for item in estimates]
     return estimates
@@ -219,7 +219,7 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     if fit is None:
         return _unresolved(case, "broadband", "the force has no power in the band")
     found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
-    estimates = graded_supports(found, case.tube.directions, case.search)
+    estimates = graded_supports(found, case.tube.structure, case.search)
     if fit.correlation < LOWEST_CORRELATION:
         note = f"smallest correlation of a sensor only {fit.correlation:.2f}"
         estimates = [mark_weak(item, note) for item in estimates]

@@ -2,7 +2,7 @@
 
 A method gives a residual and its derivatives by ln k and c of each direction. The search starts at
 equal stiffnesses, follows each direction in turn over the whole range, and ends in scipy's
-trust-region method.
+trust-region method. So its cost grows with the number of unknowns, not with its power.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,9 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-STIFFNESSES = 13  # places of a coarse search along the stiffness of one direction
-SWEEPS = 2
+# A coarse search along one stiffness: the distance of two places in ln k, the places between two
+# starts, and how often each direction has its turn.
+SPACING, SKIPPED, SWEEPS = 1.5, 3, 3
 STEPS = 40
+UNSEEN = 1.0e-6  # of the largest derivative: what is smaller is round-off
 TOLERANCE = 1.0e-9
 LOSSES = (0.0, 0.1, 0.4)  # loss factors omega c / k of the supports that a search starts from
 
@@ -45,6 +47,19 @@ class SupportValues:
     residual: np.ndarray
 
 
+def inverse_information(jacobian: np.ndarray) -> np.ndarray:
+    """Return (value, value) the inverse of J^T J, very large along what the residual does not see.
+
+    jacobian: J, (residual, value).
+    """
+    length = np.linalg.norm(jacobian, axis=0)
+    length = np.where(length > UNSEEN * length.max(), length, UNSEEN * length.max())
+    scaled = jacobian / length
+    values, vectors = np.linalg.eigh(scaled.T @ scaled)
+    inverse = (vectors / np.maximum(values, UNSEEN**2)) @ vectors.T
+    return inverse / np.outer(length, length)
+
+
 @dataclass(frozen=True)
 class SupportSearch:
     """Where a method searches.
@@ -74,21 +89,35 @@ class SupportSearch:
         return starts
 
     def _swept(self, cost: Callable[[np.ndarray], float], directions: int) -> np.ndarray:
-        """Return (direction,) ln k near the smallest cost(ln k), by sweeps over one at a time."""
+        """Return (direction,) ln k near the smallest cost(ln k).
+
+        Sweeps over one direction at a time begin at several stiffnesses that all have alike: each
+        alone ends too often where one support is taken for infinitely stiff.
+        """
         low, high = np.log(self.stiffness_range)
-        places = np.linspace(low, high, STIFFNESSES)
-        costs = [cost(np.full(directions, place)) for place in places]
-        log_k = np.full(directions, places[int(np.argmin(costs))])
-        best = min(costs)
-        for _ in range(SWEEPS if directions > 1 else 0):
-            for index in range(directions):
+        places = np.linspace(low, high, 2 + int((high - low) / SPACING))
+        found = [
+            self._sweep(cost, np.full(directions, place), places) for place in places[1::SKIPPED]
+        ]
+        return min(found, key=lambda end: end[0])[1]
+
+    def _sweep(
+        self, cost: Callable[[np.ndarray], float], log_k: np.ndarray, places: np.ndarray
+    ) -> tuple[float, np.ndarray]:
+        """Return (cost, ln k (direction,)) at the end of the sweeps from one start."""
+        best = cost(log_k)
+        for _ in range(SWEEPS):
+            before = best
+            for index in range(len(log_k)):
                 for place in places:
                     trial = log_k.copy()
                     trial[index] = place
                     value = cost(trial)
                     if value < best:
                         best, log_k = value, trial
-        return log_k
+            if best == before:
+                break
+        return best, log_k
 
     def best_of(
         self, evaluate: Evaluate, starts: Sequence[Start], lowest_c: LowestDamping

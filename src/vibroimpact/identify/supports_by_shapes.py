@@ -20,7 +20,13 @@ from vibroimpact.spectra.window_leakage import SpectralKernel
 
 from .estimate import FREQUENCY_ERROR
 from .ods import GAIN_ERROR
-from .support_fit import LowestDamping, Start, SupportSearch, SupportValues
+from .support_fit import (
+    LowestDamping,
+    Start,
+    SupportSearch,
+    SupportValues,
+    inverse_information,
+)
 
 BLOCK_HZ = 1.0
 FEWEST_BINS = 5
@@ -57,13 +63,10 @@ class ShapesFit:
     mac: float
 
 
-def block_shapes(
-    spectra: np.ndarray, frequency: np.ndarray, kernel: SpectralKernel, averages: float
-) -> BlockShapes:
+def block_shapes(spectra: np.ndarray, frequency: np.ndarray, kernel: SpectralKernel) -> BlockShapes:
     """Return the BlockShapes of segment spectra (line_point, segment, frequency).
 
     frequency: (frequency,) Hz, contiguous bins.
-    averages: effective degrees of freedom of a bin.
     """
     spacing = frequency[1] - frequency[0]
     width = max(FEWEST_BINS, round(BLOCK_HZ / spacing))
@@ -73,11 +76,11 @@ def block_shapes(
         part = spectra[:, :, start : start + width].reshape(len(spectra), -1).astype(complex)
         values, vectors = np.linalg.eigh(part @ part.conj().T)
         shapes.append(vectors[:, -1])
-        # Motion that is not one shape turns the first vector towards the others.
+        # Motion that is not one shape turns the first vector towards the others. Impacts make it,
+        # always from the same places, so that no averaging removes it.
         ratio = np.maximum(values[:-1], 0.0) / values[-1]
         turned = np.sum(ratio / np.maximum(1.0 - ratio, 1.0e-3) ** 2)
-        independent = max(0.5 * averages * width * 0.5, 1.0)
-        scatter.append(turned / independent / len(spectra))
+        scatter.append(turned / len(spectra))
     found = np.array(shapes)
     centre = np.array([frequency[start] + 0.5 * (width - 1) * spacing for start in starts])
     variance = (
@@ -200,7 +203,7 @@ class ShapeComparison:
         shapes = values.residual[: len(values.residual) - count]
         heard = np.count_nonzero(self.factor) * 2 * (self.measured.shapes.shape[1] - 1)
         excess = max(1.0, shapes @ shapes / max(heard - 2 * count, 1))
-        covariance = np.linalg.pinv(values.jacobian.T @ values.jacobian, hermitian=True) * excess
+        covariance = inverse_information(values.jacobian) * excess
         across = np.sum(shapes.reshape(2, len(self.factor), -1) ** 2, axis=(0, 2))
         weight = self.factor**2
         return ShapesFit(values, covariance, float(1.0 - across.sum() / weight.sum()))

@@ -15,7 +15,13 @@ from vibroimpact.spectra.window_leakage import SpectralKernel, correlated_sum
 
 from .broadband import EXPONENT
 from .segment_scatter import widened
-from .support_fit import LowestDamping, Start, SupportSearch, SupportValues
+from .support_fit import (
+    LowestDamping,
+    Start,
+    SupportSearch,
+    SupportValues,
+    inverse_information,
+)
 
 
 @dataclass(frozen=True)
@@ -105,7 +111,7 @@ class SpectraComparison:
         vector, _ = self._vectors(psd, slope)
         amplitude = np.sum(vector * self.target) / np.sum(vector**2)
         curve = amplitude ** (1.0 / EXPONENT) * psd
-        inverse = np.linalg.pinv(values.jacobian.T @ values.jacobian, hermitian=True)
+        inverse = inverse_information(values.jacobian)
         # One force moves all sensors: their spectra are high and low together.
         weighted = -values.jacobian.T * (EXPONENT * amplitude * vector).ravel()
         by_bin = weighted.reshape(len(weighted), *psd.shape).sum(axis=1)

@@ -21,6 +21,8 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .support_groups import SupportDirection
 
+RIGID = 1.0  # (rad/s)², so that a rigid motion has a static compliance
+
 
 @dataclass(frozen=True, eq=False)
 class Observed:
@@ -125,6 +127,21 @@ class SupportedStructure:
         stiffness = np.diag(self.omega**2) + (self.contact * k[self.owner]) @ self.contact.T
         squares, vectors = np.linalg.eigh(stiffness)
         return np.sqrt(np.maximum(squares, 0.0)), vectors
+
+    def own_compliance(self, k: np.ndarray) -> np.ndarray:
+        """Return (direction,) m/N, the static compliance where each direction acts.
+
+        The other directions have their stiffness k (direction,) in N/m.
+        """
+        found = np.zeros(len(self.directions))
+        for index in range(len(found)):
+            own = self.owner == index
+            others = np.where(own, 0.0, k[self.owner])
+            stiffness = np.diag(self.omega**2 + RIGID) + (self.contact * others) @ self.contact.T
+            contact = self.contact[:, own]
+            compliance = contact.T @ np.linalg.solve(stiffness, contact)
+            found[index] = np.linalg.eigvalsh(compliance)[-1]
+        return found
 
     def support_motion(self, shapes: np.ndarray) -> np.ndarray:
         """Return (direction, shape) 1/kg, the square of the motion at each direction's contacts.
