@@ -93,7 +93,9 @@ def _damping_and_element_fields(
     damping = modal_damping(omega, config.damping)
     damper_shapes = np.zeros((len(omega), 0))
     coefficients: list[float] = []
-    if config.structure.kind not in TUBES:
+    if config.structure.kind in TUBES:
+        damping = damping + structure.viscous_damping(omega, shapes)
+    else:
         diagonal, damper_shapes, added = split_damping(shapes.T @ structure.damping @ shapes)
         # Measured modes bring their damping with them.
         damping = diagonal + (0.0 if config.structure.kind == "identified" else damping)
