@@ -91,7 +91,7 @@ class GeneralSection(Section):
     )
     outer_fibres_m: Annotated[tuple[Diameter_m, ...], Two_axes] = Field(
         description="Distances of the outermost fibres from the centroid along the first and the"
-        " second axis. Stresses use them.",
+        " second axis. Stresses are those at the corners of the rectangle that they span.",
         examples=[[0.005, 0.020]],
     )
     first_axis: Direction | None = FIRST_AXIS_FIELD

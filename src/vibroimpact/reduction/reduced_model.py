@@ -323,8 +323,28 @@ def _stress_fields(
     for name, place in places.items():
         if all(abs(place - other) > SAME_PLACE_M for other in sections.values()):
             sections[name] = place
-    rows = np.array([structure.stress_rows(place) for place in sections.values()])
+    rows = {}
+    for name, place in sections.items():
+        rows |= _outer_fibre_rows(structure, name, place)
     return {
-        "section_names": tuple(sections),
-        "stress_shapes": np.einsum("sdn,nm->msd", rows, shapes),
+        "section_names": tuple(rows),
+        "stress_shapes": np.einsum("sdn,nm->msd", np.array(list(rows.values())), shapes),
+    }
+
+
+def _outer_fibre_rows(structure: TubeStructure, name: str, place: float) -> dict[str, np.ndarray]:
+    """Return {name: (2, dof)} of the stresses in Pa at an arc length in m whose root of the sum of
+    squares is that of the outermost fibre.
+
+    A round section has one entry, the two bending stresses: its worst fibre turns with the bending
+    moment. Any other has two, name_corner_1 and name_corner_2, where the two bending stresses add
+    up and where they subtract. At the opposite corners they are the same with the other sign.
+    """
+    rows = structure.stress_rows(place)
+    if structure.first_axis is None:
+        return {name: rows}
+    nothing = np.zeros(structure.dofs)
+    return {
+        f"{name}_corner_1": np.array([rows[0] + rows[1], nothing]),
+        f"{name}_corner_2": np.array([rows[0] - rows[1], nothing]),
     }
