@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 
 from vibroimpact.materials.fluids import fluid_properties
 
-from .material import given_or_named, named_temperature
+from .material import given_or_named, named_or_given, named_temperature
 from .quantities import (
     By_kind,
     Diameter_m,
@@ -95,6 +95,7 @@ class AddedMassCoefficient(Section):
 class FluidInside(Section):
     """A fluid that fills the tube and moves with it in all directions."""
 
+    model_config = named_or_given("density_kg_per_m3")
     kind: Literal["inside"] = Field(description="This kind of fluid.", examples=["inside"])
     name: Fluid_name | None = Field(None, description=NAME, examples=["water"])
     temperature_C: Temperature_C | None = Field(

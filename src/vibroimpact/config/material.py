@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import ConfigDict, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
 from vibroimpact.materials.solids import solid_properties
@@ -26,6 +26,12 @@ Metal = Literal[
 ]
 ROOM_TEMPERATURE_C = 20.0
 OR_NAMED = "Null for that of the named metal."
+
+
+def named_or_given(*keys: str) -> ConfigDict:
+    """Return the setting that states in the JSON schema: a name, or all of some keys."""
+    named = {"required": ["name"], "properties": {"name": {"type": "string"}}}
+    return ConfigDict(json_schema_extra={"anyOf": [named, {"required": list(keys)}]})
 
 
 def named_temperature(value: Any, info: ValidationInfo, properties: Any) -> Any:
@@ -64,6 +70,7 @@ class Material(Section):
     name replace those of the metal.
     """
 
+    model_config = named_or_given("young_modulus_Pa", "poisson_ratio", "density_kg_per_m3")
     name: Metal | None = Field(
         None, description="Name of a metal; null for numbers.", examples=["inconel_600"]
     )
