@@ -358,11 +358,10 @@ def _support_section(sheet, axes, config, gap):
     axes.add_patch(Circle((0, 0), wall * 1e3, facecolor="white", edgecolor="none"))
     axes.add_patch(Circle((0, 0), radius * 1e3, facecolor=PALE, edgecolor="none"))
     axes.add_patch(Circle((0, 0), inner * 1e3, facecolor="white", edgecolor="none"))
-    for curve, size, colour in (
-        ("obstacle", wall, RED),
-        ("tube, outside", radius, BLACK),
-        ("tube, inside", inner, BLACK),
-    ):
+    curves = [("obstacle", wall, RED), ("tube, outside", radius, BLACK)]
+    if inner > 0.0:
+        curves.append(("tube, inside", inner, BLACK))
+    for curve, size, colour in curves:
         sheet.line(
             axes,
             ("section_e1_m", size * np.cos(turn)),
