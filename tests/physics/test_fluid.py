@@ -9,6 +9,8 @@ from scipy.sparse.linalg import spsolve
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.effects.fluid_added_mass_damping import EFFECT
+from vibroimpact.excitation.force_vectors import force_vector
 from vibroimpact.materials.fluids import fluid_properties
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.fluid import (
@@ -218,9 +220,19 @@ def test_a_shaken_vessel_carries_a_tube_as_heavy_as_water():
         section={"kind": "round", "diameter_m": DIAMETER},
         material={"young_modulus_Pa": 2.0e9, "poisson_ratio": 0.3, "density_kg_per_m3": WATER},
     )
-    structure = build_structure(neutral)
-    sideways = structure.inertia[0] - structure.carried_inertia[0]
-    assert np.abs(sideways).max() < 1e-6 * np.abs(structure.inertia[0]).max()
+    structure, rows = build_structure(neutral), None
+    driven = {
+        obstacles: force_vector(
+            structure,
+            rows,
+            StageSettings(
+                {"kind": "base_motion", "direction": [1.0, 0.0, 0.0], "obstacles": obstacles}
+            ),
+        )
+        for obstacles in ("moving", "fixed")
+    }
+    assert driven["fixed"].sum() < 0.0
+    assert np.abs(driven["moving"]).max() < 1e-6 * np.abs(driven["fixed"]).max()
 
 
 def test_a_blade_in_water_takes_two_coefficients():
@@ -244,6 +256,21 @@ def test_named_water_is_that_of_its_temperature():
     still = study(IN_WATER | {"viscosity_Pa_s": 0.0})
     model = build_model(still)
     assert model.damping == pytest.approx(2.0 * 0.003 * model.omega, rel=1e-12)
+
+
+@pytest.mark.parametrize("fluids", [(), (IN_WATER | {"viscosity_Pa_s": 0.0},)])
+def test_the_effect_of_a_fluid_adds_to_what_is_there(fluids):
+    section = {"kind": "round", "diameter_m": DIAMETER}
+    values = study(*fluids, section=section).model_dump()
+    changed = EFFECT.apply(values, {"mass": 0.2, "damping": 3.0}, "tube")
+    model = build_model(check_config(changed, "changed.yaml"))
+    displaced = np.pi * DIAMETER**2 / 4.0
+    total = (8330.0 + (WATER if fluids else 0.0)) * displaced + 0.2
+    second_moment = np.pi / 64.0 * DIAMETER**4
+    exact = (np.pi / LENGTH) ** 2 * np.sqrt(2.02e11 * second_moment / total)
+    assert model.omega[0] == pytest.approx(exact, rel=2e-5)
+    # 2 zeta omega = c / m, beside the modal damping
+    assert model.damping[0] - 2.0 * 0.003 * model.omega[0] == pytest.approx(3.0 / total, rel=1e-6)
 
 
 def test_a_static_load_does_not_feel_the_fluid():

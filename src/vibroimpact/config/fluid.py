@@ -122,7 +122,8 @@ class FluidInside(Section):
 
 class FluidOutside(FluidInside):
     """A still fluid round the tube. It adds mass to motion across the tube, and damps each mode by
-    its viscosity as at the frequency of that mode without contact.
+    its viscosity as at the frequency of that mode without contact. Under base motion it moves with
+    the obstacles.
     """
 
     kind: Literal["outside"] = Field(  # type: ignore[assignment]
