@@ -78,7 +78,7 @@ def test_a_rectangular_cantilever_has_two_sets_of_frequencies(along_y):
         assert found[:count] == pytest.approx(exact, rel=1e-5)
 
 
-def test_the_default_first_axis_is_the_first_transverse_direction():
+def test_the_default_first_axis_is_a_transverse_direction():
     # Along x the transverse directions are y and z: thin along y.
     free, _ = deflection(build_structure(bar()), 0.8, np.array([0.0, 1.0, 0.0]))
     assert free[1] == pytest.approx(0.8**3 / (3.0 * 2.0e11 * 0.040 * 0.010**3 / 12.0), rel=1e-8)

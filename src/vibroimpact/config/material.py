@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator
+from pydantic.config import JsonDict
 from pydantic_core import PydanticCustomError
 
 from vibroimpact.materials.solids import solid_properties
@@ -30,7 +31,7 @@ OR_NAMED = "Null for that of the named metal."
 
 def named_or_given(*keys: str) -> ConfigDict:
     """Return the setting that states in the JSON schema: a name, or all of some keys."""
-    named = {"required": ["name"], "properties": {"name": {"type": "string"}}}
+    named: JsonDict = {"required": ["name"], "properties": {"name": {"type": "string"}}}
     return ConfigDict(json_schema_extra={"anyOf": [named, {"required": list(keys)}]})
 
 

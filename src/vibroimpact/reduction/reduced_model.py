@@ -323,7 +323,7 @@ def _stress_fields(
     for name, place in places.items():
         if all(abs(place - other) > SAME_PLACE_M for other in sections.values()):
             sections[name] = place
-    rows = {}
+    rows: dict[str, np.ndarray] = {}
     for name, place in sections.items():
         rows |= _outer_fibre_rows(structure, name, place)
     return {
