@@ -30,6 +30,7 @@ PACKAGES = (
     "random_streams",
     "records",
     "verdict",
+    "materials",
     "geometry",
     "config",
     "contact",

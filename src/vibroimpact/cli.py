@@ -178,7 +178,7 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
         return None, problems
     aim = "with identification" if config.identification is not None else "without identification"
     return (
-        f"study '{config.study}': structure of kind {config.structure.kind},"
+        f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"
         f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
         f" excitation of kind {config.excitation.kind},"
         f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}",
@@ -196,6 +196,28 @@ def _load_of_spectrum(config) -> str:
     velocity = getattr(force.spectrum, "velocity_m_per_s", None)
     source = "its table" if velocity is None else f"{velocity:g} m/s"
     return f"; {source} is a load_rms_N of {load_of_spectrum(config.structure, force):.4g}"
+
+
+def _named(config) -> str:
+    """Return " of zircaloy_4 at 20 °C (...)" with the properties of what is named, else ""."""
+    structure = config.structure
+    material = getattr(structure, "material", None)
+    words = ""
+    if material is not None and material.name is not None:
+        words = (
+            f" of {material.name} at {material.temperature_C:g} °C"
+            f" (E {material.young_modulus_Pa / 1e9:.4g} GPa, nu {material.poisson_ratio:.3g},"
+            f" {material.density_kg_per_m3:g} kg/m3)"
+        )
+    for fluid in getattr(structure, "fluid", ()):
+        if fluid.name is not None:
+            viscosity = getattr(fluid, "viscosity_Pa_s", None)
+            words += (
+                f" with {fluid.name} at {fluid.temperature_C:g} °C {fluid.kind}"
+                f" ({fluid.density_kg_per_m3:.4g} kg/m3"
+                + (f", {viscosity:.4g} Pa s)" if viscosity else ")")
+            )
+    return words
 
 
 def _problems_of_files(config) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.structure.beam_elements import tube_beam
+from vibroimpact.structure.beam_elements import section_beam
 from vibroimpact.validation.reference.frequencies import (
     MATERIAL,
     ROOTS,
@@ -34,7 +34,7 @@ def pinned_timoshenko(order, length):
     """Return Hz of mode `order` of a simply supported Timoshenko beam with rotary inertia, the
     lower root of the exact quadratic.
     """
-    beam = tube_beam(TUBE, INCONEL, "timoshenko")
+    beam = section_beam(TUBE, INCONEL, "timoshenko").planes[0]
     wave = (order * np.pi / length) ** 2
     coupling = beam.mass_per_length + wave * (
         beam.rotary_inertia + beam.mass_per_length * beam.bending_stiffness / beam.shear_stiffness
@@ -60,7 +60,7 @@ def measured_rates(error_at, sizes):
 
 @pytest.mark.parametrize("ends", ROOTS)
 def test_euler_bernoulli_beam_converges_with_order_four(ends):
-    beam = tube_beam(TUBE, INCONEL, "euler_bernoulli")
+    beam = section_beam(TUBE, INCONEL, "euler_bernoulli").planes[0]
     exact = (
         np.array(ROOTS[ends][:3]) ** 2
         * np.sqrt(beam.bending_stiffness / beam.mass_per_length)

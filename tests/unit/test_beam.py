@@ -12,7 +12,7 @@ from vibroimpact.structure.beam_elements import (
     bending_stiffness,
     element_matrices,
     interpolation,
-    tube_beam,
+    section_beam,
 )
 
 SECTION = SimpleNamespace(
@@ -22,10 +22,24 @@ MATERIAL = SimpleNamespace(young_modulus_Pa=2.02e11, poisson_ratio=0.3, density_
 LENGTH = 0.031  # short: shear parameter of order one
 
 
-@pytest.fixture(params=["timoshenko", "euler_bernoulli"])
+BAR = SimpleNamespace(
+    kind="rectangle", sides_m=(0.012, 0.030), first_axis=None, shear_coefficient=None
+)
+COWPER_BAR = 10.0 * 1.3 / (12.0 + 11.0 * 0.3)
+
+
+@pytest.fixture(
+    params=[
+        (section, theory)
+        for section in (SECTION, BAR)
+        for theory in ("timoshenko", "euler_bernoulli")
+    ],
+    ids=["tube-timoshenko", "tube-euler", "bar-timoshenko", "bar-euler"],
+)
 def beam(request):
-    """Return the stand-in tube's beam, by both theories."""
-    return tube_beam(SECTION, MATERIAL, request.param)
+    """Return the beam of the stand-in tube and of a rectangular bar, by both theories."""
+    section, theory = request.param
+    return section_beam(section, MATERIAL, theory)
 
 
 def tilted_axes():
@@ -36,20 +50,42 @@ def tilted_axes():
 
 
 def test_tube_constants_are_those_of_the_annulus():
-    beam = tube_beam(SECTION, MATERIAL, "timoshenko")
+    beam = section_beam(SECTION, MATERIAL, "timoshenko")
+    assert beam.planes[0] == beam.planes[1]
+    plane = beam.planes[0]
     assert beam.mass_per_length == pytest.approx(
         8330.0 * 8.358682e-5, rel=1e-6
     )  # pi (0.02222 - 0.00127) 0.00127 m²
-    assert beam.bending_stiffness == pytest.approx(
+    assert plane.bending_stiffness == pytest.approx(
         2.02e11 * np.pi / 64.0 * (0.02222**4 - 0.01968**4), rel=1e-12
     )
-    assert beam.shear_stiffness == pytest.approx(0.53 * 2.02e11 / 2.6 * 8.358682e-5, rel=1e-6)
-    assert beam.fibre_stiffness == pytest.approx(2.02e11 * 0.01111, rel=1e-12)
+    assert plane.shear_stiffness == pytest.approx(0.53 * 2.02e11 / 2.6 * 8.358682e-5, rel=1e-6)
+    assert plane.fibre_stiffness == pytest.approx(2.02e11 * 0.01111, rel=1e-12)
+
+
+def test_bar_constants_are_those_of_the_rectangle():
+    beam = section_beam(BAR, MATERIAL, "timoshenko")
+    area = 0.012 * 0.030
+    assert beam.mass_per_length == pytest.approx(8330.0 * area, rel=1e-12)
+    # b h³ / 12, with h the side along the deflection
+    assert [plane.bending_stiffness for plane in beam.planes] == pytest.approx(
+        [2.02e11 * 0.030 * 0.012**3 / 12.0, 2.02e11 * 0.012 * 0.030**3 / 12.0], rel=1e-12
+    )
+    assert [plane.fibre_stiffness for plane in beam.planes] == pytest.approx(
+        [2.02e11 * 0.006, 2.02e11 * 0.015], rel=1e-12
+    )
+    assert [plane.shear_stiffness for plane in beam.planes] == pytest.approx(
+        [COWPER_BAR * 2.02e11 / 2.6 * area] * 2, rel=1e-12
+    )
+    # Timoshenko and Goodier, art. 109: k1 a b³ with k1 = 0.249 for a = 2.5 b
+    assert beam.torsion_stiffness == pytest.approx(
+        2.02e11 / 2.6 * 0.249 * 0.030 * 0.012**3, rel=2e-3
+    )
 
 
 def test_bending_mass_is_friedman_and_kosmatka_closed_form():
-    beam = tube_beam(SECTION, MATERIAL, "timoshenko")
-    phi, length = beam.shear_parameter(LENGTH), LENGTH
+    plane = section_beam(SECTION, MATERIAL, "timoshenko").planes[0]
+    phi, length = plane.shear_parameter(LENGTH), LENGTH
     a, b = 70 * phi**2 + 147 * phi + 78, (35 * phi**2 + 77 * phi + 44) * length / 4
     c, d = 35 * phi**2 + 63 * phi + 27, -(35 * phi**2 + 63 * phi + 26) * length / 4
     e, f = (7 * phi**2 + 14 * phi + 8) * length**2 / 4, -(7 * phi**2 + 14 * phi + 6) * length**2 / 4
@@ -58,14 +94,14 @@ def test_bending_mass_is_friedman_and_kosmatka_closed_form():
     i, j = (10 * phi**2 + 5 * phi + 4) * length**2, (5 * phi**2 - 5 * phi - 1) * length**2
     rotation = np.array([[g, h, -g, h], [h, i, -h, j], [-g, -h, g, -h], [h, j, -h, i]])
     expected = (
-        beam.mass_per_length * length / 210.0 * translation
-        + beam.rotary_inertia / (30.0 * length) * rotation
+        plane.mass_per_length * length / 210.0 * translation
+        + plane.rotary_inertia / (30.0 * length) * rotation
     ) / (1 + phi) ** 2
-    assert np.allclose(bending_mass(beam, length), expected, rtol=1e-12, atol=1e-18)
+    assert np.allclose(bending_mass(plane, length), expected, rtol=1e-12, atol=1e-18)
 
 
 def test_euler_bernoulli_mass_matrix_is_the_textbook_one():
-    beam = tube_beam(SECTION, MATERIAL, "euler_bernoulli")
+    plane = section_beam(SECTION, MATERIAL, "euler_bernoulli").planes[0]
     length = LENGTH
     textbook = np.array(
         [
@@ -76,32 +112,34 @@ def test_euler_bernoulli_mass_matrix_is_the_textbook_one():
         ]
     )
     assert np.allclose(
-        bending_mass(beam, length),
-        beam.mass_per_length * length / 420.0 * textbook,
+        bending_mass(plane, length),
+        plane.mass_per_length * length / 420.0 * textbook,
         rtol=1e-12,
         atol=1e-18,
     )
 
 
 def test_stiffness_is_the_energy_of_the_shape_functions(beam):
+    plane = beam.planes[1]
     points, weights = np.polynomial.legendre.leggauss(5)
     xi, weights = 0.5 * (points + 1.0), 0.5 * weights * LENGTH
-    phi, step = beam.shear_parameter(LENGTH), 1.0e-6
+    phi, step = plane.shear_parameter(LENGTH), 1.0e-6
     _, rotation, curvature = bending_shapes(xi, LENGTH, phi)
     slope = (
         bending_shapes(xi + step, LENGTH, phi)[0] - bending_shapes(xi - step, LENGTH, phi)[0]
     ) / (2.0 * step * LENGTH)
-    energy = beam.bending_stiffness * (curvature * weights) @ curvature.T
-    if np.isfinite(beam.shear_stiffness):
-        energy += beam.shear_stiffness * ((slope - rotation) * weights) @ (slope - rotation).T
+    energy = plane.bending_stiffness * (curvature * weights) @ curvature.T
+    if np.isfinite(plane.shear_stiffness):
+        energy += plane.shear_stiffness * ((slope - rotation) * weights) @ (slope - rotation).T
     else:
         assert np.allclose(slope, rotation, atol=1e-7)
-    stiffness = bending_stiffness(beam, LENGTH)
+    stiffness = bending_stiffness(plane, LENGTH)
     assert np.allclose(energy, stiffness, rtol=1e-6, atol=1e-6 * np.abs(stiffness).min())
 
 
 def test_curvature_is_the_derivative_of_rotation(beam):
-    xi, step, phi = np.linspace(0.1, 0.9, 5), 1.0e-6, beam.shear_parameter(LENGTH)
+    plane = beam.planes[1]
+    xi, step, phi = np.linspace(0.1, 0.9, 5), 1.0e-6, plane.shear_parameter(LENGTH)
     difference = (
         bending_shapes(xi + step, LENGTH, phi)[1] - bending_shapes(xi - step, LENGTH, phi)[1]
     ) / (2.0 * step * LENGTH)
@@ -124,19 +162,22 @@ def test_rigid_motion_costs_no_energy_and_has_the_element_mass(beam):
     )
     # about the first node, across the tangent: m L³/3 of the line and rho I L of the section; along
     # it the polar inertia
-    across = beam.mass_per_length * LENGTH**3 / 3.0 + beam.rotary_inertia * LENGTH
+    about_second, about_first = (
+        beam.mass_per_length * LENGTH**3 / 3.0 + plane.rotary_inertia * LENGTH
+        for plane in beam.planes
+    )
     turning = axes @ inertia[3:, 3:] @ axes.T
     assert np.allclose(
         turning,
-        np.diag([beam.torsion_inertia * LENGTH, across, across]),
+        np.diag([beam.torsion_inertia * LENGTH, about_first, about_second]),
         rtol=0,
-        atol=1e-12 * across,
+        atol=1e-12 * about_first,
     )
 
 
 @pytest.mark.parametrize("across", [1, 2])
 def test_one_element_gives_the_exact_cantilever_everywhere(beam, across):
-    axes, load = tilted_axes(), 3.0
+    axes, load, plane = tilted_axes(), 3.0, beam.planes[across - 1]
     stiffness, _ = element_matrices(beam, LENGTH, axes)
     force = np.zeros(12)
     force[6:9] = load * axes[across]
@@ -146,11 +187,13 @@ def test_one_element_gives_the_exact_cantilever_everywhere(beam, across):
         displacement, gradient = (rows @ dofs for rows in interpolation(beam, LENGTH, axes, xi))
         x = xi * LENGTH
         exact = load * (
-            x**2 * (3.0 * LENGTH - x) / (6.0 * beam.bending_stiffness) + x / beam.shear_stiffness
+            x**2 * (3.0 * LENGTH - x) / (6.0 * plane.bending_stiffness) + x / plane.shear_stiffness
         )
-        tip = load * LENGTH**3 / beam.bending_stiffness
+        tip = load * LENGTH**3 / plane.bending_stiffness
         assert np.allclose(displacement, exact * axes[across], rtol=0, atol=1e-10 * tip)
-        curvature = load * (LENGTH - x) / beam.bending_stiffness  # turns about tangent x transverse
+        curvature = (
+            load * (LENGTH - x) / plane.bending_stiffness
+        )  # turns about tangent x transverse
         assert np.allclose(
             gradient,
             curvature * np.cross(axes[0], axes[across]),
@@ -167,7 +210,7 @@ def test_axial_force_and_torque_give_bar_and_rod_flexibility(beam):
 
 
 def test_axial_and_torsion_mass_are_consistent():
-    beam = tube_beam(SECTION, MATERIAL, "timoshenko")
+    beam = section_beam(SECTION, MATERIAL, "timoshenko")
     _, mass = element_matrices(beam, LENGTH, np.eye(3))
     for dof, inertia in ((0, beam.mass_per_length), (3, beam.torsion_inertia)):
         expected = inertia * LENGTH * np.array([[1.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 3.0]])
@@ -177,10 +220,10 @@ def test_axial_and_torsion_mass_are_consistent():
 
 
 def test_very_stiff_shear_is_euler_bernoulli():
-    slender = replace(
-        tube_beam(SECTION, MATERIAL, "timoshenko"), shear_stiffness=1.0e30, rotary_inertia=0.0
-    )
-    thin = tube_beam(SECTION, MATERIAL, "euler_bernoulli")
+    thick = section_beam(BAR, MATERIAL, "timoshenko")
+    planes = [replace(plane, shear_stiffness=1.0e30, rotary_inertia=0.0) for plane in thick.planes]
+    slender = replace(thick, planes=tuple(planes))
+    thin = section_beam(BAR, MATERIAL, "euler_bernoulli")
     for one, other in zip(
         element_matrices(slender, LENGTH, tilted_axes()),
         element_matrices(thin, LENGTH, tilted_axes()),
@@ -191,10 +234,10 @@ def test_very_stiff_shear_is_euler_bernoulli():
 
 def test_impossible_tubes_are_named():
     with pytest.raises(ValueError, match="0.02 m must lie between 0 and the outer radius"):
-        tube_beam(
+        section_beam(
             SimpleNamespace(outer_diameter_m=0.02222, wall_thickness_m=0.02, shear_coefficient=0.5),
             MATERIAL,
             "timoshenko",
         )
     with pytest.raises(ValueError, match="theory 'rayleigh' is unknown"):
-        tube_beam(SECTION, MATERIAL, "rayleigh")
+        section_beam(SECTION, MATERIAL, "rayleigh")

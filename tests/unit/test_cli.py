@@ -38,6 +38,23 @@ def test_a_valid_study_is_described_in_one_line(run):
     )  # 24 loads x 3 gaps x 4 seeds
 
 
+def test_properties_of_what_is_named_are_shown(run, tmp_path):
+    data = yaml.safe_load(STUDY.read_text())
+    data["structure"]["material"] = {"name": "stainless_steel_316", "temperature_C": 300}
+    data["structure"]["fluid"] = [
+        {"kind": "inside", "density_kg_per_m3": 700.0},
+        {"kind": "outside", "name": "water", "temperature_C": 20.0},
+    ]
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(data))
+    code, output, errors = run("check", path)
+    assert (code, errors) == (0, "")
+    assert (
+        "kind u_tube of stainless_steel_316 at 300 °C (E 176 GPa, nu 0.3, 8000 kg/m3) with water"
+        " at 20 °C outside (998.2 kg/m3, 0.001002 Pa s), 2 supports" in output
+    )
+
+
 def test_all_problems_of_a_study_are_printed(run, tmp_path):
     data = yaml.safe_load(STUDY.read_text())
     data["spectra"]["overlp"] = 0.5

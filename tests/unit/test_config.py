@@ -21,6 +21,15 @@ OTHER_KINDS = {
         "theory": "euler_bernoulli",
         "section": {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001, "shear_coefficient": 0.5},
         "material": {"young_modulus_Pa": 2.1e11, "poisson_ratio": 0.3, "density_kg_per_m3": 7800.0},
+        "fluid": [
+            {"kind": "inside", "name": "water", "temperature_C": 280.0, "to_m": [0.5, 0.0, 0.0]},
+            {
+                "kind": "outside",
+                "density_kg_per_m3": 740.0,
+                "viscosity_Pa_s": 9.0e-5,
+                "confinement": {"kind": "bundle", "pitch_m": 0.03, "pattern": "square"},
+            },
+        ],
         "start_m": [0.0, 0.0, 0.0],
         "start_direction": [1.0, 0.0, 0.0],
         "segments": [
@@ -308,6 +317,121 @@ def test_a_mistake_is_named_with_its_place_and_remedy(study, place, value, parts
     found = problems(study)
     assert all(line.startswith("config/mine.yaml: ") for line in found)
     assert any(all(part in line for part in parts) for line in found), "\n".join(found)
+
+
+SECTIONS = {
+    "round": {"kind": "round", "diameter_m": 0.02},
+    "rectangle": {"kind": "rectangle", "sides_m": [0.01, 0.03], "first_axis": [0.0, 1.0, 1.0]},
+    "general": {
+        "kind": "general",
+        "area_m2": 3.0e-4,
+        "second_moments_m4": [2.5e-9, 2.2e-8],
+        "torsion_constant_m4": 7.9e-9,
+        "shear_coefficients": [0.8, 0.8],
+        "outer_fibres_m": [0.005, 0.015],
+        "enclosed_area_m2": 4.0e-4,
+    },
+}
+WATER = {"kind": "outside", "name": "water"}
+
+
+@pytest.mark.parametrize("kind", SECTIONS)
+def test_sections_of_every_kind_are_accepted(other_kinds, kind):
+    put(other_kinds, "structure.section", SECTIONS[kind])
+    put(other_kinds, "structure.fluid", [])
+    section = check_config(other_kinds, "mine").structure.section
+    assert section.kind == kind
+
+
+STRUCTURE_REFUSALS = [
+    # changes of the structure, what the sentence must hold
+    ({"section": {"kind": "square"}}, ["section.kind = 'square'", "'tube', 'round', 'rectangle'"]),
+    (
+        {"section": {"kind": "rectangle", "sides_m": [0.01]}},
+        ["section.sides_m = [0.01] has 1 values", "first and second axis"],
+    ),
+    (
+        {"section": SECTIONS["rectangle"] | {"first_axis": [2.0, 0.0, 0.0]}},
+        ["section.first_axis", "is along the tube at its start, [1.0, 0.0, 0.0]", "across it"],
+    ),
+    (
+        {"section": SECTIONS["general"] | {"enclosed_area_m2": 1.0e-4}},
+        ["enclosed_area_m2 = 0.0001 is below the area of the material, 0.0003 m2"],
+    ),
+    (
+        {"section": SECTIONS["rectangle"], "fluid": [WATER]},
+        ["fluid[0].confinement.kind = 'unconfined' is for round sections", "coefficient"],
+    ),
+    (
+        {"section": SECTIONS["round"], "fluid": [{"kind": "inside", "name": "water"}]},
+        ["fluid[0].kind = 'inside' needs a hollow section", "kind round is solid"],
+    ),
+    (
+        {"fluid": [WATER | {"confinement": {"kind": "bundle", "pitch_m": 0.02}}]},
+        ["confinement.pitch_m = 0.02 must be above the diameter of the tube, 0.02 m"],
+    ),
+    (
+        {"fluid": [WATER | {"temperature_C": 400.0}]},
+        ["fluid[0].temperature_C = 400", "water is known from 0.01 to 350 °C"],
+    ),
+    (
+        {"fluid": [{"kind": "outside", "density_kg_per_m3": 1000.0}]},
+        ["fluid[0].viscosity_Pa_s is missing: give it, or a name"],
+    ),
+    (
+        {"fluid": [WATER | {"to_m": [0.5, 0.0, 0.0]}, WATER | {"from_m": [0.4, 0.0, 0.0]}]},
+        ["fluid[1] = 'outside' overlaps another fluid outside"],
+    ),
+    ({"fluid": [WATER | {"to_m": [0.5, 0.1, 0.0]}]}, ["fluid[0].to_m", "0.1000 m off the tube"]),
+    ({"fluid": [WATER | {"to_m": [0.0, 0.0, 0.0]}]}, ["fluid[0].to_m", "where the fluid begins"]),
+    (
+        {
+            "fluid": [
+                WATER
+                | {
+                    "viscosity_Pa_s": 1e-3,
+                    "confinement": {"kind": "coefficient", "added_mass_coefficient": 2.0},
+                }
+            ]
+        },
+        ["viscosity_Pa_s = 0.001 has no effect with an added mass coefficient"],
+    ),
+    (
+        {"material": {"name": "inconel_600", "temperature_C": 700.0}},
+        ["temperature_C = 700", "inconel_600 is known from 20 to 500 °C", "young_modulus_Pa"],
+    ),
+    ({"material": {"name": "inconel"}}, ["material.name = 'inconel' must be 'inconel_600'"]),
+    (
+        {"material": {"young_modulus_Pa": 2.0e11, "poisson_ratio": 0.3}},
+        ["material.density_kg_per_m3 is missing: give it, or a name"],
+    ),
+    (
+        {"material": OTHER_KINDS["structure"]["material"] | {"temperature_C": 20.0}},
+        ["material.temperature_C = 20", "no effect without a name"],
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"), STRUCTURE_REFUSALS, ids=[parts[0] for _, parts in STRUCTURE_REFUSALS]
+)
+def test_mistakes_of_section_material_and_fluid(other_kinds, changes, parts):
+    put(other_kinds, "structure.fluid", [])
+    for key, value in changes.items():
+        put(other_kinds, f"structure.{key}", value)
+    found = problems(other_kinds)
+    assert any(all(part in line for part in parts) for line in found), "\n".join(found)
+
+
+def test_a_named_material_is_filled_in_and_can_be_overridden(study):
+    put(study, "structure.material", {"name": "inconel_600", "density_kg_per_m3": 8330.0})
+    material = check_config(study, "mine").structure.material
+    assert material.temperature_C == 20.0
+    assert material.young_modulus_Pa == pytest.approx(213.4e9, rel=1e-3)
+    assert (material.poisson_ratio, material.density_kg_per_m3) == (0.3, 8330.0)
+    # The configuration as it runs holds the numbers, and is a valid configuration again.
+    put(study, "structure.material", material.model_dump())
+    assert check_config(study, "mine").structure.material == material
 
 
 def test_a_missing_key_and_a_missing_kind_are_named(study):

@@ -139,6 +139,22 @@ def test_the_json_schema_refuses_what_the_check_refuses(section, key, value):
         jsonschema.Draft202012Validator(json_schema()).validate(data)
 
 
+@pytest.mark.parametrize(
+    ("material", "valid"),
+    [
+        ({"name": "zircaloy_4"}, True),
+        ({"name": "zircaloy_4", "density_kg_per_m3": 6500.0}, True),
+        ({"name": None, "density_kg_per_m3": 6500.0}, False),
+        ({"young_modulus_Pa": 2e11, "poisson_ratio": 0.3, "density_kg_per_m3": 7800.0}, True),
+        ({"young_modulus_Pa": 2e11, "poisson_ratio": 0.3}, False),
+    ],
+)
+def test_the_json_schema_wants_a_name_or_all_numbers(material, valid):
+    data = yaml.safe_load((ROOT / "config" / "study.yaml").read_text())
+    data["structure"]["material"] = material
+    assert jsonschema.Draft202012Validator(json_schema()).is_valid(data) == valid
+
+
 def test_the_json_schema_states_units():
     schema = json_schema()
     jsonschema.Draft202012Validator.check_schema(schema)

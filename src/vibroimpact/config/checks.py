@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from . import geometry_checks, turbulence_checks
+from . import geometry_checks, section_checks, turbulence_checks
 from . import name_checks as names
 from .excitation import Excitation
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
@@ -302,7 +302,10 @@ def _whole_samples(record: RecordKeys, integration: Integration) -> Problems:
 
 
 TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
-    geometry_checks.wall,
+    section_checks.wall,
+    section_checks.axes_of_the_section,
+    section_checks.enclosed_area,
+    section_checks.fluids,
     geometry_checks.path_directions,
     geometry_checks.points_on_the_tube,
     geometry_checks.supports_on_the_tube,

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M, Centreline, build_centreline
+from vibroimpact.geometry.sections import outer_width
 
 from .schema import Grid
 from .structure import Path, Structure, UTube
@@ -20,17 +21,6 @@ Problems = Iterator[tuple[str, Any, str]]
 Tube = UTube | Path
 
 TOLERANCE = 1e-9
-
-
-def wall(structure: Tube) -> Problems:
-    """Yield a problem unless the wall is thinner than the radius."""
-    section = structure.section
-    if section.wall_thickness_m >= section.outer_diameter_m / 2:
-        yield (
-            "structure.section.wall_thickness_m",
-            section.wall_thickness_m,
-            f"must be below half the outer diameter {section.outer_diameter_m}: both in metres?",
-        )
 
 
 def path_directions(structure: Tube) -> Problems:
@@ -63,12 +53,12 @@ def path_directions(structure: Tube) -> Problems:
         tangent = math.cos(angle) * tangent + math.sin(angle) * toward / np.linalg.norm(toward)
 
 
-def _centreline(structure: Tube) -> Centreline | None:
+def centreline_of(structure: Tube) -> Centreline | None:
     """Return the centreline, or None where its directions are a problem already reported."""
     return None if any(path_directions(structure)) else build_centreline(structure)
 
 
-def _off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) -> Problems:
+def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) -> Problems:
     """Yield a problem when `position` (3,) m is farther from the centreline than the tolerance."""
     arc_length = min(
         (segment.nearest(np.array(position)) for segment in centreline.segments),
@@ -89,16 +79,16 @@ def _off_the_tube(centreline: Centreline, place: str, position: Sequence[float])
 
 def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -> Problems:
     """Yield a problem unless named points are on the tube."""
-    centreline = _centreline(structure)
+    centreline = centreline_of(structure)
     if centreline is None:
         return
     for name, position in points.items():
-        yield from _off_the_tube(centreline, f"points.{name}", position)
+        yield from off_the_tube(centreline, f"points.{name}", position)
 
 
 def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless supports are on one segment of the tube each and do not overlap."""
-    centreline = _centreline(structure)
+    centreline = centreline_of(structure)
     if centreline is None:
         return
     taken: list[tuple[str, float, float]] = []
@@ -110,7 +100,7 @@ def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Proble
                 "is on a tube: give at_m and height_m, and no point",
             )
             continue
-        off = list(_off_the_tube(centreline, f"supports[{index}].at_m", support.at_m))
+        off = list(off_the_tube(centreline, f"supports[{index}].at_m", support.at_m))
         yield from off
         if off:
             continue
@@ -160,7 +150,7 @@ def support_lists(supports: Sequence[Support]) -> Problems:
 
 def gaps(structure: Tube, grid: Grid) -> Problems:
     """Yield a problem unless gaps are clearances."""
-    radius = structure.section.outer_diameter_m / 2
+    radius = outer_width(structure.section) / 2
     for index, gap in enumerate(grid.gap_m):
         if gap > radius:
             yield (
@@ -175,7 +165,7 @@ def gaps(structure: Tube, grid: Grid) -> Problems:
 
 def offsets(structure: Tube, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless offsets are smaller than the tube."""
-    radius = structure.section.outer_diameter_m / 2
+    radius = outer_width(structure.section) / 2
     for index, support in enumerate(supports):
         largest = float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
         if largest > radius:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any, get_args
 
-from .quantities import Section
+from .quantities import NOT_GIVEN, Section
 from .schema import Config
 
 UNKNOWN = "extra_forbidden"
@@ -53,6 +53,8 @@ def sentence(error: Mapping[str, Any], data: Any) -> str:
         return f"unknown key '{error['loc'][-1]}'{f' in {parent}' if parent else ''}: {remedy}"
     if error["type"] == "missing":
         return f"{place} is missing: config/study.yaml shows it with its unit"
+    if error["type"] == NOT_GIVEN:
+        return f"{place} {error['msg']}"
     if error["type"] == "union_tag_not_found":
         return f"{place}.kind is missing: config/study.yaml shows the block with its kind"
     if error["type"] == "union_tag_invalid":

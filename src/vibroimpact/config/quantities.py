@@ -22,6 +22,8 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+NOT_GIVEN = "not_given"  # type of the error of a key that another key makes necessary
+
 
 class Section(BaseModel):
     """A block of keys. It is immutable, and a key that is not declared is an error."""
@@ -176,6 +178,15 @@ Shear_coefficient = Annotated[
     Range("the effective part of the section: 0.53 for a thin tube", above=0, at_most=1),
     Unit("1"),
 ]
+Area_m2 = Annotated[Number, Range("in m2? 100 mm2 is 1.0e-4", above=0, at_most=4)]
+Second_moment = Annotated[Number, Range("in m4? 1 cm4 is 1.0e-8", above=0, at_most=1)]
+Temperature_C = Annotated[Number, Range("in degrees Celsius", at_least=-273.15, at_most=3000)]
+Fluid_density = Annotated[
+    Number, Range("in kg/m3? 1 g/cm3 is 1000", at_least=0, at_most=2e4), Unit("kg/m³")
+]
+Viscosity = Annotated[
+    Number, Range("in Pa s? 1 mPa s is 1.0e-3, 0 for no damping", at_least=0, at_most=100)
+]
 Stiffness = Annotated[Number, Range("give the stiffness in N/m", above=0)]
 Rotation_stiffness = Annotated[Number, Range("give the stiffness in N m/rad", above=0)]
 Mass_kg = Annotated[Number, Range("give the mass in kg", above=0)]
@@ -219,6 +230,7 @@ Position = Annotated[Vector, Unit("m")]
 Pair = Annotated[
     tuple[Number, ...], Length("give two, along the support's transverse directions", 2)
 ]
+Two_axes = Length("give two, of the section's first and second axis", 2)
 Band_Hz = Annotated[
     tuple[Lowest_frequency_Hz, ...],
     Length("give two, the lower end and the upper end in Hz", 2),

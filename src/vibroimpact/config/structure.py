@@ -8,14 +8,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from .cross_section import Cross_section
+from .fluid import Fluids
+from .material import Material
 from .quantities import (
     Angle_deg,
     Axis,
     By_kind,
     Coefficient,
     Damping_ratio,
-    Density,
-    Diameter_m,
     Direction,
     Frequency_Hz,
     Length,
@@ -24,44 +25,14 @@ from .quantities import (
     Name,
     Not_empty,
     Number,
-    Poisson_ratio,
     Range,
     Rotation_stiffness,
     Section,
-    Shear_coefficient,
     Stiffness,
     Unit,
     Vector,
-    Wall_m,
     Whole,
-    Youngs_modulus_Pa,
 )
-
-
-class TubeSection(Section):
-    """The circular cross-section of the tube."""
-
-    outer_diameter_m: Diameter_m = Field(description="Outer diameter.", examples=[0.02222])
-    wall_thickness_m: Wall_m = Field(
-        description="Wall thickness, less than half the outer diameter.", examples=[0.00127]
-    )
-    shear_coefficient: Shear_coefficient = Field(
-        0.53,
-        description="Shear coefficient after Cowper (1966). Only the Timoshenko theory uses it.",
-        examples=[0.53],
-    )
-
-
-class Material(Section):
-    """The linear elastic material of the tube."""
-
-    young_modulus_Pa: Youngs_modulus_Pa = Field(description="Young's modulus.", examples=[2.02e11])
-    poisson_ratio: Poisson_ratio = Field(description="Poisson's ratio.", examples=[0.3])
-    density_kg_per_m3: Density = Field(
-        description="Mass of the tube per volume of its wall. The mass of a fluid inside or around"
-        " the tube can be included here.",
-        examples=[8330.0],
-    )
 
 
 class Mesh(Section):
@@ -116,6 +87,7 @@ class Springs(Section):
 
 
 Theory = Literal["timoshenko", "euler_bernoulli"]
+FLUID = "Still fluids inside and outside the tube."
 THEORY = "Beam theory: with shear deformation and rotary inertia (timoshenko) or without."
 
 
@@ -126,8 +98,9 @@ class UTube(Section):
 
     kind: Literal["u_tube"] = Field(description="This kind of structure.", examples=["u_tube"])
     theory: Theory = Field("timoshenko", description=THEORY, examples=["timoshenko"])
-    section: TubeSection = Field(description="Cross-section of the tube.")
+    section: Cross_section = Field(description="Cross-section of the tube.")
     material: Material = Field(description="Material of the tube.")
+    fluid: Fluids = Field((), description=FLUID)
     leg_length_m: Length_m = Field(
         description="Length of each leg, from its root at z = 0 to the bend.", examples=[0.70]
     )
@@ -167,8 +140,9 @@ class Path(Section):
 
     kind: Literal["path"] = Field(description="This kind of structure.", examples=["path"])
     theory: Theory = Field("timoshenko", description=THEORY, examples=["timoshenko"])
-    section: TubeSection = Field(description="Cross-section of the tube.")
+    section: Cross_section = Field(description="Cross-section of the tube.")
     material: Material = Field(description="Material of the tube.")
+    fluid: Fluids = Field((), description=FLUID)
     start_m: Vector = Field(description="Position of the start.", examples=[[0.0, 0.0, 0.0]])
     start_direction: Direction = Field(
         description="Direction of the tube at the start.", examples=[[1.0, 0.0, 0.0]]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.geometry.centreline import Centreline, build_centreline
+from vibroimpact.geometry.sections import outer_width
 
 from .excitation import Excitation
 from .geometry_checks import Tube, path_directions, points_on_the_tube
@@ -133,7 +134,7 @@ def points_of_spectrum(structure: Tube, excitation: Excitation) -> Problems:
         scale = 1.0
     elif spectrum.kind == "reduced_table":
         key, places, values = "reduced_frequency", spectrum.reduced_frequency, spectrum.reduced_psd
-        scale = structure.section.outer_diameter_m / spectrum.velocity_m_per_s
+        scale = outer_width(structure.section) / spectrum.velocity_m_per_s
     else:
         return
     yield from _points(f"excitation.spectrum.{key}", places, values)

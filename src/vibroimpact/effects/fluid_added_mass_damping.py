@@ -1,6 +1,9 @@
 """A fluid that moves with the tube and takes energy from it."""
 
-import math
+from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.geometry.sections import section_properties
+from vibroimpact.structure.fluid import mean_fluid_mass
 
 from . import places
 from .effect import Effect, Parameter, Values
@@ -10,15 +13,15 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     """Return the configuration with the mass as density of the wall and the drag as damping in
     proportion to the mass.
     """
-    structure, section = values["structure"], values["structure"]["section"]
-    inner = section["outer_diameter_m"] - 2.0 * section["wall_thickness_m"]
-    area = 0.25 * math.pi * (section["outer_diameter_m"] ** 2 - inner**2)
-    material = structure["material"]
+    structure = values["structure"]
+    material, settings = structure["material"], StageSettings(structure)
+    area = section_properties(settings.section, material["poisson_ratio"]).area
     density = material["density_kg_per_m3"] + parameters["mass"] / area
+    mass_per_length = density * area + mean_fluid_mass(settings, build_centreline(settings))
     damping = dict(values["damping"])
-    damping["mass_coefficient_per_s"] = damping.get("mass_coefficient_per_s", 0.0) + parameters[
-        "damping"
-    ] / (density * area)
+    damping["mass_coefficient_per_s"] = (
+        damping.get("mass_coefficient_per_s", 0.0) + parameters["damping"] / mass_per_length
+    )
     return values | {
         "structure": structure | {"material": material | {"density_kg_per_m3": density}},
         "damping": damping,

@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.random_streams import random_generator
 
 from .force_stream import SpectralForce
@@ -35,7 +36,7 @@ def force_channels(
     force = config.excitation
     if force.kind != "turbulence":
         return [made(force, random_generator(config.seed, seed, "force"))]
-    diameter = config.structure.section.outer_diameter_m
+    diameter = outer_width(config.structure.section)
     spectral = SpectralForce(
         force.band_Hz, lambda frequency: line_force_psd(force, diameter, frequency)
     )

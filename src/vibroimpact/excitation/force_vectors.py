@@ -45,7 +45,10 @@ def force_vector(
     if excitation.kind == "none":
         return np.zeros(structure.dofs)
     if excitation.kind == "base_motion":
-        return -unit_vector(excitation.direction) @ structure.inertia
+        inertia = structure.inertia
+        if isinstance(structure, TubeStructure) and excitation.obstacles == "moving":
+            inertia = inertia - structure.carried_inertia  # a fluid moves with what confines it
+        return -unit_vector(excitation.direction) @ inertia
     direction = turned_direction(excitation.direction, excitation.turn_deg, axis)
     row = excitation.factor * (direction @ point_rows(excitation.point))
     for force in excitation.also:

@@ -16,6 +16,7 @@ import numpy as np
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline, build_centreline
 from vibroimpact.geometry.directions import unit_vector
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.structure.point_structure import PointStructure
 from vibroimpact.structure.tube import TubeStructure
 
@@ -74,7 +75,7 @@ def load_of_spectrum(structure: ConfigPart, force: ConfigPart) -> float:
         for begin, end, factor in stretches(build_centreline(structure), force)
     ]
     ((variance,),) = field_covariance(pieces, force.correlation_length_m)
-    return float(np.sqrt(variance) * line_force_rms(force, structure.section.outer_diameter_m))
+    return float(np.sqrt(variance) * line_force_rms(force, outer_width(structure.section)))
 
 
 def stretches(line: Centreline, force: ConfigPart) -> list[tuple[float, float, float]]:

@@ -121,6 +121,36 @@ class Centreline:
             )
         return places[best]
 
+    def stretch(
+        self, one: ArrayLike | None, other: ArrayLike | None, name: str
+    ) -> tuple[float, float]:
+        """Return the arc lengths in m, ascending, of the stretch between two positions (3,) in m.
+
+        one: None for the start. other: None for the end. name: as in locate.
+        Raises ValueError as locate does.
+        """
+        start = 0.0 if one is None else self.locate(one, name)
+        end = self.length if other is None else self.locate(other, name)
+        return min(start, end), max(start, end)
+
+    def carried(self, direction: ArrayLike, arc_length: float) -> np.ndarray:
+        """Return the unit vector (3,) that a direction at the start becomes at an arc length in m.
+
+        The part of `direction` (3,) across the tube is carried along without twist: it is constant
+        on straight segments and turns with the tangent in the plane of each bend.
+        Raises ValueError for a direction along the tube.
+        """
+        tangent = self.direction(0.0)
+        vector = unit_vector(direction)
+        vector = unit_vector(vector - (vector @ tangent) * tangent)
+        for piece in self.segments:
+            if piece.toward is not None and arc_length > piece.begin:
+                angle = (min(arc_length, piece.end) - piece.begin) / piece.radius
+                inward = vector @ piece.toward
+                turned = np.cos(angle) * piece.toward - np.sin(angle) * piece.tangent
+                vector = unit_vector(vector + inward * (turned - piece.toward))
+        return vector
+
 
 def build_centreline(structure: Any) -> Centreline:
     """Return the Centreline of a tube.

@@ -94,7 +94,9 @@ def _damping_and_element_fields(
     damping = modal_damping(omega, config.damping)
     damper_shapes = np.zeros((len(omega), 0))
     coefficients: list[float] = []
-    if config.structure.kind not in TUBES:
+    if config.structure.kind in TUBES:
+        damping = damping + structure.viscous_damping(omega, shapes)
+    else:
         diagonal, damper_shapes, added = split_damping(shapes.T @ structure.damping @ shapes)
         # Measured modes bring their damping with them.
         damping = diagonal + (0.0 if config.structure.kind == "identified" else damping)
@@ -330,8 +332,28 @@ def _stress_fields(
     for name, place in places.items():
         if all(abs(place - other) > SAME_PLACE_M for other in sections.values()):
             sections[name] = place
-    rows = np.array([structure.stress_rows(place) for place in sections.values()])
+    rows: dict[str, np.ndarray] = {}
+    for name, place in sections.items():
+        rows |= _outer_fibre_rows(structure, name, place)
     return {
-        "section_names": tuple(sections),
-        "stress_shapes": np.einsum("sdn,nm->msd", rows, shapes),
+        "section_names": tuple(rows),
+        "stress_shapes": np.einsum("sdn,nm->msd", np.array(list(rows.values())), shapes),
+    }
+
+
+def _outer_fibre_rows(structure: TubeStructure, name: str, place: float) -> dict[str, np.ndarray]:
+    """Return {name: (2, dof)} of the stresses in Pa at an arc length in m whose root of the sum of
+    squares is that of the outermost fibre.
+
+    A round section has one entry, the two bending stresses: its worst fibre turns with the bending
+    moment. Any other has two, name_corner_1 and name_corner_2, where the two bending stresses add
+    up and where they subtract. At the opposite corners they are the same with the other sign.
+    """
+    rows = structure.stress_rows(place)
+    if structure.first_axis is None:
+        return {name: rows}
+    nothing = np.zeros(structure.dofs)
+    return {
+        f"{name}_corner_1": np.array([rows[0] + rows[1], nothing]),
+        f"{name}_corner_2": np.array([rows[0] - rows[1], nothing]),
     }

@@ -1,9 +1,9 @@
-"""Three-dimensional beam elements of a tube: stiffness, consistent mass and shape functions.
+"""Three-dimensional beam elements: stiffness, consistent mass and shape functions.
 
 An element has two nodes of six degrees of freedom: three translations and three rotations about the
-global axes. Bending follows the exact static solution of a Timoshenko beam between its nodes, so
-there is no shear locking. Euler-Bernoulli is the same element with an infinite shear stiffness and
-no rotary inertia.
+global axes. It bends in two planes, along the two transverse axes of its section. Bending follows
+the exact static solution of a Timoshenko beam between its nodes, so there is no shear locking.
+Euler-Bernoulli is the same element with an infinite shear stiffness and no rotary inertia.
 
 Frequencies converge with the fourth power of the element length for Euler-Bernoulli, and with the
 second for Timoshenko, whose shear angle is constant along an element. The second-order part is
@@ -13,8 +13,6 @@ Sources:
 - stiffness: J. S. Przemieniecki, Theory of Matrix Structural Analysis (McGraw-Hill 1968), ch. 5.
 - shape functions and consistent mass: Z. Friedman and J. B. Kosmatka, An improved two-node
   Timoshenko beam finite element, Computers and Structures 47 (1993) 473-481.
-- shear coefficient: G. R. Cowper, The shear coefficient in Timoshenko's beam theory, J. Applied
-  Mechanics 33 (1966) 335-340.
 """
 
 from collections.abc import Sequence
@@ -23,10 +21,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.geometry.sections import section_properties
 
 DOF_PER_NODE = 6
-# In the second bending plane the rotation about the first transverse axis is -w'.
-ROTATION_SIGN = np.array([1.0, -1.0, 1.0, -1.0])
+# Dofs (v1, theta1, v2, theta2) of the two bending planes. In the second, the rotation about the
+# first transverse axis is -w'.
+BENDING_DOFS = ([1, 5, 7, 11], [2, 4, 8, 10])
+BENDING_SIGNS = (np.ones(4), np.array([1.0, -1.0, 1.0, -1.0]))
 
 # Four Gauss points integrate the mass matrix exactly: its integrands are of degree six.
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
@@ -34,26 +35,21 @@ GAUSS_POINTS, GAUSS_WEIGHTS = 0.5 * (GAUSS_POINTS + 1.0), 0.5 * GAUSS_WEIGHTS
 
 
 @dataclass(frozen=True)
-class Beam:
-    """Constants of a uniform beam with a circular section.
+class BendingPlane:
+    """Constants of a uniform beam that deflects along one transverse axis.
 
-    axial_stiffness: EA in N.
     bending_stiffness: EI in N m².
-    torsion_stiffness: GJ in N m².
     shear_stiffness: kGA in N; infinite for Euler-Bernoulli.
-    mass_per_length: kg/m.
+    mass_per_length: kg/m, moved by the deflection.
     rotary_inertia: rho I in kg m; 0 for Euler-Bernoulli.
-    torsion_inertia: rho J in kg m.
-    fibre_stiffness: E r in N/m, the outer-fibre bending stress per unit curvature.
+    fibre_stiffness: E times the distance of the outer fibre in N/m, its bending stress per unit
+        curvature.
     """
 
-    axial_stiffness: float
     bending_stiffness: float
-    torsion_stiffness: float
     shear_stiffness: float
     mass_per_length: float
     rotary_inertia: float
-    torsion_inertia: float
     fibre_stiffness: float
 
     def shear_parameter(self, length: float) -> float:
@@ -61,39 +57,58 @@ class Beam:
         return 12.0 * self.bending_stiffness / (self.shear_stiffness * length**2)
 
 
-def tube_beam(section: ConfigPart, material: ConfigPart, theory: str) -> Beam:
-    """Return the Beam of a circular tube.
+@dataclass(frozen=True)
+class Beam:
+    """Constants of a uniform beam.
 
-    section: outer_diameter_m, wall_thickness_m, shear_coefficient.
+    axial_stiffness: EA in N.
+    torsion_stiffness: GJ in N m².
+    mass_per_length: kg/m, moved along the beam.
+    torsion_inertia: rho times the polar second moment in kg m.
+    planes: its BendingPlanes, along the first and the second transverse axis.
+    """
+
+    axial_stiffness: float
+    torsion_stiffness: float
+    mass_per_length: float
+    torsion_inertia: float
+    planes: tuple[BendingPlane, BendingPlane]
+
+
+def section_beam(section: ConfigPart, material: ConfigPart, theory: str) -> Beam:
+    """Return the Beam of a section.
+
+    section: of one of the kinds tube, round, rectangle or general.
     material: young_modulus_Pa, poisson_ratio, density_kg_per_m3.
     theory: "timoshenko" or "euler_bernoulli".
 
     Raises ValueError for another theory or a wall thicker than the radius; the message names the
     value.
     """
-    outer = 0.5 * section.outer_diameter_m
-    inner = outer - section.wall_thickness_m
-    if inner < 0.0 or section.wall_thickness_m <= 0.0:
-        raise ValueError(
-            f"wall thickness {section.wall_thickness_m} m must lie between 0 and the outer radius"
-            f" {outer} m"
-        )
+    properties = section_properties(section, material.poisson_ratio)
     if theory not in ("timoshenko", "euler_bernoulli"):
         raise ValueError(f"beam theory '{theory}' is unknown: choose timoshenko or euler_bernoulli")
-    area = np.pi * (outer**2 - inner**2)
-    second_moment = 0.25 * np.pi * (outer**4 - inner**4)
     young, density = material.young_modulus_Pa, material.density_kg_per_m3
     shear_modulus = 0.5 * young / (1.0 + material.poisson_ratio)
     with_shear = theory == "timoshenko"
+
+    def plane(axis: int) -> BendingPlane:
+        second_moment = properties.second_moments[axis]
+        shear = properties.shear_coefficients[axis] * shear_modulus * properties.area
+        return BendingPlane(
+            bending_stiffness=young * second_moment,
+            shear_stiffness=shear if with_shear else np.inf,
+            mass_per_length=density * properties.area,
+            rotary_inertia=density * second_moment if with_shear else 0.0,
+            fibre_stiffness=young * properties.outer_fibres[axis],
+        )
+
     return Beam(
-        axial_stiffness=young * area,
-        bending_stiffness=young * second_moment,
-        torsion_stiffness=shear_modulus * 2.0 * second_moment,
-        shear_stiffness=section.shear_coefficient * shear_modulus * area if with_shear else np.inf,
-        mass_per_length=density * area,
-        rotary_inertia=density * second_moment if with_shear else 0.0,
-        torsion_inertia=density * 2.0 * second_moment,
-        fibre_stiffness=young * outer,
+        axial_stiffness=young * properties.area,
+        torsion_stiffness=shear_modulus * properties.torsion_constant,
+        mass_per_length=density * properties.area,
+        torsion_inertia=density * sum(properties.second_moments),
+        planes=(plane(0), plane(1)),
     )
 
 
@@ -138,12 +153,12 @@ def bending_shapes(
     return deflection / (1.0 + phi), rotation / (1.0 + phi), curvature / (1.0 + phi)
 
 
-def bending_stiffness(beam: Beam, length: float) -> np.ndarray:
+def bending_stiffness(plane: BendingPlane, length: float) -> np.ndarray:
     """Return the (4, 4) stiffness of one bending plane, dofs (v1, theta1, v2, theta2).
 
     Source: Przemieniecki (1968), eq. 5.116.
     """
-    phi = beam.shear_parameter(length)
+    phi = plane.shear_parameter(length)
     near, far, slope = (4.0 + phi) * length**2, (2.0 - phi) * length**2, 6.0 * length
     pattern = np.array(
         [
@@ -153,19 +168,19 @@ def bending_stiffness(beam: Beam, length: float) -> np.ndarray:
             [slope, far, -slope, near],
         ]
     )
-    return beam.bending_stiffness / (length**3 * (1.0 + phi)) * pattern
+    return plane.bending_stiffness / (length**3 * (1.0 + phi)) * pattern
 
 
-def bending_mass(beam: Beam, length: float) -> np.ndarray:
+def bending_mass(plane: BendingPlane, length: float) -> np.ndarray:
     """Return the (4, 4) consistent mass of one bending plane, dofs (v1, theta1, v2, theta2).
 
     It holds translation and rotary inertia.
     """
-    deflection, rotation, _ = bending_shapes(GAUSS_POINTS, length, beam.shear_parameter(length))
+    deflection, rotation, _ = bending_shapes(GAUSS_POINTS, length, plane.shear_parameter(length))
     weights = GAUSS_WEIGHTS * length
     return (
-        beam.mass_per_length * (deflection * weights) @ deflection.T
-        + beam.rotary_inertia * (rotation * weights) @ rotation.T
+        plane.mass_per_length * (deflection * weights) @ deflection.T
+        + plane.rotary_inertia * (rotation * weights) @ rotation.T
     )
 
 
@@ -186,9 +201,9 @@ def element_matrices(beam: Beam, length: float, axes: np.ndarray) -> tuple[np.nd
     ):
         stiffness[np.ix_(dofs, dofs)] = rigidity * bar
         mass[np.ix_(dofs, dofs)] = inertia * rod
-    for dofs, sign in (([1, 5, 7, 11], np.ones(4)), ([2, 4, 8, 10], ROTATION_SIGN)):
-        stiffness[np.ix_(dofs, dofs)] = bending_stiffness(beam, length) * np.outer(sign, sign)
-        mass[np.ix_(dofs, dofs)] = bending_mass(beam, length) * np.outer(sign, sign)
+    for plane, dofs, sign in zip(beam.planes, BENDING_DOFS, BENDING_SIGNS, strict=True):
+        stiffness[np.ix_(dofs, dofs)] = bending_stiffness(plane, length) * np.outer(sign, sign)
+        mass[np.ix_(dofs, dofs)] = bending_mass(plane, length) * np.outer(sign, sign)
     to_local = np.kron(np.eye(4), axes)
     return to_local.T @ stiffness @ to_local, to_local.T @ mass @ to_local
 
@@ -204,14 +219,15 @@ def interpolation(
 
     xi: position on the element, 0 to 1; other arguments as in element_matrices.
     """
-    shapes = bending_shapes([xi], length, beam.shear_parameter(length))
-    deflection, _, curvature = (shape[:, 0] for shape in shapes)
     displacement, gradient = np.zeros((3, 12)), np.zeros((3, 12))
     displacement[0, [0, 6]] = 1.0 - xi, xi
-    displacement[1, [1, 5, 7, 11]] = deflection
-    displacement[2, [2, 4, 8, 10]] = deflection * ROTATION_SIGN
     gradient[0, [3, 9]] = -1.0 / length, 1.0 / length
-    gradient[2, [1, 5, 7, 11]] = curvature
-    gradient[1, [2, 4, 8, 10]] = -curvature * ROTATION_SIGN
+    for axis, plane in enumerate(beam.planes):
+        shapes = bending_shapes([xi], length, plane.shear_parameter(length))
+        deflection, _, curvature = (shape[:, 0] * BENDING_SIGNS[axis] for shape in shapes)
+        displacement[1 + axis, BENDING_DOFS[axis]] = deflection
+        # A deflection along the first axis turns about the second, one along the second about
+        # minus the first.
+        gradient[2 - axis, BENDING_DOFS[axis]] = curvature if axis == 0 else -curvature
     to_local = np.kron(np.eye(4), axes)
     return axes.T @ displacement @ to_local, axes.T @ gradient @ to_local

@@ -1,5 +1,6 @@
-"""The finite-element model of a tube: matrices, and rows for displacement and stress."""
+"""The finite-element model of a tube or a bar: matrices, and rows for displacement and stress."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,9 +15,11 @@ from vibroimpact.geometry.centreline import (
 )
 from vibroimpact.geometry.directions import transverse_directions, unit_vector
 from vibroimpact.geometry.mesh import mesh_arc_lengths
+from vibroimpact.geometry.sections import ROUND, section_kind
 from vibroimpact.memo import Memo
 
-from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, tube_beam
+from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, section_beam
+from .fluid import FluidStretch, beams_in_fluid, fluid_stretches, transverse_only
 
 STRUCTURES = Memo()
 
@@ -25,14 +28,21 @@ STRUCTURES = Memo()
 class TubeStructure:
     """The linear tube without contact. A dof is what the ends leave free.
 
-    centreline, beam, contact: its Centreline, Beam and ContactPoints.
+    centreline, contact: its Centreline and ContactPoints.
+    beam: its Beam, without fluid.
     node_arc_length: (node,) m.
     nodes: (node, 3) m.
+    axes: (element, 3, 3), rows are the tangent of an element and the two axes of its section.
+    first_axis: (3,) first axis of the section at the start; None for a round section.
     mass, stiffness: (dof, dof) sparse, SI.
     transformation: (node dof, dof) sparse. Node displacements (ux, uy, uz, rx, ry, rz per node,
         global axes) are transformation @ dofs.
     inertia: (3, dof) kg, minus the force on the dofs per unit acceleration of both ends along x, y,
-        z.
+        z, in fluid that stays in space.
+    carried_inertia: (3, dof) kg, what `inertia` loses where the fluid outside moves with the ends:
+        its added mass, and the mass of fluid that the tube displaces.
+    viscous: (dof, dof) sparse, N s/m, damping by the fluid outside at 1 Hz; it grows with the
+        square root of the frequency.
     rows: {arc length: displacement rows} computed so far.
     """
 
@@ -41,10 +51,14 @@ class TubeStructure:
     contact: ContactPoints
     node_arc_length: np.ndarray
     nodes: np.ndarray
+    axes: np.ndarray
+    first_axis: np.ndarray | None
     mass: sparse.csr_array
     stiffness: sparse.csr_array
     transformation: sparse.csr_array
     inertia: np.ndarray
+    carried_inertia: np.ndarray
+    viscous: sparse.csr_array
     rows: dict = field(default_factory=dict, repr=False)
 
     @property
@@ -72,21 +86,41 @@ class TubeStructure:
     def stress_rows(self, arc_length: float) -> np.ndarray:
         """Return (2, dof): outer-fibre bending stress in Pa at an arc length in m.
 
-        Row d is E r times the curvature of the deflection along transverse direction d (see
-        `transverse_directions`). At a node the two elements that meet there are averaged: their
-        moments differ by the discretisation error.
+        Row d is E times the fibre's distance times the curvature of the deflection along transverse
+        direction d: of a round section, see `transverse_directions`; of another, axis d of the
+        section. At a node the two elements that meet there are averaged: their moments differ by
+        the discretisation error.
         """
         tangent = self.centreline.direction(arc_length)
         axes = np.array(
-            [np.cross(tangent, direction) for direction in transverse_directions(tangent)]
+            [np.cross(tangent, direction) for direction in self.section_axes(arc_length)]
         )
+        fibres = np.array([plane.fibre_stiffness for plane in self.beam.planes])
         elements = self._elements_touching(arc_length)
         rows = np.zeros((2, self.dofs))
         for element, xi in elements:
             _, gradient = interpolation(self.beam, *self._element_geometry(element), xi)
-            stress = self.beam.fibre_stiffness * axes @ gradient
+            stress = fibres[:, None] * axes @ gradient
             rows += self._to_free_dofs(element, stress) / len(elements)
         return rows
+
+    def section_axes(self, arc_length: float) -> np.ndarray:
+        """Return (2, 3): the two axes of the section at an arc length in m, along which stresses
+        are given. A round section has the transverse directions.
+        """
+        tangent = self.centreline.direction(arc_length)
+        if self.first_axis is None:
+            return transverse_directions(tangent)
+        first = self.centreline.carried(self.first_axis, arc_length)
+        return np.array([first, unit_vector(np.cross(tangent, first))])
+
+    def viscous_damping(self, omega: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+        """Return (mode,) 2 zeta omega in 1/s by the fluid outside, each mode at its own frequency.
+
+        omega: (mode,) rad/s. shapes: (dof, mode), mass-orthonormal.
+        """
+        at_one_hertz = np.sum(shapes * (self.viscous @ shapes), axis=0)
+        return np.sqrt(omega / (2.0 * np.pi)) * at_one_hertz
 
     def _element_at(self, arc_length: float) -> tuple[int, float]:
         """Return (element, xi) at an arc length in m; xi from 0 to 1, snapped to a near node."""
@@ -106,7 +140,8 @@ class TubeStructure:
 
     def _element_geometry(self, element: int) -> tuple[float, np.ndarray]:
         """Return (length in m, axes (3, 3)) of an element."""
-        return element_geometry(self.nodes[element], self.nodes[element + 1])
+        length, _ = element_geometry(self.nodes[element], self.nodes[element + 1])
+        return length, self.axes[element]
 
     def _to_free_dofs(self, element: int, rows: np.ndarray) -> np.ndarray:
         """Return (row, dof) from rows (row, 12) over the dofs of an element."""
@@ -117,7 +152,8 @@ class TubeStructure:
 def element_geometry(start: np.ndarray, end: np.ndarray) -> tuple[float, np.ndarray]:
     """Return (length in m, axes (3, 3)) of the straight element between two nodes (3,) in m.
 
-    The rows of axes are the tangent and two transverse axes.
+    The rows of axes are the tangent and two transverse axes, which a round section does not
+    distinguish.
     """
     chord = end - start
     tangent = unit_vector(chord)
@@ -140,45 +176,105 @@ def build_structure(config: ConfigPart) -> TubeStructure:
 
 
 def _built(config: ConfigPart, line: Centreline, contact: ContactPoints) -> TubeStructure:
-    """Return the TubeStructure on a mesh that has nodes at the contact points."""
+    """Return the TubeStructure on a mesh with nodes at contact points and at the ends of fluids."""
+    structure = config.structure
+    stretches = fluid_stretches(structure, line)
     groups = [
         contact.arc_length[contact.support == number] for number in range(len(config.supports))
     ]
-    node_arc_length = mesh_arc_lengths(line, config.structure.mesh, groups)
+    groups += [np.array([place]) for each in stretches for place in (each.begin, each.end)]
+    node_arc_length = mesh_arc_lengths(line, structure.mesh, groups)
     nodes = np.array([line.position(place) for place in node_arc_length])
-    beam = tube_beam(config.structure.section, config.structure.material, config.structure.theory)
-    mass, stiffness = _assemble(beam, nodes)
-    transformation, springs = _end_conditions(config.structure, line, len(nodes))
+    middles = 0.5 * (node_arc_length[1:] + node_arc_length[:-1])
+    beam = section_beam(structure.section, structure.material, structure.theory)
+    first_axis = _first_axis(structure.section, line)
+    lengths, axes = _element_frames(line, nodes, middles, first_axis)
+    beams = beams_in_fluid(beam, stretches, middles)
+    elements = [element_matrices(*each) for each in zip(beams, lengths, axes, strict=True)]
+    stiffness, mass = (_assembled(matrices) for matrices in zip(*elements, strict=True))
+    transformation, springs = _end_conditions(structure, line, len(nodes))
+    rigid = np.tile(np.eye(3, DOF_PER_NODE), len(nodes))
+    carried, viscous = _fluid_matrices(beam, stretches, middles, (lengths, axes))
     return TubeStructure(
         centreline=line,
         beam=beam,
         contact=contact,
         node_arc_length=node_arc_length,
         nodes=nodes,
+        axes=axes,
+        first_axis=first_axis,
         transformation=transformation,
-        inertia=(np.tile(np.eye(3, DOF_PER_NODE), len(nodes)) @ mass) @ transformation,
+        inertia=(rigid @ mass) @ transformation,
+        carried_inertia=(rigid @ carried) @ transformation,
         mass=(transformation.T @ mass @ transformation).tocsr(),
         stiffness=(transformation.T @ (stiffness + springs) @ transformation).tocsr(),
+        viscous=(transformation.T @ viscous @ transformation).tocsr(),
     )
 
 
-def _assemble(beam: Beam, nodes: np.ndarray) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Return (mass, stiffness), each (node dof, node dof), of elements between nodes (node, 3)."""
-    size, entries = DOF_PER_NODE * len(nodes), 4 * DOF_PER_NODE**2
-    count = len(nodes) - 1
-    masses, stiffnesses = np.zeros((count, entries)), np.zeros((count, entries))
-    rows, columns = np.zeros((count, entries), dtype=int), np.zeros((count, entries), dtype=int)
-    for element in range(count):
-        geometry = element_geometry(nodes[element], nodes[element + 1])
-        stiffness, mass = element_matrices(beam, *geometry)
-        masses[element], stiffnesses[element] = mass.ravel(), stiffness.ravel()
+def _first_axis(section: ConfigPart, line: Centreline) -> np.ndarray | None:
+    """Return the first axis (3,) of a section at the start of the tube; None for a round one."""
+    if section_kind(section) in ROUND:
+        return None
+    tangent = line.direction(0.0)
+    given = section.first_axis
+    return line.carried(transverse_directions(tangent)[0] if given is None else given, 0.0)
+
+
+def _element_frames(
+    line: Centreline, nodes: np.ndarray, middles: np.ndarray, first_axis: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (lengths (element,) in m, axes (element, 3, 3)) of the elements between nodes.
+
+    nodes: (node, 3) m. middles: (element,) arc lengths in m. first_axis: (3,) at the start, carried
+    to the middle of each element; None for a round section, whose axes are any two.
+    """
+    frames = [element_geometry(*ends) for ends in zip(nodes[:-1], nodes[1:], strict=True)]
+    lengths, axes = (np.array(values) for values in zip(*frames, strict=True))
+    if first_axis is not None:
+        for element, place in enumerate(middles):
+            tangent, first = axes[element, 0], line.carried(first_axis, place)
+            first = unit_vector(first - (first @ tangent) * tangent)
+            axes[element, 1:] = first, unit_vector(np.cross(tangent, first))
+    return lengths, axes
+
+
+def _fluid_matrices(
+    beam: Beam,
+    stretches: Sequence[FluidStretch],
+    middles: np.ndarray,
+    frames: tuple[np.ndarray, np.ndarray],
+) -> tuple[sparse.csr_array, sparse.csr_array]:
+    """Return (carried, viscous), each (node dof, node dof): the masses in kg that a fluid outside
+    takes off where it moves with the ends, and its damping in N s/m at 1 Hz. Both act across the
+    tube only.
+    """
+    size = DOF_PER_NODE * (len(middles) + 1)
+    carried, viscous = np.zeros((len(middles), 2)), np.zeros((len(middles), 2))
+    for each in stretches:
+        inside = (each.begin <= middles) & (middles <= each.end)
+        carried[inside] += np.array(each.outside) + each.displaced
+        viscous[inside] += each.viscous
+    if not carried.any():
+        return sparse.csr_array((size, size)), sparse.csr_array((size, size))
+
+    def matrix(per_length: np.ndarray) -> sparse.csr_array:
+        beams = [transverse_only(beam, values) for values in per_length]
+        return _assembled([element_matrices(*each)[1] for each in zip(beams, *frames, strict=True)])
+
+    return matrix(carried), matrix(viscous)
+
+
+def _assembled(matrices: Sequence[np.ndarray]) -> sparse.csr_array:
+    """Return the matrix (node dof, node dof) of elements (12, 12) in a row."""
+    size, entries = DOF_PER_NODE * (len(matrices) + 1), 4 * DOF_PER_NODE**2
+    rows, columns = (np.zeros((len(matrices), entries), dtype=int) for _ in range(2))
+    for element in range(len(matrices)):
         dofs = DOF_PER_NODE * element + np.arange(2 * DOF_PER_NODE)
         rows[element], columns[element] = np.repeat(dofs, len(dofs)), np.tile(dofs, len(dofs))
+    values = np.array([matrix.ravel() for matrix in matrices])
     place = (rows.ravel(), columns.ravel())
-    return (
-        sparse.coo_array((masses.ravel(), place), shape=(size, size)).tocsr(),
-        sparse.coo_array((stiffnesses.ravel(), place), shape=(size, size)).tocsr(),
-    )
+    return sparse.coo_array((values.ravel(), place), shape=(size, size)).tocsr()
 
 
 def _end_conditions(

@@ -15,6 +15,7 @@ from vibroimpact.figures.style import (
     ordered_colours,
     ordered_norm,
 )
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.responses import psd_family
 
 from .cases_of_gap import first_seed, transition_load
@@ -32,7 +33,7 @@ def figure_12_broadband(config, model, curves, spectra, rows):
     sensor = driven_sensor(config, config.identification.broadband.point)
     caption = (
         f"PSD of displacement at {sensor}, gap"
-        f" {gap_label(next(iter(curves)).gap_m, config.structure.section.outer_diameter_m)}, first"
+        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}, first"
         " seed: simulated with contact (black), and the linear tube whose bilateral support (k, c)"
         " correlates best with it over the band (green). Thin, coloured: linear tubes with other"
         " stiffnesses, no damping added, under the same force. Left: the load at which the main"

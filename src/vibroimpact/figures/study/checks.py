@@ -19,6 +19,7 @@ from vibroimpact.figures.style import (
     RED,
     gap_label,
 )
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.study.cases import case_from_id
 
 from .cases_of_gap import CasesOnDemand
@@ -81,7 +82,7 @@ def energy_balance(config, records):
         f" {config.integration.steps_per_second:g} steps per second. Exact zeros, where nothing"
         f" touches, are drawn at {FLOOR:g}. Right: energies during the case of the largest load"
         f" ({case.load_rms_N:g} N, gap"
-        f" {gap_label(case.gap_m, config.structure.section.outer_diameter_m)}, seed {case.seed});"
+        f" {gap_label(case.gap_m, outer_width(config.structure.section))}, seed {case.seed});"
         " negative times are the start-up before the record."
     )
     sheet = Sheet(
@@ -196,7 +197,7 @@ def contact_statistics(config, records):
         size=(9.6, 6.0),
         sharex=True,
     )
-    diameter = config.structure.section.outer_diameter_m
+    diameter = outer_width(config.structure.section)
     for index, gap in enumerate(sorted({case.gap_m for case in records}, reverse=True)):
         colour, marker = GAP_COLOURS[index % 6], GAP_MARKERS[index % 6]
         style = {

@@ -19,6 +19,7 @@ from vibroimpact.figures.style import (
     number,
     shown,
 )
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.reduction.reduced_model import build_model
 
 from .linear_limits import HELD, driven_frequencies
@@ -42,7 +43,7 @@ def figure_03_contact_law(config, structure):
         f" the support (total {stiffness:.3g} N/m) and the contact points that stand for it; each"
         " point carries the stiffness written beside it. Right: contact force against radial"
         " displacement of the tube, all points together, gap"
-        f" {gap_label(gap, config.structure.section.outer_diameter_m)}. The slope past the gap is"
+        f" {gap_label(gap, outer_width(config.structure.section))}. The slope past the gap is"
         " the tangent stiffness, always the same; force over displacement is the secant stiffness,"
         " which rises with the amplitude: this is why an equivalent linear support stiffens with"
         " the load."

@@ -13,6 +13,7 @@ from vibroimpact.figures.style import (
     PINK,
     gap_label,
 )
+from vibroimpact.geometry.sections import outer_width
 
 from .linear_limits import contact_stiffness
 from .seed_scatter import medians, over_seeds
@@ -50,9 +51,7 @@ def figure_13_equivalent_support(config, model, rows):
         _methods(
             sheet, sheet.axes[bottom], chosen, "c_N_s_per_m", (*OPEN_METHODS, "lscf", "broadband")
         )
-        sheet.axes[top].set_title(
-            f"gap {gap_label(gap, config.structure.section.outer_diameter_m)}"
-        )
+        sheet.axes[top].set_title(f"gap {gap_label(gap, outer_width(config.structure.section))}")
         sheet.mark(
             sheet.axes[top],
             "k_N_per_m",
@@ -167,7 +166,7 @@ def collapse(config, model, rows):
             "color": GAP_COLOURS[index % 6],
             "marker": GAP_MARKERS[index % 6],
             "linestyle": "none",
-            "label": f"gap {gap_label(gap, config.structure.section.outer_diameter_m)}",
+            "label": f"gap {gap_label(gap, outer_width(config.structure.section))}",
         }
         compared = [row for row in table if row["gap_m"] == gap and row["method"] in COMPARED]
         over_seeds(

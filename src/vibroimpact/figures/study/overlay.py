@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.campaign.file import channel_at, channel_signal
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 
 from .linear_limits import HELD, linear_modes, shown_band
@@ -24,7 +25,7 @@ def figure_05_overlay(config, model, responses, campaign):
     sensor = driven_sensor(config, config.identification.response_point)
     records = _shown_records(campaign, responses.gap_m)
     gap = float(campaign["gap"].values[records[0]])
-    diameter = config.structure.section.outer_diameter_m
+    diameter = outer_width(config.structure.section)
     source = str(campaign.attrs.get("source", "")) or "no source given"
     caption = (
         f"PSD of acceleration at {sensor} for {len(records)} loads: campaign (green; gap"

@@ -17,6 +17,7 @@ from vibroimpact.figures.style import (
     ordered_colours,
     shown,
 )
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.peak import LEVELS, level_edges
 from vibroimpact.linear.poles import first_pole
 
@@ -37,7 +38,7 @@ def figure_09_poles(config, model, curves, spectra, rows):
     gap = next(iter(curves)).gap_m
     caption = (
         f"Main peak at {driven_sensor(config, config.identification.response_point)}, gap"
-        f" {gap_label(gap, config.structure.section.outer_diameter_m)}. Left: PSD of displacement /"
+        f" {gap_label(gap, outer_width(config.structure.section))}. Left: PSD of displacement /"
         " load² of one seed (thin), the resonance curve fitted to it (thick), and its widths at"
         " 1/2, 1/4 and 1/25 of the height (bars). Right: frequency and damping ratio of the peak"
         " against load from the widths and from an output-only LSCF: median and range over seeds."
@@ -195,7 +196,7 @@ def figure_09_stabilisation(config, curves, spectra, rows):
     sensor = driven_sensor(config, config.identification.response_point)
     caption = (
         "Stabilisation charts of the output-only LSCF, first seed, gap"
-        f" {gap_label(next(iter(curves)).gap_m, config.structure.section.outer_diameter_m)}: poles"
+        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: poles"
         f" by model order over the PSD of displacement at {sensor} (grey, logarithmic, right axis)."
         " A pole is stable when frequency (1 %), damping (10 %) and participation keep their"
         " values from the order below. Circled: the poles whose median is taken for the main peak."

@@ -18,6 +18,7 @@ from vibroimpact.figures.style import (
     ordered_colours,
     ordered_norm,
 )
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.responses import psd_family
 
 from .linear_limits import contact_stiffness, linear_modes, shown_band
@@ -235,7 +236,7 @@ def in_plane_share(config, responses):
     point = config.identification.response_point
     axes.set_title(f"in-plane share of the displacement at {point}")
     rows = [row for row in responses.share if row["point"] == point]
-    diameter = config.structure.section.outer_diameter_m
+    diameter = outer_width(config.structure.section)
     for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
         chosen = [
             {**row, "load_over_gap_N_per_m": row["load_rms_N"] / gap}
@@ -265,7 +266,7 @@ def in_plane_share(config, responses):
 
 
 def _gap_words(config, responses):
-    return f"gap {gap_label(responses.gap_m, config.structure.section.outer_diameter_m)}"
+    return f"gap {gap_label(responses.gap_m, outer_width(config.structure.section))}"
 
 
 def _inside(frequency, band):

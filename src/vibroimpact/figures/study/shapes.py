@@ -14,6 +14,7 @@ from vibroimpact.figures.style import (
     gap_label,
     ordered_colours,
 )
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.modes import first_mode_shape
 
 from .cases_of_gap import spread_loads
@@ -34,7 +35,7 @@ def figure_10_shapes(config, model, curves, rows):
     caption = (
         "Operational deflection shape around the main peak (first singular vector of the spectra"
         " above 1/25 of the peak), gap"
-        f" {gap_label(next(iter(curves)).gap_m, config.structure.section.outer_diameter_m)}. Top:"
+        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}. Top:"
         f" displacement along {axis}, part in phase, against the arc length from one root to the"
         " other, median over seeds, by load; black: first mode of the linear tube, free (dashed)"
         " and in full bilateral contact (solid); grey: the supports. Bottom left: MAC with the"
@@ -172,7 +173,7 @@ def figure_11_singular_values(config, curves):
     caption = (
         "Singular values of the spectra along the tube over the band above 1/25 of the main peak,"
         " divided by the first, gap"
-        f" {gap_label(next(iter(curves)).gap_m, config.structure.section.outer_diameter_m)}: median"
+        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: median"
         " and range over seeds. One value alone means that the whole band moves in one shape, as a"
         " linear tube does near a resonance; where others rise, in the transition, no single shape"
         " describes the motion."

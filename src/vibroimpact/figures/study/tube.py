@@ -18,6 +18,7 @@ from vibroimpact.figures.style import (
     number,
     shown,
 )
+from vibroimpact.geometry.sections import outer_width, section_kind
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.structure.beam_elements import DOF_PER_NODE
 
@@ -43,12 +44,12 @@ def figure_01_layout(config, structure):
     section = config.structure.section
     gap = max(config.grid.gap_m)
     caption = (
-        f"Layout of the tube (diameter {section.outer_diameter_m * 1e3:g} mm, wall"
-        f" {section.wall_thickness_m * 1e3:g} mm). Left: front view to scale with its supports"
+        f"Layout of the tube ({_section_in_words(section)}). Left: front view to scale with its"
+        " supports"
         " (grey plates), the contact points on the centreline, the named points, the sensors and"
         " the drive; arrows are directions in the plane, a circle with a dot is the direction out"
         " of the plane, towards the reader. Right: a support from the side and in section; the"
-        f" tube can move by the gap, {gap_label(gap, section.outer_diameter_m)} here, before it"
+        f" tube can move by the gap, {gap_label(gap, outer_width(section))} here, before it"
         f" touches; the gap is drawn {GAP_EXAGGERATION:g} times too large. The tube is the one of"
         " the configuration, not the drawing of a rig."
     )
@@ -64,6 +65,21 @@ def figure_01_layout(config, structure):
     _support_side(sheet, sheet.axes["side"], config, structure, gap)
     _support_section(sheet, sheet.axes["section"], config, gap)
     return [sheet]
+
+
+def _section_in_words(section):
+    """Return the dimensions of a cross-section in mm."""
+    kind = section_kind(section)
+    if kind == "tube":
+        return (
+            f"diameter {section.outer_diameter_m * 1e3:g} mm, wall"
+            f" {section.wall_thickness_m * 1e3:g} mm"
+        )
+    if kind == "rectangle":
+        first, second = section.sides_m
+        return f"a bar of {first * 1e3:g} mm x {second * 1e3:g} mm, drawn by its smaller width"
+    drawn = "a solid rod" if kind == "round" else "of general section, drawn by its smaller width"
+    return f"{drawn}, {outer_width(section) * 1e3:g} mm"
 
 
 def _front_view(sheet, axes, config, structure):
@@ -258,7 +274,7 @@ def _direction(axes, spot, direction, view):
 
 def _support_side(sheet, axes, config, structure, gap):
     """Draw the first support from the side: the tube in the hole, and its contact points."""
-    radius = 0.5 * config.structure.section.outer_diameter_m
+    radius = 0.5 * outer_width(config.structure.section)
     support = config.supports[0] if config.supports else None
     axes.set_title(f"a support from the side (gap × {GAP_EXAGGERATION:g})")
     half = 0.5 * support.height_m if support else radius
@@ -324,7 +340,8 @@ def _support_side(sheet, axes, config, structure, gap):
 def _support_section(sheet, axes, config, gap):
     """Draw the tube in its circular obstacle."""
     section = config.structure.section
-    radius = 0.5 * section.outer_diameter_m
+    radius = 0.5 * outer_width(section)
+    inner = radius - section.wall_thickness_m if section_kind(section) == "tube" else 0.0
     turn = np.linspace(0.0, 2.0 * np.pi, 121)
     wall = radius + GAP_EXAGGERATION * gap
     axes.set_title(f"in section (gap × {GAP_EXAGGERATION:g})")
@@ -340,16 +357,11 @@ def _support_section(sheet, axes, config, gap):
     )
     axes.add_patch(Circle((0, 0), wall * 1e3, facecolor="white", edgecolor="none"))
     axes.add_patch(Circle((0, 0), radius * 1e3, facecolor=PALE, edgecolor="none"))
-    axes.add_patch(
-        Circle(
-            (0, 0), (radius - section.wall_thickness_m) * 1e3, facecolor="white", edgecolor="none"
-        )
-    )
-    for curve, size, colour in (
-        ("obstacle", wall, RED),
-        ("tube, outside", radius, BLACK),
-        ("tube, inside", radius - section.wall_thickness_m, BLACK),
-    ):
+    axes.add_patch(Circle((0, 0), inner * 1e3, facecolor="white", edgecolor="none"))
+    curves = [("obstacle", wall, RED), ("tube, outside", radius, BLACK)]
+    if inner > 0.0:
+        curves.append(("tube, inside", inner, BLACK))
+    for curve, size, colour in curves:
         sheet.line(
             axes,
             ("section_e1_m", size * np.cos(turn)),
@@ -368,7 +380,7 @@ def _support_section(sheet, axes, config, gap):
     axes.text(
         0,
         0,
-        f"gap\n{gap * 1e3:.3g} mm\n({gap / section.outer_diameter_m * 100:.3g} % of D)",
+        f"gap\n{gap * 1e3:.3g} mm\n({gap / outer_width(section) * 100:.3g} % of D)",
         ha="center",
         va="center",
         fontsize=7.5,

@@ -197,7 +197,9 @@ def beam_frequencies(config, stiffness, bend_softer=1.0):
 
 def _softer_bend(tube, structure, factor):
     """Return the change (dof, dof) of the stiffness when E I of the bend is divided by `factor`."""
-    soft = replace(tube.beam, bending_stiffness=tube.beam.bending_stiffness / factor)
+    plane = tube.beam.planes[0]  # a round tube bends alike in both planes
+    softer = replace(plane, bending_stiffness=plane.bending_stiffness / factor)
+    soft = replace(tube.beam, planes=(softer, softer))
     begin, end = structure.leg_length_m, tube.centreline.length - structure.leg_length_m
     middle = 0.5 * (tube.node_arc_length[1:] + tube.node_arc_length[:-1])
     change = sparse.lil_array((tube.transformation.shape[0],) * 2)

@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.structure import UTube
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
@@ -180,7 +181,7 @@ def case_rows(cases, config, model, results: Path, second):
     laws = study_laws(config, model, results)
     gains = {name: input_gain(config, model, results, law) for name, law in laws.items()}
     if cases == "gaps":
-        diameter = config.structure.section.outer_diameter_m
+        diameter = outer_width(config.structure.section)
         return simulated_rows(
             changed(config, RUN),
             "study tube, other gaps and loads",
@@ -192,7 +193,7 @@ def case_rows(cases, config, model, results: Path, second):
     assert isinstance(other.structure, UTube), "the second tube is a U-tube"
     gap = (
         max(config.grid.gap_m)
-        / config.structure.section.outer_diameter_m
-        * other.structure.section.outer_diameter_m
+        / outer_width(config.structure.section)
+        * outer_width(other.structure.section)
     )
     return simulated_rows(changed(other, RUN), "second tube", laws, gains, [gap])

@@ -8,7 +8,7 @@ from scipy import linalg, optimize
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
-from vibroimpact.structure.beam_elements import element_matrices, tube_beam
+from vibroimpact.structure.beam_elements import element_matrices, section_beam
 from vibroimpact.structure.tube import build_structure, element_geometry
 from vibroimpact.validation.check import Check
 
@@ -116,10 +116,10 @@ def plane_frequencies(structure, to_Hz, stiffness=0.0):
 
 def bending_frequency(root, length):
     """Return Hz of an Euler-Bernoulli tube whose mode has beta L = root."""
-    beam = tube_beam(StageSettings(SECTION), StageSettings(MATERIAL), "euler_bernoulli")
+    beam = section_beam(StageSettings(SECTION), StageSettings(MATERIAL), "euler_bernoulli")
     return (
         (np.asarray(root) / length) ** 2
-        * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
+        * np.sqrt(beam.planes[0].bending_stiffness / beam.mass_per_length)
         / (2.0 * np.pi)
     )
 
@@ -231,13 +231,11 @@ def ring_checks(count=60):
 
     Its radius is 1 m, its solid section has a radius of 0.05 m.
     """
-    bar = StageSettings(
-        {"outer_diameter_m": 0.1, "wall_thickness_m": 0.05, "shear_coefficient": 0.9}
-    )
+    bar = StageSettings({"kind": "round", "diameter_m": 0.1, "shear_coefficient": None})
     steel = StageSettings(
         {"young_modulus_Pa": 2.0e11, "poisson_ratio": 0.3, "density_kg_per_m3": 8000.0}
     )
-    beam = tube_beam(bar, steel, "euler_bernoulli")
+    beam = section_beam(bar, steel, "euler_bernoulli")
     angle = 2.0 * np.pi * np.arange(count) / count
     nodes = np.stack([np.cos(angle), np.zeros(count), np.sin(angle)], axis=1)
     stiffness, mass = np.zeros((6 * count, 6 * count)), np.zeros((6 * count, 6 * count))

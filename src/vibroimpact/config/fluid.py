@@ -1,0 +1,157 @@
+"""The keys of the still fluids inside and outside a tube.
+
+Density and viscosity of a named fluid are filled in when the configuration is read, so that the
+configuration as it runs holds the numbers.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
+
+from vibroimpact.materials.fluids import fluid_properties
+
+from .material import given_or_named, named_or_given, named_temperature
+from .quantities import (
+    By_kind,
+    Diameter_m,
+    Fluid_density,
+    List,
+    Number,
+    One,
+    One_or_list,
+    Position,
+    Range,
+    Section,
+    Temperature_C,
+    Two_axes,
+    Unit,
+    Viscosity,
+)
+
+Fluid_name = Literal["water", "steam"]
+OR_NAMED = "Null for that of the named fluid."
+NAME = "Name of a fluid at saturation; null for numbers."
+TEMPERATURE = "Temperature of the named fluid; null for 20 °C."
+FROM = (
+    "Position on the tube where the fluid begins; null for the start of the tube. The stretch may"
+    " be given from either end."
+)
+TO = "Position on the tube where the fluid ends; null for the end of the tube."
+Coefficient_of_mass = Annotated[
+    Number, Range("1 for a circle in much fluid, more when confined", at_least=0), Unit("1")
+]
+
+
+class Unconfined(Section):
+    """Much fluid all round: an added mass coefficient of 1 for a circle."""
+
+    kind: Literal["unconfined"] = Field(
+        description="This kind of confinement.", examples=["unconfined"]
+    )
+
+
+class Bundle(Section):
+    """A tube among the tubes of a bundle that do not move."""
+
+    kind: Literal["bundle"] = Field(description="This kind of confinement.", examples=["bundle"])
+    pitch_m: Diameter_m = Field(
+        description="Distance between the axes of neighbouring tubes.", examples=[0.0320]
+    )
+    pattern: Literal["triangular", "square"] = Field(
+        "triangular", description="Pattern of the bundle.", examples=["triangular"]
+    )
+
+
+class Annulus(Section):
+    """A tube in a round channel, or in what confines it as much."""
+
+    kind: Literal["annulus"] = Field(description="This kind of confinement.", examples=["annulus"])
+    equivalent_diameter_m: Diameter_m = Field(
+        description="Inner diameter of the channel, above the diameter of the tube.",
+        examples=[0.040],
+    )
+
+
+class AddedMassCoefficient(Section):
+    """An added mass that is known, for any cross-section. It brings no damping."""
+
+    kind: Literal["coefficient"] = Field(
+        description="This kind of confinement.", examples=["coefficient"]
+    )
+    added_mass_coefficient: Annotated[
+        Annotated[Coefficient_of_mass, One]
+        | Annotated[Annotated[tuple[Coefficient_of_mass, ...], Two_axes], List],
+        One_or_list,
+    ] = Field(
+        description="Added mass over the mass of the fluid that the outline displaces: one value,"
+        " or a list for motion along the first and the second axis of the section.",
+        examples=[1.5],
+    )
+
+
+class FluidInside(Section):
+    """A fluid that fills the tube and moves with it in all directions."""
+
+    model_config = named_or_given("density_kg_per_m3")
+    kind: Literal["inside"] = Field(description="This kind of fluid.", examples=["inside"])
+    name: Fluid_name | None = Field(None, description=NAME, examples=["water"])
+    temperature_C: Temperature_C | None = Field(
+        None, validate_default=True, description=TEMPERATURE, examples=[20.0]
+    )
+    density_kg_per_m3: Fluid_density | None = Field(
+        None, validate_default=True, description=f"Density. {OR_NAMED}", examples=[998.2]
+    )
+    from_m: Position | None = Field(None, description=FROM, examples=[[-0.3, 0.0, 0.0]])
+    to_m: Position | None = Field(None, description=TO, examples=[[-0.3, 0.0, 0.5]])
+
+    @field_validator("temperature_C")
+    @classmethod
+    def _temperature(cls, value: float | None, info: ValidationInfo) -> float | None:
+        """Return the temperature of the named fluid, within its known range."""
+        return named_temperature(value, info, fluid_properties)
+
+    @field_validator("density_kg_per_m3")
+    @classmethod
+    def _density(cls, value: float | None, info: ValidationInfo) -> float | None:
+        """Return the density given, or that of the named fluid."""
+        return given_or_named(value, info, fluid_properties)
+
+
+class FluidOutside(FluidInside):
+    """A still fluid round the tube. It adds mass to motion across the tube, and damps each mode by
+    its viscosity as at the frequency of that mode without contact. Under base motion it moves with
+    the obstacles.
+    """
+
+    kind: Literal["outside"] = Field(  # type: ignore[assignment]
+        description="This kind of fluid.", examples=["outside"]
+    )
+    confinement: Annotated[Unconfined | Bundle | Annulus | AddedMassCoefficient, By_kind] = Field(
+        Unconfined(kind="unconfined"), description="What confines the fluid."
+    )
+    viscosity_Pa_s: Viscosity | None = Field(
+        None,
+        validate_default=True,
+        description=f"Dynamic viscosity, 0 for no damping. {OR_NAMED}",
+        examples=[1.0e-3],
+    )
+
+    @field_validator("viscosity_Pa_s")
+    @classmethod
+    def _viscosity(cls, value: float | None, info: ValidationInfo) -> float | None:
+        """Return the viscosity given, or that of the named fluid; 0 where nothing uses it."""
+        if getattr(info.data.get("confinement"), "kind", None) == "coefficient":
+            if value:
+                raise PydanticCustomError(
+                    "unused",
+                    "has no effect with an added mass coefficient: give an equivalent diameter"
+                    " (annulus) for damping",
+                )
+            return 0.0
+        return given_or_named(value, info, fluid_properties)
+
+
+Fluids = tuple[Annotated[FluidInside | FluidOutside, By_kind], ...]

@@ -1,0 +1,1 @@
+"""Properties of named solids and fluids against temperature."""
