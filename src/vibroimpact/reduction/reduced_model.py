@@ -19,6 +19,7 @@ from vibroimpact.excitation.force_vectors import (
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.memo import Memo, content_key
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
+from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.structure.tube import TubeStructure, build_structure
 
 from .modal_model import ModalModel
@@ -45,8 +46,8 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         and record.
     motion_only: leave out the shape line and the stresses.
 
-    Raises ValueError when a support or a named point is more than 5 mm off the tube, or a name is
-    unknown.
+    Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
+    unknown, or round-off hides a stiffness, see _refuse_false_rigid_modes.
     """
     tube = config.structure.kind in TUBES
     structure = build_structure(config) if tube else build_point_structure(config)
@@ -60,6 +61,8 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         ]
     )
     omega, shapes, full_frequencies = _modes(structure, local_rows, config.basis)
+    if tube:
+        _refuse_false_rigid_modes(structure, omega, config)
     omega, order = with_frequency_factors(omega, config.mode_frequency_factors)
     shapes = shapes[:, order]
     fields = {
@@ -77,6 +80,29 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
     return ModalModel(**with_support_plates(fields, config.supports))
+
+
+def _refuse_false_rigid_modes(
+    structure: TubeStructure, omega: np.ndarray, config: ConfigPart
+) -> None:
+    """Raise ValueError when more modes have no stiffness than the ends of the tube leave free.
+
+    The round-off of elements that are very short beside the tube then exceeds its stiffness. The
+    message names the shortest one.
+    """
+    allowed = free_rigid_motions(config.structure, structure.centreline)
+    found = int(np.sum(omega == 0.0))
+    if found <= allowed:
+        return
+    lengths = np.diff(structure.node_arc_length)
+    shortest = int(np.argmin(lengths))
+    raise ValueError(
+        f"the reduced model has {found} modes without stiffness, the ends of the tube allow"
+        f" {allowed}: the shortest element, {lengths[shortest]:.3g} m at arc length"
+        f" {structure.node_arc_length[shortest]:.4f} m, is too short beside the tube of"
+        f" {structure.centreline.length:.4g} m: give the support there fewer points or more"
+        " height_m, move it, or use structure.theory: timoshenko"
+    )
 
 
 def _damping_and_element_fields(
