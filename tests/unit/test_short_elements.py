@@ -15,7 +15,7 @@ LENGTH = 2.436
 ROOTS = {"clamped": 1.875104069, "free": 4.730040745, "pinned": 3.926602312}  # of beta L
 
 
-def tube(before_end_m, start="clamped", theory="euler_bernoulli"):
+def tube(before_end_m, start="clamped", theory="euler_bernoulli", length=LENGTH):
     """A straight tube with a free end and one contact point a little before it."""
     return check_config(
         {
@@ -31,7 +31,7 @@ def tube(before_end_m, start="clamped", theory="euler_bernoulli"):
                 },
                 "start_m": [0.0, 0.0, 0.0],
                 "start_direction": [0.0, 0.0, 1.0],
-                "segments": [{"kind": "straight", "length_m": LENGTH}],
+                "segments": [{"kind": "straight", "length_m": length}],
                 "start": {"kind": start},
                 "end": {"kind": "free"},
             },
@@ -39,7 +39,7 @@ def tube(before_end_m, start="clamped", theory="euler_bernoulli"):
             "supports": [
                 {
                     "name": "last",
-                    "at_m": [0.0, 0.0, LENGTH - before_end_m],
+                    "at_m": [0.0, 0.0, length - before_end_m],
                     "height_m": 1.9 * before_end_m,
                     "points": 1,
                     "stiffness_N_per_m": 1.0e5,
@@ -76,9 +76,9 @@ def test_a_support_near_the_free_end_keeps_every_mode(before_end_m, start, rigid
 
 
 def test_stiffness_lost_in_round_off_is_refused():
-    with pytest.raises(ValueError, match=r"has 2 modes without stiffness, .* allow 0"):
-        build_model(tube(2.0e-5), motion_only=True)
-    build_model(tube(2.0e-5, theory="timoshenko"), motion_only=True)
+    with pytest.raises(ValueError, match=r"has \d+ modes without stiffness, .* allow 0"):
+        build_model(tube(1.5e-4, length=10 * LENGTH), motion_only=True)
+    build_model(tube(1.5e-4, length=10 * LENGTH, theory="timoshenko"), motion_only=True)
 
 
 ENDS = {

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from . import geometry_checks
+from . import geometry_checks, profile_checks
 from . import name_checks as names
 from .excitation import Excitation
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
@@ -317,7 +317,9 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     *POINT_CHECKS,
     names.chain_names,
     geometry_checks.support_lists,
-    geometry_checks.gaps_of_supports,
+    profile_checks.gaps_of_supports,
+    profile_checks.preloads,
+    profile_checks.profile_normals,
     names.names_twice,
     _repeated_values,
     names.known_points,

@@ -126,8 +126,8 @@ def integrate_batch(
     drive: gives the force at steps first, first + 1, ... (0 to schedule.steps).
     receive: takes the time series as they come, float32, from a sample on, in arrays that are used
         again. The result then holds none, and no array grows with the duration.
-    initial (mode, LANES): modal amplitudes at which every lane starts without velocity, see
-        `rest_state`; by default the model's initial state.
+    initial (mode, LANES): modal amplitudes at which every lane rests, see `rest_state`; the
+        model's initial state is added to them.
 
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the
     run diverged.
@@ -142,10 +142,11 @@ def rest_state(
     """Modal amplitudes (mode, LANES) at which each case rests under its dead loads, against its
     supports where it must; gap, imperfection as of integrate_batch.
 
-    None where it rests at zero (no dead load, all supports centred) or nowhere (a mode is free).
-    Found by integration with the modes damped to REST_DAMPING of critical.
+    None where it rests at zero (no dead load, all supports centred and none pressing) or nowhere
+    (a mode is free). Found by integration with the modes damped to REST_DAMPING of critical and
+    without friction.
     """
-    loaded = model.constant_force.any() or model.centre_offset.any()
+    loaded = model.constant_force.any() or model.centre_offset.any() or model.presses_at_rest
     if not loaded or not (model.omega > 0.0).all():
         return None
     damped = replace(
@@ -153,6 +154,7 @@ def rest_state(
         damping=2.0 * REST_DAMPING * model.omega,
         initial_displacement=np.zeros(model.modes),
         initial_velocity=np.zeros(model.modes),
+        contact_laws=model.contact_laws.with_columns(friction=0.0),
     )
     contraction = checked_contraction(damped, schedule.steps_per_second, schedule.scheme)
     channels = model.drive_shapes.shape[1]
@@ -205,7 +207,7 @@ class _Run:
             self.state,
             self.work,
             self.forces(0, 1)[0],
-            None if initial is None else (initial, np.zeros_like(initial)),
+            start_amplitudes(model, initial),
         )
         # The second filter stage needs this many ticks before the first of a chunk.
         self.history = schedule.filter.second.size - schedule.filter.step
@@ -371,6 +373,21 @@ class _Run:
         )
 
 
+def start_amplitudes(
+    model: ModalModel, rest: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Modal amplitudes and their rates at the start, (mode, LANES) each: the model's initial state,
+    the same in every lane, from where the structure rests.
+
+    rest (mode, LANES): see `rest_state`; None for 0.
+    """
+    ones = np.ones(LANES)
+    displacement = np.outer(model.initial_displacement, ones)
+    if rest is not None:
+        displacement += rest
+    return displacement, np.outer(model.initial_velocity, ones)
+
+
 def start_state(
     layout: ModalLayout,
     modal: Modal,
@@ -379,18 +396,14 @@ def start_state(
     state: State,
     work: Work,
     drive: np.ndarray,
-    initial: tuple[np.ndarray, np.ndarray] | None = None,
+    initial: tuple[np.ndarray, np.ndarray],
 ) -> None:
     """Put the initial displacement, velocity and force into the state.
 
     drive (force_channel, LANES): force at that time, N.
-    initial: (displacement, velocity), modal amplitudes (mode, LANES) each; by default the model's,
-        the same in every lane.
+    initial: (displacement, velocity), modal amplitudes (mode, LANES) each.
     """
-    model, shapes = layout.model, layout.row_shapes
-    if initial is None:
-        ones = np.ones(LANES)
-        initial = np.outer(model.initial_displacement, ones), np.outer(model.initial_velocity, ones)
+    shapes = layout.row_shapes
     q, v = initial
     if np.any(q) or np.any(v):
         state.q[-1] = layout.per_mode(q)

@@ -159,6 +159,11 @@ class ModalModel:
         )
         return not any(np.any(column) for column in lossy)
 
+    @property
+    def presses_at_rest(self) -> bool:
+        """Return True when a flat land begins inside the structure at rest."""
+        return bool(np.any(self.contact_laws.gap < 0.0))
+
     @cached_property
     def blocks(self) -> list[tuple[np.ndarray, list[tuple[int, int]]]]:
         """Return [(mode indices (mode,), [(contact_point, direction), ...])]: uncoupled blocks.

@@ -23,6 +23,7 @@ from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.structure.tube import TubeStructure, build_structure
 
 from .modal_model import ModalModel
+from .preload import with_preload
 from .ritz_basis import (
     FAMILIES,
     DofGroup,
@@ -79,7 +80,8 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     }
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
-    return ModalModel(**with_support_plates(fields, config.supports))
+    fields = with_support_plates(fields, config.supports)
+    return ModalModel(**with_preload(fields, config.supports))
 
 
 def _refuse_false_rigid_modes(

@@ -135,15 +135,19 @@ def build_structure(config: ConfigPart) -> TubeStructure:
     """
     line = build_centreline(config.structure)
     contact = place_contact_points(line, config.supports)
-    key = repr(config.structure), contact.arc_length.tobytes(), contact.support.tobytes()
+    key = (
+        repr(config.structure),
+        contact.arc_length.tobytes(),
+        contact.support.tobytes(),
+        contact.pair.tobytes(),
+    )
     return replace(STRUCTURES.get(key, lambda: _built(config, line, contact)), contact=contact)
 
 
 def _built(config: ConfigPart, line: Centreline, contact: ContactPoints) -> TubeStructure:
     """Return the TubeStructure on a mesh that has nodes at the contact points."""
-    groups = [
-        contact.arc_length[contact.support == number] for number in range(len(config.supports))
-    ]
+    owner = 2 * contact.support + contact.pair  # the two pairs of bars of a lattice are apart
+    groups = [contact.arc_length[owner == number] for number in np.unique(owner)]
     node_arc_length = mesh_arc_lengths(line, config.structure.mesh, groups)
     nodes = np.array([line.position(place) for place in node_arc_length])
     beam = tube_beam(config.structure.section, config.structure.material, config.structure.theory)
