@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from . import geometry_checks, profile_checks
+from . import geometry_checks, initial_checks, profile_checks
 from . import name_checks as names
 from .excitation import Excitation
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
@@ -326,7 +326,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     names.drag_partners,
     names.identified_points,
     names.identification_needs,
-    names.initial_points,
+    initial_checks.initial_fields,
     _every_step,
     names.sensors,
     names.driven_direction_is_recorded,

@@ -1,6 +1,4 @@
-"""The keys of local laws: gap supports, force laws between points, point masses, and the initial
-state.
-"""
+"""The keys of local laws: gap supports, force laws between points, and point masses."""
 
 from __future__ import annotations
 
@@ -10,7 +8,6 @@ from pydantic import Field
 
 from .profiles import Circular, Profile
 from .quantities import (
-    Axis,
     Coefficient,
     Damping_ratio,
     Direction,
@@ -239,33 +236,4 @@ class LocalElement(Section):
     )
     saturation_limit_N: Non_negative = Field(
         0.0, description="Largest force of the saturating spring.", examples=[3.0]
-    )
-
-
-class Initial(Section):
-    """The state at the start of a run. What is left out is at rest at 0."""
-
-    displacement_m: dict[Name, dict[Axis, Number]] = Field(
-        {},
-        description="Initial displacement of named points along x, y or z. For chains and"
-        " matrices only.",
-        examples=[{"mass": {"x": 1.0e-3}}],
-    )
-    velocity_m_per_s: dict[Name, dict[Axis, Number]] = Field(
-        {},
-        description="Initial velocity of named points along x, y or z. For chains and matrices"
-        " only.",
-        examples=[{"mass": {"x": 0.1}}],
-    )
-    base_displacement_m: Number = Field(
-        0.0,
-        description="Initial displacement of the base along the direction of the base motion. Used"
-        " where excitation.obstacles is `fixed`.",
-        examples=[0.0],
-    )
-    base_velocity_m_per_s: Number = Field(
-        0.0,
-        description="Initial velocity of the base along the direction of the base motion. Used"
-        " where excitation.obstacles is `fixed`.",
-        examples=[0.0],
     )

@@ -32,6 +32,7 @@ AXES = {
     "element_shapes": ("mode", "element"),
     "initial_displacement": ("mode",),
     "initial_velocity": ("mode",),
+    "initial_residual": (2,),
     "constant_force": ("mode",),
 }
 NAMES = {
@@ -54,6 +55,8 @@ class ModalModel:
     damping: (mode,) 2 zeta omega in 1/s.
     full_mode_frequencies: (full_mode,) Hz, the lowest of the full model without contact.
     initial_displacement, initial_velocity: (mode,) kg^1/2 m and kg^1/2 m/s, state at the start.
+    initial_residual: (2,) part of the fields wanted that these do not represent, of displacement
+        and velocity, in the norm of the mass.
     constant_force: (mode,) N kg^-1/2.
 
     Contact points:
@@ -115,6 +118,7 @@ class ModalModel:
     local_laws: LocalLaws = None  # type: ignore[assignment]
     initial_displacement: np.ndarray = None  # type: ignore[assignment]
     initial_velocity: np.ndarray = None  # type: ignore[assignment]
+    initial_residual: np.ndarray = None  # type: ignore[assignment]
     constant_force: np.ndarray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
@@ -126,6 +130,7 @@ class ModalModel:
             "local_laws": LocalLaws.neutral(len(self.element_names)),
             "initial_displacement": np.zeros(modes),
             "initial_velocity": np.zeros(modes),
+            "initial_residual": np.zeros(2),
             "constant_force": np.zeros(modes),
         }
         for name, value in neutral.items():

@@ -22,6 +22,7 @@ from vibroimpact.structure.point_structure import PointStructure, build_point_st
 from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.structure.tube import TubeStructure, build_structure
 
+from .initial_state import initial_state
 from .modal_model import ModalModel
 from .preload import with_preload
 from .ritz_basis import (
@@ -48,7 +49,8 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     motion_only: leave out the shape line and the stresses.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
-    unknown, or round-off hides a stiffness, see _refuse_false_rigid_modes.
+    unknown, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload has no static
+    equilibrium, or the initial state is not representable (see initial_state).
     """
     tube = config.structure.kind in TUBES
     structure = build_structure(config) if tube else build_point_structure(config)
@@ -72,8 +74,7 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         **_damping_and_element_fields(structure, omega, shapes, local_rows, config),
         **_contact_fields(structure, shapes, config),
         **_force_fields(structure, shapes, config, point_rows),
-        "initial_displacement": _initial(structure, shapes, config.initial, "displacement_m"),
-        "initial_velocity": _initial(structure, shapes, config.initial, "velocity_m_per_s"),
+        **initial_state(structure, shapes, len(full_frequencies), config.initial, point_rows),
         **_sensor_fields(structure, shapes, config, point_rows),
         **_line_fields(structure, shapes, config, tube and not motion_only),
         **_stress_fields(structure, shapes, config, tube and not motion_only),
@@ -208,19 +209,6 @@ def _modes_on(
         shapes[np.ix_(group.dofs, group.dofs)] = inside
     order = np.argsort(omega, kind="stable")
     return omega[order], shapes[:, order], omega[order] / (2.0 * np.pi)
-
-
-def _initial(structure: Any, shapes: np.ndarray, initial: ConfigPart, key: str) -> np.ndarray:
-    """Return (mode,) amplitudes of an initial field given at named points; zeros by default."""
-    field = np.zeros(structure.dofs)
-    for name, axes in getattr(initial, key).items() if initial is not None else ():
-        for axis, value in axes.items():
-            if axis not in structure.directions.get(name, {}):
-                raise ValueError(
-                    f"initial.{key}.{name}.{axis}: the structure has no such point or direction"
-                )
-            field[structure.directions[name][axis]] = value
-    return shapes.T @ (structure.mass @ field)
 
 
 def modal_basis(
