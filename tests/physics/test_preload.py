@@ -120,18 +120,26 @@ def test_two_bars_carry_their_preloads_together():
     )
 
 
-def test_preload_holds_under_dead_loads_and_on_a_plate():
+def test_a_dead_load_adds_to_the_preload_of_a_bar_on_a_plate():
+    """P + F C_ct / (C_cc + 1 / k + 1 / k_plate): the bar stays in contact, as a spring."""
     plate = {"mass_kg": 0.5, "stiffness_N_per_m": 4.0e5}
-    dead = {"kind": "band_limited", "point": "tip", "direction": [0.0, 1.0, 0.0]}
-    dead |= {"band_Hz": [5.0, 200.0], "constant": [
-        {"point": "tip", "direction": [0.0, 1.0, 0.0], "force_N": 3.0}
-    ]}  # fmt: skip
-    config = cantilever(bar(preload_N=25.0, plate=plate), excitation=dead)
-    quiet = config.model_copy(
-        update={"grid": config.grid.model_copy(update={"load_rms_N": (1e-9,)})}
+    push = {"point": "tip", "direction": [0.0, 1.0, 0.0], "force_N": 3.0}
+    excitation = {
+        "kind": "band_limited",
+        "point": "tip",
+        "direction": [0.0, 1.0, 0.0],
+        "band_Hz": [5.0, 200.0],
+        "constant": [push],
+    }
+    config = cantilever(
+        bar(preload_N=25.0, plate=plate),
+        excitation=excitation,
+        grid={"load_rms_N": [1.0e-9], "gap_m": [1.0e-3], "seeds": 1},
     )
-    force = record_of(quiet)["contact_force"].values[0, 1]
-    assert force == pytest.approx(-25.0, rel=1e-3)
+    soft = flexibility(config) + 1.0 / STIFFNESS + 1.0 / 4.0e5
+    expected = 25.0 + 3.0 * flexibility(config, PLACE, LENGTH) / soft
+    force = record_of(config)["contact_force"].values[0, 1]
+    assert force == pytest.approx(-expected, rel=1e-3)
 
 
 def test_a_record_of_a_pressed_tube_is_silent():

@@ -10,6 +10,7 @@ from vibroimpact.config.reading import ConfigError, check_config, load_config
 from vibroimpact.config.supports import Support
 from vibroimpact.contact.outline import support_outline
 from vibroimpact.contact.profiles import land_normals, lobes
+from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.reduction.reduced_model import build_model
 
 ROOT = Path(__file__).parents[2]
@@ -61,6 +62,27 @@ def test_pairs_of_a_lattice_at_two_heights_are_perpendicular():
     profile = support({"kind": "lattice", "angle_deg": 20.0, "spacing_m": 0.1}).profile
     assert land_normals(profile, DIRECTIONS, 0) == pytest.approx(at_angles(20, 200))
     assert land_normals(profile, DIRECTIONS, 1) == pytest.approx(at_angles(110, 290))
+
+
+def test_each_pair_of_a_lattice_has_the_whole_support():
+    """Bars along two directions at two heights: stiffness, damping and Hertz of a pair are those of
+    the support, and each pair stops its own direction.
+    """
+    config = load_config(ROOT / "config" / "study.yaml")
+    lattice = support(
+        {"kind": "lattice", "normal": [1.0, 0.0, 0.0], "spacing_m": 0.1},
+        points=2,
+        damping_N_s_per_m=10.0,
+        hertz_N_per_m15=1.0e8,
+    )
+    model = build_model(config.model_copy(update={"supports": (lattice,)}), motion_only=True)
+    laws = model.contact_laws
+    assert model.contact_stiffness.tolist() == [2.0e6] * 4
+    assert laws.damping.tolist() == [5.0] * 4 and laws.hertz.tolist() == [5.0e7] * 4
+    assert laws.land_point.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
+    assert laws.land_normal[:4].tolist() == [[1.0, 0.0], [-1.0, 0.0]] * 2
+    assert laws.land_normal[4:].tolist() == [[0.0, 1.0], [0.0, -1.0]] * 2
+    assert model.contact_position[:, 2] == pytest.approx([0.285, 0.315, 0.385, 0.415])
 
 
 def test_rounded_lands_are_lobes_from_the_first_land():
@@ -187,6 +209,13 @@ def test_a_wrong_support_is_named_with_its_remedy(study, keys, parts):
         check_config(study(**keys), "mine")
     lines = [line for line in refusal.value.problems if "supports[0]" in line]
     assert any(all(part in line for part in parts) for line in lines), refusal.value.problems
+
+
+def test_pressing_bars_are_not_turned_into_holes(study):
+    """The effects that give an obstacle another shape are tried where nothing presses."""
+    values = study(preload_N=5.0, profile={"kind": "bars", "angle_deg": 0.0})
+    assert EFFECTS["foliate_obstacle"].locations(values) == ["right"]
+    assert EFFECTS["foliate_obstacle"].locations(study()) == ["all", "left", "right"]
 
 
 def test_a_support_may_end_at_a_joint_and_touch_at_rest(study):

@@ -133,10 +133,11 @@ class Support(Section):
     )
     preload_N: Annotated[Number, Range("give the force in newtons", above=0)] | None = Field(
         None,
-        description="Force with which each flat land of the support presses the tube at rest, under"
-        " the constant forces, shared by the contact points as the stiffness is; null for the gap."
-        " The interference that takes is found with the flexibility of the structure, as long as no"
-        " support without preload touches. A centre_offset_m is added to it.",
+        description="Force with which each flat land of the support presses the structure at rest,"
+        " as assembled: before constant forces, and with no other support touching that has no"
+        " preload. Shared by the contact points as the stiffness is; null for the gap. The"
+        " interference that it takes follows from the flexibility of structure and contact. A"
+        " centre_offset_m is added to it.",
         examples=[20.0],
     )
     centre_offset_m: Annotated[

@@ -1,10 +1,11 @@
 """Bars that press the tube at rest: the interference that a given force takes.
 
-A flat land with the normal n presses a contact point with the force P at rest. The structure then
-yields by u = C (f - sum of P n over the lands), with its static flexibility C and the constant
-forces f, and the contact by p = P / k (or the inverse of Hertz' law). The penetration n·(u - c) - g
-is p for every land of a point when its gap is g = -p and its centre c = u. A bar on one side with
-P is therefore the same as one with the interference P / k + P n·C n (linear statics).
+A flat land with the normal n presses a contact point with the force P at rest, without other
+forces. The structure then yields by u = -C (sum of P n over the lands), with its static flexibility
+C, and the contact by p = P / k (or the inverse of Hertz' law). The penetration n·(u - c) - g is p
+for every land of a point when its gap is g = -p and its centre c = u. A bar on one side with P is
+therefore the same as one with the interference P / k + P n·C n (linear statics). Constant forces
+come on top, and change the force of the bar.
 """
 
 from collections.abc import Sequence
@@ -37,7 +38,7 @@ def with_preload(fields: dict[str, Any], supports: Sequence[ConfigPart]) -> dict
     if not pressed.any():
         return fields
     shapes = fields["contact_shapes"]
-    force = fields["constant_force"].copy()
+    force = np.zeros(len(fields["omega"]))
     laws = fields["contact_laws"]
     press = contact_press(laws, fields["contact_stiffness"])
     for point, normal in zip(laws.land_point, laws.land_normal, strict=True):
