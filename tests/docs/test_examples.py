@@ -7,9 +7,10 @@ import sys
 
 import pytest
 import yaml
+from pydantic import TypeAdapter
 
 from tests.docs.markdown import ROOT, blocks, name, shell_lines
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.reading import Config, check_config
 
 TOP_KEYS = {"study", "structure", "excitation", "grid", "record"}  # of a whole configuration
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
@@ -50,6 +51,15 @@ def test_yaml_examples_are_valid(page, number, text):
     assert isinstance(data, dict)
     if set(data) >= TOP_KEYS:
         check_config(data, name(page))
+
+
+@pytest.mark.parametrize(("page", "number", "text"), blocks("yaml"), ids=example_name)
+def test_yaml_parts_of_a_structure_are_valid(page, number, text):
+    """A block that shows some sections of a study's configuration: each is valid by itself."""
+    if page.name != "your_structure.md":
+        pytest.skip("blocks of other pages may be of other files")
+    for key, value in yaml.safe_load(text).items():
+        TypeAdapter(Config.model_fields[key].annotation).validate_python(value)
 
 
 def test_there_is_a_whole_configuration_among_the_examples():
