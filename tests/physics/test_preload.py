@@ -186,23 +186,36 @@ def test_a_pressed_pair_is_a_spring_of_both_bars():
     assert record["contact_displacement"].values[0, 0] == pytest.approx(expected, abs=1e-7)
 
 
+def test_a_stop_that_is_touched_leaves_the_preload_as_given():
+    """The bar pushes the tube on a stop nearer to the clamped end. The bar has its force; the stop
+    takes R = (P C_12 - g) / (C_22 + 1 / k).
+    """
+    stop = bar(
+        name="stop", at_m=[0.0, 0.0, 0.5], gap_m=1.0e-4, profile={"normal": [0.0, -1.0, 0.0]}
+    )
+    config = cantilever(bar(preload_N=25.0), stop)
+    force = record_of(config)["contact_force"].values[:, 1]
+    pushed = 25.0 * flexibility(config, PLACE, 0.5) - 1.0e-4
+    expected = pushed / (flexibility(config, 0.5, 0.5) + 1.0 / STIFFNESS)
+    assert expected > 10.0
+    assert force[0] == pytest.approx(-25.0, rel=1e-3)
+    assert force[1] == pytest.approx(expected, rel=1e-3)
+
+
 @pytest.mark.parametrize("cubic", [0.0, 2.0e10])
 def test_a_spring_beside_the_structure_takes_its_share(cubic):
-    """K u + c u³ = P at rest."""
+    """K u + c u³ = P at rest, of a Hertzian contact with h p^1.5 = P."""
+    spring = {"name": "spring", "point": "mass", "direction": [1.0, 0.0, 0.0]}
     config = check_config(
         {
             "study": "spring",
-            "structure": {"kind": "chain", "masses": [{"name": "mass", "mass_kg": 1.0}]},
+            "structure": {
+                "kind": "chain",
+                "masses": [{"name": "mass", "mass_kg": 1.0}],
+                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": 5.0e4}],
+            },
             "damping": {"kind": "modal", "other_ratio": 0.0},
-            "elements": [
-                {
-                    "name": "spring",
-                    "point": "mass",
-                    "direction": [1.0, 0.0, 0.0],
-                    "stiffness_N_per_m": 5.0e4,
-                    "cubic_N_per_m3": cubic,
-                }
-            ],
+            "elements": [spring | {"cubic_N_per_m3": cubic}],
             "supports": [
                 {
                     "name": "bar",
@@ -215,23 +228,26 @@ def test_a_spring_beside_the_structure_takes_its_share(cubic):
             ],
             "excitation": {"kind": "none"},
             "grid": {"load_rms_N": [1.0], "gap_m": [1.0], "seeds": 1},
-            "record": {"duration_s": 1.0},
+            "integration": {"steps_per_second": 50000, "start_up_s": 0.0, "imperfection": 0.0},
+            "record": {"duration_s": 0.05, "every_step": True},
         },
         "spring",
     )
-    model = build_model(config)
-    u = model.centre_offset[0, 0]
-    assert 5.0e4 * u + cubic * u**3 == pytest.approx(50.0, rel=1e-9)
-    assert 1.0e7 * (-model.contact_laws.gap[0]) ** 1.5 == pytest.approx(50.0, rel=1e-9)
+    record = record_of(config)
+    u = record["contact_displacement"].values[0, 0]
+    assert 5.0e4 * u + cubic * u**3 == pytest.approx(50.0, rel=1e-4)
+    assert record["contact_force"].values[0, 0] == pytest.approx(50.0, rel=1e-4)
 
 
-def test_a_bar_against_a_loose_structure_is_refused():
-    loose = cantilever(bar(preload_N=5.0))
-    loose = loose.model_copy(
-        update={"structure": loose.structure.model_copy(update={"start": loose.structure.end})}
-    )
-    with pytest.raises(ValueError, match="no static equilibrium under preload_N: hold an end"):
-        build_model(loose, motion_only=True)
+def test_a_pair_presses_a_structure_that_nothing_else_holds():
+    """A bar on one side would push it away, and is refused."""
+    loose = cantilever(bar(preload_N=5.0, profile={"sides": "both"}))
+    free = loose.structure.model_copy(update={"start": loose.structure.end})
+    record = record_of(loose.model_copy(update={"structure": free}))
+    assert np.abs(record["contact_displacement"].values).max() < 1e-12
+    single = cantilever(bar(preload_N=5.0)).model_copy(update={"structure": free})
+    with pytest.raises(ValueError, match="can move freely .* no static equilibrium: hold an end"):
+        build_model(single, motion_only=True)
 
 
 @pytest.mark.parametrize("load", [2.0, 12.0])

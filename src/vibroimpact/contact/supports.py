@@ -146,6 +146,16 @@ def contact_laws(supports: Sequence[ConfigPart], contact: ContactPoints) -> Cont
     )
 
 
+def contact_preload(supports: Sequence[ConfigPart], contact: ContactPoints) -> np.ndarray:
+    """Return (contact_point,) N, the force at rest of each flat land of the contact points.
+
+    supports, contact: as in contact_laws.
+    """
+    share = contact.weight * _pairs_of_bars(contact)[contact.support]
+    totals = [supports[number].preload_N or 0.0 for number in contact.support]
+    return np.array(totals).reshape(-1) * share
+
+
 # column of ContactLaws -> its value from (support, share of the support that the point carries)
 LAW_COLUMNS = {
     "gap": lambda support, share: _gap(support),

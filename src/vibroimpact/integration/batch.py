@@ -137,21 +137,45 @@ def integrate_batch(
 
 
 def rest_state(
-    model: ModalModel, schedule: Schedule, gap: np.ndarray, imperfection: np.ndarray
+    model: ModalModel,
+    schedule: Schedule,
+    gap: np.ndarray,
+    imperfection: np.ndarray,
+    start: np.ndarray | None = None,
 ) -> np.ndarray | None:
     """Modal amplitudes (mode, LANES) at which each case rests under its dead loads, against its
     supports where it must; gap, imperfection as of integrate_batch.
 
+    start (mode, LANES): where it rests without dead loads, see preload.seated; None for zero.
+
     None where it rests at zero (no dead load, all supports centred and none pressing) or nowhere
-    (a mode is free). Found by integration with the modes damped to REST_DAMPING of critical and
-    without friction.
+    (a mode is free, and no start is known).
     """
     loaded = model.constant_force.any() or model.centre_offset.any() or model.presses_at_rest
-    if not loaded or not (model.omega > 0.0).all():
+    if not loaded or (start is None and not (model.omega > 0.0).all()):
         return None
+    return settled(model, schedule, gap, imperfection, start)
+
+
+def settled(
+    model: ModalModel,
+    schedule: Schedule,
+    gap: np.ndarray,
+    imperfection: np.ndarray,
+    start: np.ndarray | None = None,
+) -> np.ndarray:
+    """Modal amplitudes (mode, LANES) that each case comes to from a start (mode, LANES), by default
+    zero; gap, imperfection as of integrate_batch.
+
+    Found by integration with the modes damped to REST_DAMPING of critical and without friction. A
+    mode without stiffness is damped as the lowest one with stiffness.
+    """
+    lowest = model.omega[model.omega > 0.0].min(initial=np.inf)
+    if not np.isfinite(lowest):
+        return np.zeros((model.modes, LANES)) if start is None else start
     damped = replace(
         model,
-        damping=2.0 * REST_DAMPING * model.omega,
+        damping=2.0 * REST_DAMPING * np.maximum(model.omega, lowest),
         initial_displacement=np.zeros(model.modes),
         initial_velocity=np.zeros(model.modes),
         contact_laws=model.contact_laws.with_columns(friction=0.0),
@@ -162,8 +186,8 @@ def rest_state(
     def no_force(first: int, count: int) -> np.ndarray:
         return np.zeros((count, channels, np.size(gap)))
 
-    run = _Run(damped, schedule, gap, imperfection, no_force, contraction)
-    time = REST_DECAY / (REST_DAMPING * model.omega.min())
+    run = _Run(damped, schedule, gap, imperfection, no_force, contraction, start)
+    time = REST_DECAY / (REST_DAMPING * lowest)
     for ticks in _chunks(round(time * schedule.steps_per_second / RATIO), run.chunk):
         run.advance(ticks, 0, recorded=False)
     return run.state.q[-1][run.layout.place]

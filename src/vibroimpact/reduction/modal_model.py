@@ -20,6 +20,7 @@ AXES = {
     "gap_factor": ("contact_point",),
     "centre_offset": ("contact_point", 2),
     "contact_position": ("contact_point", 3),
+    "preload": ("contact_point",),
     "drive_shapes": ("mode", "force_channel"),
     "sensor_shapes": ("mode", "sensor"),
     "sensor_positions": ("sensor", 3),
@@ -70,6 +71,8 @@ class ModalModel:
     centre_offset: (contact_point, 2) m along the contact directions.
     contact_position: (contact_point, 3) m.
     contact_laws: what the contacts have beyond the elastic circle; None for nothing.
+    preload: (contact_point,) N, force at rest of each flat land of the point, whose gap is minus
+        the depth that it takes; 0 for none. integration.preload puts the obstacles there.
 
     Local elements:
 
@@ -113,6 +116,7 @@ class ModalModel:
     full_mode_frequencies: np.ndarray
     # Filled in by __post_init__ where they are None.
     contact_laws: ContactLaws = None  # type: ignore[assignment]
+    preload: np.ndarray = None  # type: ignore[assignment]
     element_shapes: np.ndarray = None  # type: ignore[assignment]
     element_names: tuple[str, ...] = ()
     local_laws: LocalLaws = None  # type: ignore[assignment]
@@ -126,6 +130,7 @@ class ModalModel:
         modes = np.size(self.omega)
         neutral = {
             "contact_laws": ContactLaws.neutral(np.size(self.support_of_point)),
+            "preload": np.zeros(np.size(self.support_of_point)),
             "element_shapes": np.zeros((modes, 0)),
             "local_laws": LocalLaws.neutral(len(self.element_names)),
             "initial_displacement": np.zeros(modes),
@@ -168,6 +173,13 @@ class ModalModel:
     def presses_at_rest(self) -> bool:
         """Return True when a flat land begins inside the structure at rest."""
         return bool(np.any(self.contact_laws.gap < 0.0))
+
+    @property
+    def preload_force(self) -> np.ndarray:
+        """Return (mode,) N kg^-1/2, the force of all preloaded lands on the structure at rest."""
+        laws = self.contact_laws
+        shapes = self.contact_shapes[:, laws.land_point]  # (mode, land, 2)
+        return -np.einsum("mld,ld,l->m", shapes, laws.land_normal, self.preload[laws.land_point])
 
     @cached_property
     def blocks(self) -> list[tuple[np.ndarray, list[tuple[int, int]]]]:

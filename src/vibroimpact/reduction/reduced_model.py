@@ -9,7 +9,7 @@ from scipy import linalg, sparse
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.contact.local_elements import element_laws, element_rows, split_damping
-from vibroimpact.contact.supports import contact_laws
+from vibroimpact.contact.supports import contact_laws, contact_preload
 from vibroimpact.excitation.force_vectors import (
     constant_force_vector,
     force_vector,
@@ -24,7 +24,6 @@ from vibroimpact.structure.tube import TubeStructure, build_structure
 
 from .initial_state import initial_state
 from .modal_model import ModalModel
-from .preload import with_preload
 from .ritz_basis import (
     FAMILIES,
     DofGroup,
@@ -38,6 +37,7 @@ from .structural_modifications import with_frequency_factors, with_point_masses,
 BASES = Memo()
 AXES = dict(zip("xyz", np.eye(3), strict=True))
 MAX_FULL_DOFS = 400  # a structure that is no tube keeps all its modes up to this size
+UNHELD = 1.0e-6  # of the largest modal force: more than this on a mode without stiffness pushes it
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is rigid-body motion
 
 
@@ -82,7 +82,9 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
     fields = with_support_plates(fields, config.supports)
-    return ModalModel(**with_preload(fields, config.supports))
+    model = ModalModel(**fields)
+    _refuse_unheld_preload(model)
+    return model
 
 
 def _refuse_false_rigid_modes(
@@ -106,6 +108,16 @@ def _refuse_false_rigid_modes(
         f" {structure.centreline.length:.4g} m: give the support there fewer points or more"
         " height_m, move it, or use structure.theory: timoshenko"
     )
+
+
+def _refuse_unheld_preload(model: ModalModel) -> None:
+    """Raise ValueError when preloads push a mode that has no stiffness."""
+    force = np.abs(model.preload_force)
+    if force[model.omega == 0.0].max(initial=0.0) > UNHELD * force.max(initial=0.0):
+        raise ValueError(
+            "supports: preload_N presses a structure that can move freely in its direction, it has"
+            " no static equilibrium: hold an end of it, or press from both sides"
+        )
 
 
 def _damping_and_element_fields(
@@ -150,6 +162,7 @@ def _contact_fields(structure: Any, shapes: np.ndarray, config: ConfigPart) -> d
         "centre_offset": contact.centre_offset,
         "contact_position": contact.position,
         "contact_laws": contact_laws(config.supports, contact),
+        "preload": contact_preload(config.supports, contact),
     }
 
 

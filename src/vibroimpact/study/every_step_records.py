@@ -17,6 +17,7 @@ from vibroimpact.integration.batch import Schedule, rest_state
 from vibroimpact.integration.every_step import Traces, integrate_every_step
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.preload import seated
 from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -48,8 +49,10 @@ def trace_cases(
         gap = np.array([case.gap_m for case in batch])
         scheme = config.integration.scheme
         rest = None
-        if model.presses_at_rest:  # what presses would hit the structure at the start
-            rest = rest_state(model, Schedule(rate, rate / RATIO, 0.0, 1.0, scheme), gap, offset)
+        if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+            schedule = Schedule(rate, rate / RATIO, 0.0, 1.0, scheme)
+            offset, rest = seated(model, schedule, gap, offset)
+            rest = rest_state(model, schedule, gap, offset, rest)
         traces = integrate_every_step(model, rate, steps, gap, offset, drive, scheme, rest)
         for lane, case in enumerate(batch):
             yield case, _dataset(config, model, traces, lane, case)

@@ -19,6 +19,7 @@ from vibroimpact.integration.batch import (
 )
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.preload import seated
 from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
@@ -71,8 +72,9 @@ def simulate_cases(
         batch = cases[first : first + LANES]
         gap = np.array([case.gap_m for case in batch])
         offset = np.stack([imperfection(config, model, case) for case in batch], axis=-1)
-        # What presses at rest would hit the structure at the start.
-        rest = rest_state(model, schedule, gap, offset) if model.presses_at_rest else None
+        offset, rest = seated(model, schedule, gap, offset)
+        if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+            rest = rest_state(model, schedule, gap, offset, rest)
         with nullcontext() if writer is None else writer(schedule, batch) as put:
             lanes = integrate_batch(
                 model,
