@@ -134,10 +134,9 @@ class Support(Section):
     preload_N: Annotated[Number, Range("give the force in newtons", above=0)] | None = Field(
         None,
         description="Force with which each flat land of the support presses the structure at rest,"
-        " as assembled: before constant forces, and with no other support touching that has no"
-        " preload. Shared by the contact points as the stiffness is; null for the gap. The"
-        " interference that it takes follows from the flexibility of structure and contact. A"
-        " centre_offset_m is added to it.",
+        " before constant forces; null for the gap. It is shared by the contact points as the"
+        " stiffness is. The interference that it takes follows from the flexibility of structure"
+        " and contact, and from the other supports that touch. A centre_offset_m is added to it.",
         examples=[20.0],
     )
     centre_offset_m: Annotated[
