@@ -40,7 +40,7 @@ def tube(before_end_m, start="clamped", theory="euler_bernoulli", length=LENGTH)
                 {
                     "name": "last",
                     "at_m": [0.0, 0.0, length - before_end_m],
-                    "height_m": 1.9 * before_end_m,
+                    "height_m": max(1.9 * before_end_m, 1.0e-3),
                     "points": 1,
                     "stiffness_N_per_m": 1.0e5,
                 }
@@ -73,6 +73,22 @@ def test_a_support_near_the_free_end_keeps_every_mode(before_end_m, start, rigid
     assert model.omega[rigid : rigid + 2] == pytest.approx(
         (ROOTS[start] / LENGTH) ** 2 * wave_speed, rel=2e-4
     )
+
+
+@pytest.mark.parametrize(("before_end_m", "expected"), [(0.01, (0.02, 0.01)), (0.0, (0.01, 0.005))])
+def test_a_support_flush_with_the_free_end_or_centred_on_it(before_end_m, expected):
+    """Three points over 20 mm: the last one is the end, which then has a contact of its own."""
+    config = tube(before_end_m)
+    support = config.supports[0].model_copy(update={"height_m": 0.02, "points": 3})
+    config = check_config(
+        config.model_copy(update={"supports": (support,)}).model_dump(mode="json"), "flush"
+    )
+    model = build_model(config, motion_only=True)
+    assert LENGTH - model.contact_position[:, 2] == pytest.approx([*expected, 0.0], abs=1e-12)
+    # static flexibility L³ / 3 EI of the tip, under the contact at the end itself
+    beam = tube_beam(config.structure.section, config.structure.material, "euler_bernoulli")
+    flexibility = np.sum((model.contact_shapes[:, 2, 0] / model.omega) ** 2)
+    assert flexibility == pytest.approx(LENGTH**3 / (3.0 * beam.bending_stiffness), rel=1e-5)
 
 
 def test_stiffness_lost_in_round_off_is_refused():

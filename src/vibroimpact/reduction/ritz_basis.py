@@ -27,7 +27,7 @@ RANK_TOLERANCE = 1.0e-5
 SINGULAR_BELOW = 1.0e-14
 DEFINITE_AT = 1.0e-10  # lowest scaled eigenvalue with the shift
 # Round-off of a strain energy, over the sum of the absolute values of its terms. Rigid motions of
-# free tubes have 6e-17 at most. A bending mode at this bound is right to about 1e-3.
+# free tubes have 6e-17 at most. A bending mode at this bound is right to 5e-3.
 ROUND_OFF = 1.0e-15
 
 
