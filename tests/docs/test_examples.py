@@ -7,9 +7,10 @@ import sys
 
 import pytest
 import yaml
+from pydantic import TypeAdapter
 
 from tests.docs.markdown import ROOT, blocks, name, shell_lines
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.reading import Config, check_config
 
 TOP_KEYS = {"study", "structure", "excitation", "grid", "record"}  # of a whole configuration
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
@@ -26,6 +27,9 @@ RULES = "\n".join(
 def example_name(value):
     """The page of an example, for the test's name."""
     return name(value) if hasattr(value, "parts") else None
+
+
+STRUCTURE = yaml.safe_load((ROOT / "config" / "four_supports.yaml").read_text())["structure"]
 
 
 @pytest.mark.parametrize(("page", "number", "text"), blocks("python"), ids=example_name)
@@ -50,6 +54,21 @@ def test_yaml_examples_are_valid(page, number, text):
     assert isinstance(data, dict)
     if set(data) >= TOP_KEYS:
         check_config(data, name(page))
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(number, text) for page, number, text in blocks("yaml") if page.name == "your_structure.md"],
+    ids=str,
+)
+def test_yaml_parts_of_a_structure_are_valid(number, text):
+    """A block that shows some sections of a study's configuration: each is valid by itself, or, of
+    the structure, over that of an example.
+    """
+    for key, value in yaml.safe_load(text).items():
+        if key == "structure" and "kind" not in value:
+            value = {**STRUCTURE, **value}
+        TypeAdapter(Config.model_fields[key].annotation).validate_python(value)
 
 
 def test_there_is_a_whole_configuration_among_the_examples():

@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.contact.supports import contact_arc_lengths, place_contact_points
+from vibroimpact.contact.supports import place_contact_points
 from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.geometry.support_spans import contact_places
 
 LINE = build_centreline(SimpleNamespace(kind="u_tube", leg_length_m=0.7, bend_radius_m=0.3))
 
@@ -26,10 +27,48 @@ def support(**changes):
 
 
 def test_points_are_evenly_spaced_with_both_edges():
-    assert contact_arc_lengths(LINE, support()) == pytest.approx(
-        [0.335, 0.3425, 0.35, 0.3575, 0.365]
+    assert contact_places(LINE, support()) == pytest.approx([0.335, 0.3425, 0.35, 0.3575, 0.365])
+    assert contact_places(LINE, support(points=1)) == pytest.approx([0.35])
+
+
+@pytest.mark.parametrize(
+    ("z", "points", "expected"),
+    [
+        (0.015, 3, [0.0, 0.015, 0.03]),  # flush with the end
+        (0.01502, 3, [0.0, 0.01501, 0.03002]),  # as good as flush: the edge lies on the end
+        (0.0, 3, [0.0, 0.0075, 0.015]),  # centred on the end: cut there
+        (0.0, 1, [0.0]),
+        (0.7 - 0.015, 2, [0.67, 0.7]),  # flush with the joint of leg and bend
+    ],
+)
+def test_a_support_at_an_end_ends_there(z, points, expected):
+    places = contact_places(LINE, support(at_m=[-0.3, 0.0, z], points=points))
+    assert places == pytest.approx(expected, abs=1e-12)
+    assert set(places.tolist()) >= {0.0, 0.7} & set(expected)  # exactly, or a short element is left
+
+
+def test_bars_of_a_lattice_have_all_points_at_two_heights():
+    lattice = SimpleNamespace(kind="lattice", normal=None, angle_deg=0.0, spacing_m=0.1)
+    contact = place_contact_points(
+        LINE,
+        [support(profile=lattice, points=2, gap_factor=(1.0, 1.2)), support(at_m=[0.3, 0, 0.3])],
     )
-    assert contact_arc_lengths(LINE, support(points=1)) == pytest.approx([0.35])
+    assert contact.arc_length[:4] == pytest.approx([0.285, 0.315, 0.385, 0.415])
+    assert contact.pair.tolist() == [0, 0, 1, 1] + [0] * 5
+    assert contact.support.tolist() == [0] * 4 + [1] * 5
+    assert contact.stiffness[:4].tolist() == [2.0e6] * 4  # each pair has the whole stiffness
+    assert contact.weight[:4].tolist() == [0.25] * 4
+    assert contact.gap_factor[:4].tolist() == [1.0, 1.2] * 2
+
+
+def test_directions_do_not_swap_along_a_support_on_a_bend():
+    """Halfway round the bend, x and z are equally aligned with the tube."""
+    at = [-0.3 * np.sqrt(0.5), 0.0, 0.7 + 0.3 * np.sqrt(0.5)]
+    contact = place_contact_points(LINE, [support(at_m=at, points=9)])
+    tangents = np.array([LINE.direction(place) for place in contact.arc_length])
+    assert np.abs(np.einsum("pdx,px->pd", contact.directions, tangents)).max() < 1e-12
+    first = contact.directions[:, 0]
+    assert (np.sum(first[:-1] * first[1:], axis=1) > 0.99).all()
 
 
 def test_a_number_is_the_total_and_a_list_is_per_point():
@@ -78,7 +117,6 @@ def test_no_support_gives_no_contact_points():
     "changes, message",
     [
         ({"at_m": [-0.3, 0.02, 0.35]}, "support left at .* is 0.0200 m off the tube"),
-        ({"at_m": [-0.3, 0.0, 0.01]}, "support left reaches from arc length -0.0050"),
         (
             {"stiffness_N_per_m": [1.0e6, 1.0e6]},
             "support left: stiffness_N_per_m has 2 values for 5 points",

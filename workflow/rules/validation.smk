@@ -1,6 +1,6 @@
 # Verification and validation: reference cases, convergence, claims of the paper, prediction.
 VALIDATION = "results/validation"
-REFERENCE_GROUPS = ("frequencies", "impacts", "r11_stops_10", "r11_stops_100")
+REFERENCE_GROUPS = ("frequencies", "impacts", "tubes", "r11_stops_10", "r11_stops_100")
 PREDICTION_CASES = ("left_out", "gaps", "second_tube")
 
 

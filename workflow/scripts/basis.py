@@ -12,7 +12,7 @@ from vibroimpact.stopwatch import Stopwatch
 redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
 model = build_model(config)
-print(f"{model.modes} modes")
+print(f"{model.modes} modes; residuals of the initial state: {model.initial_residual.tolist()}")
 write_model(model, snakemake.output.model, origin(snakemake.params.config, snakemake.input.library))
 write_table(basis_frequency_errors(config), snakemake.output.quality)
 print(Stopwatch().line())

@@ -1,5 +1,5 @@
-"""A group of reference cases through the public interface: frequencies, impacts, or random motion
-between stops.
+"""A group of reference cases through the public interface: frequencies, impacts, tubes, or random
+motion between stops.
 """
 
 from pathlib import Path

@@ -16,7 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from . import geometry_checks, section_checks, turbulence_checks
+from . import (
+    geometry_checks,
+    initial_checks,
+    profile_checks,
+    section_checks,
+    turbulence_checks,
+)
 from . import name_checks as names
 from .excitation import Excitation
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
@@ -326,14 +332,16 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     *POINT_CHECKS,
     names.chain_names,
     geometry_checks.support_lists,
-    geometry_checks.gaps_of_supports,
+    profile_checks.gaps_of_supports,
+    profile_checks.preloads,
+    profile_checks.profile_normals,
     names.names_twice,
     _repeated_values,
     names.known_points,
     names.drag_partners,
     names.identified_points,
     names.identification_needs,
-    names.initial_points,
+    initial_checks.initial_fields,
     _every_step,
     names.sensors,
     names.driven_direction_is_recorded,

@@ -10,11 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M, Centreline, build_centreline
+from vibroimpact.geometry.centreline import (
+    LOCATION_TOLERANCE_M,
+    SAME_PLACE_M,
+    Centreline,
+    build_centreline,
+)
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.geometry.support_spans import contact_places, support_middles, support_spans
 
 from .schema import Grid
-from .structure import Path, Structure, UTube
+from .structure import Path, UTube
 from .supports import Support
 
 Problems = Iterator[tuple[str, Any, str]]
@@ -87,7 +93,9 @@ def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -
 
 
 def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless supports are on one segment of the tube each and do not overlap."""
+    """Yield a problem unless supports are on one segment of the tube each, where it can move, and
+    do not overlap.
+    """
     centreline = centreline_of(structure)
     if centreline is None:
         return
@@ -100,31 +108,93 @@ def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Proble
                 "is on a tube: give at_m and height_m, and no point",
             )
             continue
-        off = list(off_the_tube(centreline, f"supports[{index}].at_m", support.at_m))
+        place = f"supports[{index}]"
+        off = list(off_the_tube(centreline, f"{place}.at_m", support.at_m))
+        off = off or list(_lattice_bars(centreline, place, support))
         yield from off
         if off:
             continue
-        middle = centreline.locate(support.at_m, support.name)
-        segment = centreline.segment_at(middle)
-        low, high = middle - support.height_m / 2, middle + support.height_m / 2
-        if low < segment.begin - TOLERANCE or high > segment.end + TOLERANCE:
-            room = 2 * min(middle - segment.begin, segment.end - middle)
+        yield from _across_a_joint(centreline, place, support)
+        yield from _at_a_held_end(structure, centreline, place, support)
+        for low, high in support_spans(centreline, support):
+            for other, other_low, other_high in taken:
+                if low < other_high - TOLERANCE and other_low < high - TOLERANCE:
+                    yield (
+                        f"{place}.at_m",
+                        list(support.at_m),
+                        f"'{support.name}' overlaps '{other}': move one or lower its height_m",
+                    )
+            taken.append((support.name, low, high))
+
+
+def _lattice_bars(centreline: Centreline, place: str, support: Support) -> Problems:
+    """Yield a problem unless the pairs of bars of a lattice are apart, and on the tube."""
+    spacing = getattr(support.profile, "spacing_m", 0.0)
+    if spacing == 0.0:
+        return
+    assert support.at_m is not None and support.height_m is not None
+    if spacing < support.height_m:
+        yield (
+            f"{place}.profile.spacing_m",
+            spacing,
+            (
+                f"is less than the height of the bars, height_m = {support.height_m:g}: give 0 for"
+                " bars that cross at the same height, or more"
+            ),
+        )
+    middle = centreline.locate(support.at_m, support.name)
+    room = 2 * min(middle, centreline.length - middle)
+    if spacing > room:
+        yield (
+            f"{place}.profile.spacing_m",
+            spacing,
+            f"puts a pair of bars beyond an end of the tube: at most {room:.4g} m there",
+        )
+
+
+def _across_a_joint(centreline: Centreline, place: str, support: Support) -> Problems:
+    """Yield a problem where a support reaches across a joint of two segments."""
+    joints = [segment.end for segment in centreline.segments[:-1]]
+    spans = zip(
+        support_middles(centreline, support), support_spans(centreline, support), strict=True
+    )
+    for middle, (low, high) in spans:
+        for joint in joints:
+            if low < joint - TOLERANCE and joint < high - TOLERANCE:
+                room = 2 * abs(joint - middle)
+                position = np.round(centreline.position(joint), 4).tolist()
+                yield (
+                    f"{place}.height_m",
+                    support.height_m,
+                    (
+                        f"reaches beyond the segment of the tube that '{support.name}' is on, from"
+                        f" arc length {low:.4g} to {high:.4g} m across the joint at {joint:.4g} m,"
+                        f" {position}: at most {room:.4g} m there (in metres?), or move it off the"
+                        " joint, or make it two supports that meet there"
+                    ),
+                )
+
+
+def _at_a_held_end(
+    structure: Tube, centreline: Centreline, place: str, support: Support
+) -> Problems:
+    """Yield a problem where a support has a contact point at an end that does not move."""
+    kinds = (
+        (structure.root.kind, structure.root.kind)
+        if structure.kind == "u_tube"
+        else (structure.start.kind, structure.end.kind)
+    )
+    places = contact_places(centreline, support)
+    for kind, end in zip(kinds, (0.0, centreline.length), strict=True):
+        if kind in ("clamped", "pinned") and np.any(np.abs(places - end) < SAME_PLACE_M):
             yield (
-                f"supports[{index}].height_m",
-                support.height_m,
+                f"{place}.at_m",
+                list(support.at_m or ()),
                 (
-                    f"reaches beyond the segment of the tube that '{support.name}' is on: at most"
-                    f" {room:.4g} m there (in metres?)"
+                    f"'{support.name}' reaches to the {kind} end of the tube, which does not move:"
+                    " lower its height_m or move it away from the end"
                 ),
             )
-        for other, other_low, other_high in taken:
-            if low < other_high - TOLERANCE and other_low < high - TOLERANCE:
-                yield (
-                    f"supports[{index}].at_m",
-                    list(support.at_m),
-                    f"'{support.name}' overlaps '{other}': move one or lower its height_m",
-                )
-        taken.append((support.name, low, high))
 
 
 def support_lists(supports: Sequence[Support]) -> Problems:
@@ -173,15 +243,4 @@ def offsets(structure: Tube, supports: Sequence[Support]) -> Problems:
                 f"supports[{index}].centre_offset_m",
                 largest,
                 f"is larger than half the diameter, {radius:g} m: in metres?",
-            )
-
-
-def gaps_of_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless only flat stops touch at rest."""
-    for index, support in enumerate(supports):
-        if support.gap_m is not None and support.gap_m <= 0.0 and support.profile.kind != "planes":
-            yield (
-                f"supports[{index}].gap_m",
-                support.gap_m,
-                "must be > 0 round a centre: only flat stops (profile planes) may touch or press",
             )

@@ -14,7 +14,7 @@ import numpy as np
 from .excitation import Excitation
 from .schema import Identification, RecordKeys
 from .structure import Structure
-from .supports import Initial, LocalElement, Support
+from .supports import LocalElement, Support
 
 Problems = Iterator[tuple[str, Any, str]]
 
@@ -52,7 +52,7 @@ def known_points(
     elements: Sequence[LocalElement],
 ) -> Problems:
     """Yield a problem unless points that the configuration names are there."""
-    names = _names_of_points(structure, points)
+    names = names_of_points(structure, points)
     named = list(_force_points(excitation))
     named += [
         (f"record.sensors.points[{i}]", name)
@@ -72,7 +72,7 @@ def known_points(
             yield place, name, f"is not one of the named points: {remedy}"
 
 
-def _names_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> list[str]:
+def names_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> list[str]:
     """Return the names of the points that a structure has."""
     if structure.kind == "chain":
         return [mass.name for mass in structure.masses]
@@ -175,18 +175,6 @@ def chain_names(structure: Structure) -> Problems:
                     end,
                     f"is no mass: give one of {', '.join(names)}, or ground",
                 )
-
-
-def initial_points(structure: Structure, initial: Initial) -> Problems:
-    """Yield a problem unless only a chain or matrices start in motion."""
-    if structure.kind in (*TUBES, "identified") and (
-        initial.displacement_m or initial.velocity_m_per_s
-    ):
-        yield (
-            "initial",
-            "given",
-            "sets dofs of a chain or of matrices: a tube and measured modes start at rest",
-        )
 
 
 def sensors(record: RecordKeys) -> Problems:

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .excitation import Excitation
+from .initial import Initial
 from .quantities import (
     Axis,
     Band_Hz,
@@ -39,7 +40,7 @@ from .quantities import (
     Whole,
 )
 from .structure import Damping, ModalDamping, Structure
-from .supports import Initial, LocalElement, PointMass, Support
+from .supports import LocalElement, PointMass, Support
 
 
 class Basis(Section):

@@ -1,16 +1,13 @@
-"""The keys of local laws: gap supports, force laws between points, point masses, and the initial
-state.
-"""
+"""The keys of local laws: gap supports, force laws between points, and point masses."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
+from .profiles import Circular, Profile
 from .quantities import (
-    Axis,
-    By_kind,
     Coefficient,
     Damping_ratio,
     Direction,
@@ -19,7 +16,6 @@ from .quantities import (
     Mass_kg,
     Name,
     Non_negative,
-    Not_empty,
     Number,
     One,
     One_or_list,
@@ -39,53 +35,6 @@ Friction = Annotated[
     Range("Coulomb's coefficient, 0.2 for steel on steel", at_least=0, at_most=10),
     Unit("1"),
 ]
-
-
-class Circular(Section):
-    """A circular obstacle: contact begins when the distance from its centre exceeds the gap."""
-
-    kind: Literal["circular"] = Field(description="This kind of profile.", examples=["circular"])
-
-
-class Planes(Section):
-    """Flat stops, each at the distance of the gap from the obstacle's centre. The penetration of a
-    stop is n·d - gap, with n its normal and d the displacement from the obstacle's centre. One
-    stop alone is one-sided.
-    """
-
-    kind: Literal["planes"] = Field(description="This kind of profile.", examples=["planes"])
-    normals_deg: Annotated[tuple[Number, ...], Not_empty] = Field(
-        description="Directions of the stops as seen from the obstacle's centre, one angle each."
-        " Angles count from the support's first transverse direction (0) towards the second (90): a"
-        " stop at 0 limits motion in the positive sense of the first direction, a stop at 180 in"
-        " the negative sense.",
-        examples=[[0.0, 180.0]],
-    )
-
-
-class Lobes(Section):
-    """A foliate obstacle. Contact begins at the distance R(theta) = gap + depth_m (1 - cos(count
-    (theta - angle_deg))) / 2 from its centre, with theta counted from the support's first
-    transverse direction towards the second. The force is normal to this profile.
-    """
-
-    kind: Literal["lobes"] = Field(description="This kind of profile.", examples=["lobes"])
-    count: Annotated[Whole, Range("a quadrifoil has 4", at_least=2, at_most=24)] = Field(
-        description="Number of lands, the places where R is smallest: 3 for a trefoil, 4 for a"
-        " quadrifoil.",
-        examples=[4],
-    )
-    depth_m: Non_negative = Field(
-        description="Largest minus smallest R: the clearance is the gap at a land and gap +"
-        " depth_m midway between two lands.",
-        examples=[2.0e-3],
-    )
-    angle_deg: Number = Field(
-        0.0,
-        description="Direction of the first land, counted from the first transverse direction"
-        " towards the second.",
-        examples=[45.0],
-    )
 
 
 class Plate(Section):
@@ -117,14 +66,15 @@ class PointMass(Section):
 
 class Support(Section):
     """A gap support: contact points evenly spaced over its height, both edges included; a single
-    contact point is at the middle.
+    contact point is at the middle. What reaches past an end of the tube is cut there.
 
     On a tube, give at_m and height_m. On any other structure, give point, and other_point if the
     support is between two points; it then has one contact point. The two transverse directions of a
     support on a tube are perpendicular to the tube: the two global axes least aligned with the
     tube, in the order x, y, z, made perpendicular to it. They are x and y where the tube runs along
-    z, y and z where it runs along x, x and z where it runs along y. On any other structure they are
-    x and y.
+    z, y and z where it runs along x, x and z where it runs along y. On a bend they are those at the
+    middle of the support, made perpendicular to the tube at each contact point. On any other
+    structure they are x and y.
     """
 
     name: Name = Field(description="Name of the support.", examples=["left"])
@@ -136,8 +86,8 @@ class Support(Section):
     )
     height_m: Height_m | None = Field(
         None,
-        description="Height of the support along the tube. It must lie within one segment. Tubes"
-        " only.",
+        description="Height of the support along the tube: its plate, or the length along the tube"
+        " over which a bar touches. It must lie within one segment. Tubes only.",
         examples=[0.030],
     )
     points: Annotated[
@@ -181,6 +131,14 @@ class Support(Section):
         " stops it may be 0 or negative: the support then touches or presses at rest.",
         examples=[1.0e-3],
     )
+    preload_N: Annotated[Number, Range("give the force in newtons", above=0)] | None = Field(
+        None,
+        description="Force with which each flat land of the support presses the structure at rest,"
+        " before constant forces; null for the gap. It is shared by the contact points as the"
+        " stiffness is. The interference that it takes follows from the flexibility of structure"
+        " and contact, and from the other supports that touch. A centre_offset_m is added to it.",
+        examples=[20.0],
+    )
     centre_offset_m: Annotated[
         Annotated[Pair, One] | Annotated[tuple[Pair, ...], List], One_or_list_of_pairs
     ] = Field(
@@ -218,9 +176,7 @@ class Support(Section):
         " of the contact stiffness. Used where friction is not 0.",
         examples=[1.0],
     )
-    profile: Annotated[Circular | Planes | Lobes, By_kind] = Field(
-        Circular(kind="circular"), description="Shape of the obstacle."
-    )
+    profile: Profile = Field(Circular(kind="circular"), description="Shape of the obstacle.")
     plate: Plate | None = Field(
         None,
         description="Flexible plate that carries the support; null for a rigid one.",
@@ -280,33 +236,4 @@ class LocalElement(Section):
     )
     saturation_limit_N: Non_negative = Field(
         0.0, description="Largest force of the saturating spring.", examples=[3.0]
-    )
-
-
-class Initial(Section):
-    """The state at the start of a run. What is left out is at rest at 0."""
-
-    displacement_m: dict[Name, dict[Axis, Number]] = Field(
-        {},
-        description="Initial displacement of named points along x, y or z. For chains and"
-        " matrices only.",
-        examples=[{"mass": {"x": 1.0e-3}}],
-    )
-    velocity_m_per_s: dict[Name, dict[Axis, Number]] = Field(
-        {},
-        description="Initial velocity of named points along x, y or z. For chains and matrices"
-        " only.",
-        examples=[{"mass": {"x": 0.1}}],
-    )
-    base_displacement_m: Number = Field(
-        0.0,
-        description="Initial displacement of the base along the direction of the base motion. Used"
-        " where excitation.obstacles is `fixed`.",
-        examples=[0.0],
-    )
-    base_velocity_m_per_s: Number = Field(
-        0.0,
-        description="Initial velocity of the base along the direction of the base motion. Used"
-        " where excitation.obstacles is `fixed`.",
-        examples=[0.0],
     )

@@ -7,9 +7,11 @@ import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline
-from vibroimpact.geometry.directions import transverse_directions
+from vibroimpact.geometry.directions import carried_directions, transverse_directions
+from vibroimpact.geometry.support_spans import contact_places
 
 from .laws import ContactLaws
+from .profiles import land_normals, lobes
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +23,8 @@ class ContactPoints:
     directions: (contact_point, 2, 3), unit vectors of the two directions in which contact acts.
     weight: (contact_point,), share of the support's stiffness; sums to 1 per support.
     support: (contact_point,) int, number of the support.
+    pair: (contact_point,) int, number of the pair of bars within its support: 1 for the second pair
+        of a lattice at a height of its own, else 0.
     stiffness: (contact_point,) N/m.
     gap_factor: (contact_point,), times the case's gap.
     centre_offset: (contact_point, 2) m along the two directions.
@@ -31,28 +35,10 @@ class ContactPoints:
     directions: np.ndarray
     weight: np.ndarray
     support: np.ndarray
+    pair: np.ndarray
     stiffness: np.ndarray
     gap_factor: np.ndarray
     centre_offset: np.ndarray
-
-
-def contact_arc_lengths(centreline: Centreline, support: ConfigPart) -> np.ndarray:
-    """Return (contact_point,) arc lengths in m of a support's contact points.
-
-    They are evenly spaced over the height of the support, both edges included; a single point is at
-    mid-height. Raises ValueError when the support is off the tube or reaches past one of its ends.
-    """
-    middle = centreline.locate(support.at_m, f"support {support.name}")
-    if support.points == 1:
-        return np.array([middle])
-    half = 0.5 * support.height_m
-    if middle - half < SAME_PLACE_M or middle + half > centreline.length - SAME_PLACE_M:
-        raise ValueError(
-            f"support {support.name} reaches from arc length {middle - half:.4f} to"
-            f" {middle + half:.4f} m, past an end of the tube (0 to {centreline.length:.4f} m):"
-            " move it or lower its height_m"
-        )
-    return np.linspace(middle - half, middle + half, support.points)
 
 
 def place_contact_points(centreline: Centreline, supports: Sequence[ConfigPart]) -> ContactPoints:
@@ -65,21 +51,45 @@ def place_contact_points(centreline: Centreline, supports: Sequence[ConfigPart])
     """
     if not supports:
         return contacts_at_points(supports)
-    places = [contact_arc_lengths(centreline, support) for support in supports]
+    places = [contact_places(centreline, support) for support in supports]
     _require_apart(supports, places)
-    stiffness = [_per_point(support, "stiffness_N_per_m", share=True) for support in supports]
+    # A lattice has its points once per pair of bars.
+    pairs = [len(at) // support.points for at, support in zip(places, supports, strict=True)]
+    stiffness = [
+        np.tile(_per_point(support, "stiffness_N_per_m", share=True), count)
+        for support, count in zip(supports, pairs, strict=True)
+    ]
     arc_length = np.concatenate(places)
     return ContactPoints(
         arc_length=arc_length,
         position=np.array([centreline.position(place) for place in arc_length]),
-        directions=np.array(
-            [transverse_directions(centreline.direction(place)) for place in arc_length]
+        directions=np.concatenate(
+            [
+                _directions(centreline, support, at)
+                for support, at in zip(supports, places, strict=True)
+            ]
         ),
         weight=np.concatenate([values / values.sum() for values in stiffness]),
         support=np.repeat(np.arange(len(supports)), [len(points) for points in places]),
+        pair=np.concatenate(
+            [
+                np.repeat(np.arange(count), support.points)
+                for support, count in zip(supports, pairs, strict=True)
+            ]
+        ),
         stiffness=np.concatenate(stiffness),
-        gap_factor=np.concatenate([_per_point(support, "gap_factor") for support in supports]),
-        centre_offset=np.concatenate([_offsets(support) for support in supports]),
+        gap_factor=np.concatenate(
+            [
+                np.tile(_per_point(support, "gap_factor"), count)
+                for support, count in zip(supports, pairs, strict=True)
+            ]
+        ),
+        centre_offset=np.concatenate(
+            [
+                np.tile(_offsets(support), (count, 1))
+                for support, count in zip(supports, pairs, strict=True)
+            ]
+        ),
     )
 
 
@@ -95,6 +105,7 @@ def contacts_at_points(supports: Sequence[ConfigPart]) -> ContactPoints:
         directions=np.tile(np.eye(3)[:2], (len(supports), 1, 1)),
         weight=np.ones(len(supports)),
         support=np.arange(len(supports)),
+        pair=np.zeros(len(supports), int),
         stiffness=stiffness,
         gap_factor=np.array([np.ravel(support.gap_factor)[0] for support in supports]),
         centre_offset=np.array(
@@ -106,15 +117,14 @@ def contacts_at_points(supports: Sequence[ConfigPart]) -> ContactPoints:
 def contact_laws(supports: Sequence[ConfigPart], contact: ContactPoints) -> ContactLaws:
     """Return the ContactLaws of the contact points of supports.
 
-    supports: entries of the configuration; totals of a support are shared by its points.
+    supports: entries of the configuration; totals of a support are shared by its points, in a
+        lattice by those of each pair of bars.
     contact: their contact points.
     """
+    share = contact.weight * _pairs_of_bars(contact)[contact.support]
     columns = {
         column: np.array(
-            [
-                value(supports[number], contact.weight[point])
-                for point, number in enumerate(contact.support)
-            ],
+            [value(supports[number], share[point]) for point, number in enumerate(contact.support)],
             dtype=float,
         )
         for column, value in LAW_COLUMNS.items()
@@ -122,38 +132,75 @@ def contact_laws(supports: Sequence[ConfigPart], contact: ContactPoints) -> Cont
     columns["stick_stiffness"] = contact.stiffness * [
         supports[number].stick_stiffness_ratio for number in contact.support
     ]
-    lands = [
-        (point, np.deg2rad(angle))
+    shapes = [
+        (supports[number].profile, contact.directions[point], int(contact.pair[point]))
         for point, number in enumerate(contact.support)
-        if supports[number].profile.kind == "planes"
-        for angle in supports[number].profile.normals_deg
     ]
-    angles = np.array([angle for _, angle in lands])
+    rounded = np.array([lobes(profile, directions) for profile, directions, _ in shapes])
+    columns |= zip(("lobes", "lobe_depth", "lobe_angle"), rounded.reshape(-1, 3).T, strict=True)
+    lands = [land_normals(*shape) for shape in shapes]
     return ContactLaws(
         **{name: np.reshape(values, len(contact.support)) for name, values in columns.items()},
-        land_point=np.array([point for point, _ in lands], dtype=int),
-        # Rounded to exact zeros across a plane, so that the planes of motion stay uncoupled.
-        land_normal=np.round(np.column_stack([np.cos(angles), np.sin(angles)]), 15),
+        land_point=np.repeat(np.arange(len(lands)), [len(normals) for normals in lands]),
+        land_normal=np.concatenate([np.zeros((0, 2)), *lands]),
     )
 
 
-def _lobes(key, factor=1.0):
-    return lambda support, share: (
-        factor * getattr(support.profile, key) if support.profile.kind == "lobes" else 0.0
-    )
+def contact_preload(supports: Sequence[ConfigPart], contact: ContactPoints) -> np.ndarray:
+    """Return (contact_point,) N, the force at rest of each flat land of the contact points.
+
+    supports, contact: as in contact_laws.
+    """
+    share = contact.weight * _pairs_of_bars(contact)[contact.support]
+    totals = [supports[number].preload_N or 0.0 for number in contact.support]
+    return np.array(totals).reshape(-1) * share
 
 
 # column of ContactLaws -> its value from (support, share of the support that the point carries)
 LAW_COLUMNS = {
-    "gap": lambda support, share: np.nan if support.gap_m is None else support.gap_m,
+    "gap": lambda support, share: _gap(support),
     "damping": lambda support, share: support.damping_N_s_per_m * share,
     "hunt_crossley": lambda support, share: support.hunt_crossley_s_per_m,
     "hertz": lambda support, share: support.hertz_N_per_m15 * share,
     "friction": lambda support, share: support.friction,
-    "lobes": _lobes("count"),
-    "lobe_depth": _lobes("depth_m"),
-    "lobe_angle": _lobes("angle_deg", np.pi / 180.0),
 }
+
+
+def _gap(support: ConfigPart) -> float:
+    """Return the gap in m of a support: minus the depth that its preload takes, NaN for that of the
+    case.
+    """
+    if support.preload_N is None:
+        return np.nan if support.gap_m is None else support.gap_m
+    if support.hertz_N_per_m15 > 0.0:
+        return -float((support.preload_N / support.hertz_N_per_m15) ** (2.0 / 3.0))
+    return -support.preload_N / float(np.sum(support.stiffness_N_per_m))
+
+
+def _pairs_of_bars(contact: ContactPoints) -> np.ndarray:
+    """Return (support,) numbers of pairs of bars: 2 for a lattice with spacing_m, else 1."""
+    pairs = np.ones(int(contact.support.max(initial=-1)) + 1, dtype=int)
+    np.maximum.at(pairs, contact.support, contact.pair + 1)
+    return pairs
+
+
+def _directions(centreline: Centreline, support: ConfigPart, places: np.ndarray) -> np.ndarray:
+    """Return (contact_point, 2, 3), the transverse directions at arc lengths (contact_point,) in m.
+
+    They are those at the middle of the support, turned with the tube: the two global axes that are
+    least aligned with a tube may be others at its edges.
+    """
+    middle = centreline.direction(centreline.locate(support.at_m, f"support {support.name}"))
+    directions = transverse_directions(middle)
+    tangents = [centreline.direction(place) for place in places]
+    return np.array(
+        [
+            directions
+            if np.array_equal(tangent, middle)
+            else carried_directions(directions, tangent)
+            for tangent in tangents
+        ]
+    )
 
 
 def _per_point(support: ConfigPart, key: str, share: bool = False) -> np.ndarray:

@@ -12,6 +12,7 @@ from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO, SLOTS
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.preload import seated
 
 IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
 LOST = (
@@ -77,7 +78,8 @@ def simulate_records(model, schedule, forces, runs, kinds):
             axis=-1,
         )
 
-        initial = rest_state(model, schedule, gaps, offsets)
+        offsets, seat = seated(model, schedule, gaps, offsets)
+        initial = rest_state(model, schedule, gaps, offsets, seat)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
 
         lost = set()

@@ -39,7 +39,7 @@ EFFECT = Effect(
         ),
     ),
     apply=apply,
-    locations=places.supports,
+    locations=places.holes,
     broken=("T4",),
     aliases=("dry_friction",),
 )

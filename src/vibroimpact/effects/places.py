@@ -24,6 +24,23 @@ def supports(values: Values) -> list[str]:
     return ["all", *names] if len(names) > 1 else ["all"]
 
 
+def holes(values: Values) -> list[str]:
+    """Return the places of an effect that turns obstacles into others: those of `supports` that do
+    not press at rest, which only the flat lands that they have can do.
+    """
+    pressing = [support["name"] for support in values["supports"] if _presses(support)]
+    if not pressing:
+        return supports(values)
+    names = [support["name"] for support in values["supports"] if support["name"] != STOP]
+    return [name for name in names if name not in pressing]
+
+
+def _presses(support: Values) -> bool:
+    """Return whether a support touches or presses the structure at rest."""
+    gap = support.get("gap_m")
+    return support.get("preload_N") is not None or (gap is not None and gap <= 0.0)
+
+
 def driven(values: Values) -> list[str]:
     """Return the name of the drive point."""
     return [values["excitation"]["point"]]

@@ -40,3 +40,13 @@ def transverse_directions(tangent: np.ndarray) -> np.ndarray:
     e1 = unit_vector(e1)
     e2 = np.eye(3)[second] - tangent[second] * tangent
     return np.array([e1, unit_vector(e2 - (e2 @ e1) * e1)])
+
+
+def carried_directions(directions: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+    """Return (2, 3), transverse directions made perpendicular to another tangent (3,) near by.
+
+    directions: (2, 3) unit vectors perpendicular to each other.
+    """
+    first = unit_vector(directions[0] - (directions[0] @ tangent) * tangent)
+    second = directions[1] - (directions[1] @ tangent) * tangent
+    return np.array([first, unit_vector(second - (second @ first) * first)])

@@ -9,6 +9,11 @@ import numpy as np
 
 from .centreline import SAME_PLACE_M, Centreline
 
+# Least length of an element, of that of a segment in elements_per_span. The bending stiffness of an
+# element grows with its length to the power -3 and takes its round-off along: the elements of a
+# 1 mm stretch beside a free end must not be 0.05 mm long.
+SHORTEST_ELEMENT = 0.02
+
 
 def mesh_arc_lengths(
     centreline: Centreline, mesh: Any, supports: Sequence[np.ndarray]
@@ -20,8 +25,8 @@ def mesh_arc_lengths(
 
     Segment ends and contact points are nodes. Neighbouring contact points of a support are joined
     by one element. A stretch of a straight segment between supports or segment ends has
-    elements_per_span elements. A whole bend has elements_per_bend; where supports cut it, its parts
-    share them by length.
+    elements_per_span elements, or fewer where they would be shorter than SHORTEST_ELEMENT. A whole
+    bend has elements_per_bend; where supports cut it, its parts share them by length.
     """
     fixed = [
         0.0,
@@ -50,5 +55,6 @@ def _elements_between(
         return 1
     segment = centreline.segment_at(0.5 * (left + right))
     if segment.toward is None:
-        return mesh.elements_per_span
+        shortest = SHORTEST_ELEMENT * segment.length / mesh.elements_per_span
+        return max(1, min(mesh.elements_per_span, int((right - left) / shortest)))
     return max(1, int(np.ceil(mesh.elements_per_bend * (right - left) / segment.length - 1.0e-6)))

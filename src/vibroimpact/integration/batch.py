@@ -126,8 +126,8 @@ def integrate_batch(
     drive: gives the force at steps first, first + 1, ... (0 to schedule.steps).
     receive: takes the time series as they come, float32, from a sample on, in arrays that are used
         again. The result then holds none, and no array grows with the duration.
-    initial (mode, LANES): modal amplitudes at which every lane starts without velocity, see
-        `rest_state`; by default the model's initial state.
+    initial (mode, LANES): modal amplitudes at which every lane rests, see `rest_state`; the
+        model's initial state is added to them.
 
     Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the
     run diverged.
@@ -137,22 +137,48 @@ def integrate_batch(
 
 
 def rest_state(
-    model: ModalModel, schedule: Schedule, gap: np.ndarray, imperfection: np.ndarray
+    model: ModalModel,
+    schedule: Schedule,
+    gap: np.ndarray,
+    imperfection: np.ndarray,
+    start: np.ndarray | None = None,
 ) -> np.ndarray | None:
     """Modal amplitudes (mode, LANES) at which each case rests under its dead loads, against its
     supports where it must; gap, imperfection as of integrate_batch.
 
-    None where it rests at zero (no dead load, all supports centred) or nowhere (a mode is free).
-    Found by integration with the modes damped to REST_DAMPING of critical.
+    start (mode, LANES): where it rests without dead loads, see preload.seated; None for zero.
+
+    None where it rests at zero (no dead load, all supports centred and none pressing) or nowhere
+    (a mode is free, and no start is known).
     """
-    loaded = model.constant_force.any() or model.centre_offset.any()
-    if not loaded or not (model.omega > 0.0).all():
+    loaded = model.constant_force.any() or model.centre_offset.any() or model.presses_at_rest
+    if not loaded or (start is None and not (model.omega > 0.0).all()):
         return None
+    return settled(model, schedule, gap, imperfection, start)
+
+
+def settled(
+    model: ModalModel,
+    schedule: Schedule,
+    gap: np.ndarray,
+    imperfection: np.ndarray,
+    start: np.ndarray | None = None,
+) -> np.ndarray:
+    """Modal amplitudes (mode, LANES) that each case comes to from a start (mode, LANES), by default
+    zero; gap, imperfection as of integrate_batch.
+
+    Found by integration with the modes damped to REST_DAMPING of critical and without friction. A
+    mode without stiffness is damped as the lowest one with stiffness.
+    """
+    lowest = model.omega[model.omega > 0.0].min(initial=np.inf)
+    if not np.isfinite(lowest):
+        return np.zeros((model.modes, LANES)) if start is None else start
     damped = replace(
         model,
-        damping=2.0 * REST_DAMPING * model.omega,
+        damping=2.0 * REST_DAMPING * np.maximum(model.omega, lowest),
         initial_displacement=np.zeros(model.modes),
         initial_velocity=np.zeros(model.modes),
+        contact_laws=model.contact_laws.with_columns(friction=0.0),
     )
     contraction = checked_contraction(damped, schedule.steps_per_second, schedule.scheme)
     channels = model.drive_shapes.shape[1]
@@ -160,8 +186,8 @@ def rest_state(
     def no_force(first: int, count: int) -> np.ndarray:
         return np.zeros((count, channels, np.size(gap)))
 
-    run = _Run(damped, schedule, gap, imperfection, no_force, contraction)
-    time = REST_DECAY / (REST_DAMPING * model.omega.min())
+    run = _Run(damped, schedule, gap, imperfection, no_force, contraction, start)
+    time = REST_DECAY / (REST_DAMPING * lowest)
     for ticks in _chunks(round(time * schedule.steps_per_second / RATIO), run.chunk):
         run.advance(ticks, 0, recorded=False)
     return run.state.q[-1][run.layout.place]
@@ -205,7 +231,7 @@ class _Run:
             self.state,
             self.work,
             self.forces(0, 1)[0],
-            None if initial is None else (initial, np.zeros_like(initial)),
+            start_amplitudes(model, initial),
         )
         # The second filter stage needs this many ticks before the first of a chunk.
         self.history = schedule.filter.second.size - schedule.filter.step
@@ -371,6 +397,21 @@ class _Run:
         )
 
 
+def start_amplitudes(
+    model: ModalModel, rest: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Modal amplitudes and their rates at the start, (mode, LANES) each: the model's initial state,
+    the same in every lane, from where the structure rests.
+
+    rest (mode, LANES): see `rest_state`; None for 0.
+    """
+    ones = np.ones(LANES)
+    displacement = np.outer(model.initial_displacement, ones)
+    if rest is not None:
+        displacement += rest
+    return displacement, np.outer(model.initial_velocity, ones)
+
+
 def start_state(
     layout: ModalLayout,
     modal: Modal,
@@ -379,18 +420,14 @@ def start_state(
     state: State,
     work: Work,
     drive: np.ndarray,
-    initial: tuple[np.ndarray, np.ndarray] | None = None,
+    initial: tuple[np.ndarray, np.ndarray],
 ) -> None:
     """Put the initial displacement, velocity and force into the state.
 
     drive (force_channel, LANES): force at that time, N.
-    initial: (displacement, velocity), modal amplitudes (mode, LANES) each; by default the model's,
-        the same in every lane.
+    initial: (displacement, velocity), modal amplitudes (mode, LANES) each.
     """
-    model, shapes = layout.model, layout.row_shapes
-    if initial is None:
-        ones = np.ones(LANES)
-        initial = np.outer(model.initial_displacement, ones), np.outer(model.initial_velocity, ones)
+    shapes = layout.row_shapes
     q, v = initial
     if np.any(q) or np.any(v):
         state.q[-1] = layout.per_mode(q)

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .batch import Drive, modal_energies, start_state, to_lanes
+from .batch import Drive, modal_energies, start_amplitudes, start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
@@ -47,6 +47,7 @@ def integrate_every_step(
     imperfection: np.ndarray,
     drive: Drive,
     scheme: str = "newmark",
+    rest: np.ndarray | None = None,
 ) -> Traces:
     """Integrate up to LANES cases side by side from their initial state and record every step.
 
@@ -54,6 +55,7 @@ def integrate_every_step(
     gap (case,): m.
     imperfection (contact_point, 2, case): offset added to the centres of the obstacles, m.
     drive: gives the force at the times first / steps_per_second, ...; index 0 is the initial state.
+    rest (mode, LANES): modal amplitudes from which the initial state counts; None for 0.
 
     Raises IntegrationError: the contact is too stiff for the step, or the run diverged.
     """
@@ -68,7 +70,7 @@ def integrate_every_step(
     force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], LANES))
     force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
-    start_state(layout, modal, contact, laws, state, work, force[0])
+    start_state(layout, modal, contact, laws, state, work, force[0], start_amplitudes(model, rest))
     start_displacement, start_force = state.row_displacement.copy(), state.row_force.copy()
     mechanical_before = np.sum(modal_energies(layout, modal.dt, state), axis=0)
     stored_before = stored_energy(contact, laws, state)

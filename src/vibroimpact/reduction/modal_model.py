@@ -20,6 +20,7 @@ AXES = {
     "gap_factor": ("contact_point",),
     "centre_offset": ("contact_point", 2),
     "contact_position": ("contact_point", 3),
+    "preload": ("contact_point",),
     "drive_shapes": ("mode", "force_channel"),
     "sensor_shapes": ("mode", "sensor"),
     "sensor_positions": ("sensor", 3),
@@ -32,6 +33,7 @@ AXES = {
     "element_shapes": ("mode", "element"),
     "initial_displacement": ("mode",),
     "initial_velocity": ("mode",),
+    "initial_residual": (2,),
     "constant_force": ("mode",),
 }
 NAMES = {
@@ -54,6 +56,8 @@ class ModalModel:
     damping: (mode,) 2 zeta omega in 1/s.
     full_mode_frequencies: (full_mode,) Hz, the lowest of the full model without contact.
     initial_displacement, initial_velocity: (mode,) kg^1/2 m and kg^1/2 m/s, state at the start.
+    initial_residual: (2,) part of the fields wanted that these do not represent, of displacement
+        and velocity, in the norm of the mass.
     constant_force: (mode,) N kg^-1/2.
 
     Contact points:
@@ -67,6 +71,8 @@ class ModalModel:
     centre_offset: (contact_point, 2) m along the contact directions.
     contact_position: (contact_point, 3) m.
     contact_laws: what the contacts have beyond the elastic circle; None for nothing.
+    preload: (contact_point,) N, force at rest of each flat land of the point, whose gap is minus
+        the depth that it takes; 0 for none. integration.preload puts the obstacles there.
 
     Local elements:
 
@@ -110,11 +116,13 @@ class ModalModel:
     full_mode_frequencies: np.ndarray
     # Filled in by __post_init__ where they are None.
     contact_laws: ContactLaws = None  # type: ignore[assignment]
+    preload: np.ndarray = None  # type: ignore[assignment]
     element_shapes: np.ndarray = None  # type: ignore[assignment]
     element_names: tuple[str, ...] = ()
     local_laws: LocalLaws = None  # type: ignore[assignment]
     initial_displacement: np.ndarray = None  # type: ignore[assignment]
     initial_velocity: np.ndarray = None  # type: ignore[assignment]
+    initial_residual: np.ndarray = None  # type: ignore[assignment]
     constant_force: np.ndarray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
@@ -122,10 +130,12 @@ class ModalModel:
         modes = np.size(self.omega)
         neutral = {
             "contact_laws": ContactLaws.neutral(np.size(self.support_of_point)),
+            "preload": np.zeros(np.size(self.support_of_point)),
             "element_shapes": np.zeros((modes, 0)),
             "local_laws": LocalLaws.neutral(len(self.element_names)),
             "initial_displacement": np.zeros(modes),
             "initial_velocity": np.zeros(modes),
+            "initial_residual": np.zeros(2),
             "constant_force": np.zeros(modes),
         }
         for name, value in neutral.items():
@@ -158,6 +168,18 @@ class ModalModel:
             local.slip_limit,
         )
         return not any(np.any(column) for column in lossy)
+
+    @property
+    def presses_at_rest(self) -> bool:
+        """Return True when a flat land begins inside the structure at rest."""
+        return bool(np.any(self.contact_laws.gap < 0.0))
+
+    @property
+    def preload_force(self) -> np.ndarray:
+        """Return (mode,) N kg^-1/2, the force of all preloaded lands on the structure at rest."""
+        laws = self.contact_laws
+        shapes = self.contact_shapes[:, laws.land_point]  # (mode, land, 2)
+        return -np.einsum("mld,ld,l->m", shapes, laws.land_normal, self.preload[laws.land_point])
 
     @cached_property
     def blocks(self) -> list[tuple[np.ndarray, list[tuple[int, int]]]]:

@@ -9,7 +9,7 @@ from scipy import linalg, sparse
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.contact.local_elements import element_laws, element_rows, split_damping
-from vibroimpact.contact.supports import contact_laws
+from vibroimpact.contact.supports import contact_laws, contact_preload
 from vibroimpact.excitation.force_vectors import (
     constant_force_vector,
     force_vector,
@@ -20,8 +20,10 @@ from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.memo import Memo, content_key
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
+from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.structure.tube import TubeStructure, build_structure
 
+from .initial_state import initial_state
 from .modal_model import ModalModel
 from .ritz_basis import (
     FAMILIES,
@@ -36,6 +38,7 @@ from .structural_modifications import with_frequency_factors, with_point_masses,
 BASES = Memo()
 AXES = dict(zip("xyz", np.eye(3), strict=True))
 MAX_FULL_DOFS = 400  # a structure that is no tube keeps all its modes up to this size
+UNHELD = 1.0e-6  # of the largest modal force: more than this on a mode without stiffness pushes it
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is rigid-body motion
 
 
@@ -46,8 +49,9 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         and record.
     motion_only: leave out the shape line and the stresses.
 
-    Raises ValueError when a support or a named point is more than 5 mm off the tube, or a name is
-    unknown.
+    Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
+    unknown, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload has no static
+    equilibrium, or the initial state is not representable (see initial_state).
     """
     tube = config.structure.kind in TUBES
     structure = build_structure(config) if tube else build_point_structure(config)
@@ -61,6 +65,8 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         ]
     )
     omega, shapes, full_frequencies = _modes(structure, local_rows, config.basis)
+    if tube:
+        _refuse_false_rigid_modes(structure, omega, config)
     omega, order = with_frequency_factors(omega, config.mode_frequency_factors)
     shapes = shapes[:, order]
     fields = {
@@ -69,15 +75,50 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         **_damping_and_element_fields(structure, omega, shapes, local_rows, config),
         **_contact_fields(structure, shapes, config),
         **_force_fields(structure, omega, shapes, config, point_rows),
-        "initial_displacement": _initial(structure, shapes, config.initial, "displacement_m"),
-        "initial_velocity": _initial(structure, shapes, config.initial, "velocity_m_per_s"),
+        **initial_state(structure, shapes, len(full_frequencies), config.initial, point_rows),
         **_sensor_fields(structure, shapes, config, point_rows),
         **_line_fields(structure, shapes, config, tube and not motion_only),
         **_stress_fields(structure, shapes, config, tube and not motion_only),
     }
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
-    return ModalModel(**with_support_plates(fields, config.supports))
+    fields = with_support_plates(fields, config.supports)
+    model = ModalModel(**fields)
+    _refuse_unheld_preload(model)
+    return model
+
+
+def _refuse_false_rigid_modes(
+    structure: TubeStructure, omega: np.ndarray, config: ConfigPart
+) -> None:
+    """Raise ValueError when more modes have no stiffness than the ends of the tube leave free.
+
+    The round-off of elements that are very short beside the tube then exceeds its stiffness. The
+    message names the shortest one.
+    """
+    allowed = free_rigid_motions(config.structure, structure.centreline)
+    found = int(np.sum(omega == 0.0))
+    if found <= allowed:
+        return
+    lengths = np.diff(structure.node_arc_length)
+    shortest = int(np.argmin(lengths))
+    raise ValueError(
+        f"the reduced model has {found} modes without stiffness, the ends of the tube allow"
+        f" {allowed}: the shortest element, {lengths[shortest]:.3g} m at arc length"
+        f" {structure.node_arc_length[shortest]:.4f} m, is too short beside the tube of"
+        f" {structure.centreline.length:.4g} m: give the support there fewer points or more"
+        " height_m, move it, or use structure.theory: timoshenko"
+    )
+
+
+def _refuse_unheld_preload(model: ModalModel) -> None:
+    """Raise ValueError when preloads push a mode that has no stiffness."""
+    force = np.abs(model.preload_force)
+    if force[model.omega == 0.0].max(initial=0.0) > UNHELD * force.max(initial=0.0):
+        raise ValueError(
+            "supports: preload_N presses a structure that can move freely in its direction, it has"
+            " no static equilibrium: hold an end of it, or press from both sides"
+        )
 
 
 def _damping_and_element_fields(
@@ -124,6 +165,7 @@ def _contact_fields(structure: Any, shapes: np.ndarray, config: ConfigPart) -> d
         "centre_offset": contact.centre_offset,
         "contact_position": contact.position,
         "contact_laws": contact_laws(config.supports, contact),
+        "preload": contact_preload(config.supports, contact),
     }
 
 
@@ -191,19 +233,6 @@ def _modes_on(
         shapes[np.ix_(group.dofs, group.dofs)] = inside
     order = np.argsort(omega, kind="stable")
     return omega[order], shapes[:, order], omega[order] / (2.0 * np.pi)
-
-
-def _initial(structure: Any, shapes: np.ndarray, initial: ConfigPart, key: str) -> np.ndarray:
-    """Return (mode,) amplitudes of an initial field given at named points; zeros by default."""
-    field = np.zeros(structure.dofs)
-    for name, axes in getattr(initial, key).items() if initial is not None else ():
-        for axis, value in axes.items():
-            if axis not in structure.directions.get(name, {}):
-                raise ValueError(
-                    f"initial.{key}.{name}.{axis}: the structure has no such point or direction"
-                )
-            field[structure.directions[name][axis]] = value
-    return shapes.T @ (structure.mass @ field)
 
 
 def modal_basis(

@@ -22,10 +22,13 @@ FAMILIES = ("free_modes", "constrained_modes", "attachment_shapes")
 # less than this. It holds less than 1e-10 of the energy of any vector, so no frequency moves by
 # more. The singular values of the static shapes are above 7e-3.
 RANK_TOLERANCE = 1.0e-5
-# Rigid-body motion is free when the stiffness, scaled to a unit diagonal, has a lower eigenvalue.
+# The stiffness is factored as it is when its lowest eigenvalue, scaled to a unit diagonal, is not
+# below this. Where rigid-body motion is free, or an element is 1e-4 of the tube, it is below.
 SINGULAR_BELOW = 1.0e-14
-RIGID_BODY_SHIFT = 1.0e-9  # of the highest eigenvalue: makes the stiffness of a free tube definite
-RIGID_BODY_TOLERANCE = 1.0e-6  # of the shift: a squared frequency below it is 0
+DEFINITE_AT = 1.0e-10  # lowest scaled eigenvalue with the shift
+# Round-off of a strain energy, over the sum of the absolute values of its terms. Rigid motions of
+# free tubes have 6e-17 at most. A bending mode at this bound is right to 5e-3.
+ROUND_OFF = 1.0e-15
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +51,9 @@ class DofGroup:
     def shift(self) -> float:
         """Return the mass shift in rad²/s² that makes stiffness + shift mass positive definite.
 
-        It is 0 unless rigid-body motion is free. A shift far below the squared cut-off of the free
-        modes does not change the span of the basis: it alters only the part of a static shape that
-        the free modes contain anyway.
+        It is 0 unless the stiffness is singular to working precision. A shift far below the squared
+        cut-off of the free modes does not change the span of the basis: it alters only the part of
+        a static shape that the free modes contain anyway.
         """
         return rigid_body_shift(self.stiffness, self.mass)
 
@@ -93,14 +96,18 @@ def uncoupled_groups(
 def rigid_body_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
     """Return the mass shift in rad²/s² that makes stiffness + shift mass positive definite.
 
-    It is 0 where the stiffness is positive definite.
+    It is 0 where the stiffness is positive definite to working precision. Otherwise it is the least
+    one that raises the lowest eigenvalue, scaled to a unit diagonal, to DEFINITE_AT: a shift sized
+    by the highest frequency would swallow bending modes where an element is short.
     """
     scale = 1.0 / np.sqrt(np.diag(stiffness))
     scaled = stiffness * scale * scale[:, None]
     lowest = linalg.eigh(scaled, eigvals_only=True, subset_by_index=[0, 0])[0]
     if lowest >= SINGULAR_BELOW:
         return 0.0
-    return RIGID_BODY_SHIFT * _highest_eigenvalue(stiffness, mass)
+    _, vectors = linalg.eigh(scaled, subset_by_value=[-np.inf, SINGULAR_BELOW])
+    vectors *= scale[:, None]  # the sum of their squares times the diagonal of the stiffness is 1
+    return float(DEFINITE_AT / linalg.eigvalsh(vectors.T @ mass @ vectors)[0])
 
 
 def eigenmodes(
@@ -117,8 +124,8 @@ def eigenmodes(
     flexibility, shapes = linalg.eigh(
         mass, stiffness + shift * mass, subset_by_value=[least, np.inf]
     )
-    omega = _frequencies(1.0 / flexibility[::-1] - shift, shift)
-    return omega, (shapes / np.sqrt(flexibility))[:, ::-1]
+    shapes = (shapes / np.sqrt(flexibility))[:, ::-1]
+    return _frequencies(1.0 / flexibility[::-1] - shift, shift, stiffness, shapes), shapes
 
 
 def basis_vectors(
@@ -163,21 +170,22 @@ def orthonormal_basis(
     vectors: {family: (dof, vector)}.
     """
     free = vectors.get("free_modes", np.zeros((len(group.dofs), 0)))
-    omega = _frequencies(np.sum((group.factor.T @ free) ** 2, axis=0) - group.shift, group.shift)
+    squares = np.sum((group.factor.T @ free) ** 2, axis=0) - group.shift
+    omega = _frequencies(squares, group.shift, group.stiffness, free)
     others = [shapes for family, shapes in vectors.items() if family != "free_modes"]
     if not others:
         return omega, free
-    added_omega, added = _added_shapes(group, free, np.hstack(others))
+    added_omega, added = _added_shapes(group, omega, free, np.hstack(others))
     order = np.argsort(np.concatenate([omega, added_omega]), kind="stable")
     return np.concatenate([omega, added_omega])[order], np.hstack([free, added])[:, order]
 
 
 def _added_shapes(
-    group: DofGroup, free: np.ndarray, others: np.ndarray
+    group: DofGroup, omega: np.ndarray, free: np.ndarray, others: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return (omega (mode,) rad/s, shapes (dof, mode)) that `others` add to the free modes.
 
-    free: (dof, mode).
+    omega, free: (mode,) rad/s and (dof, mode) of the free modes.
     others: (dof, vector).
     """
     energy = group.factor.T @ others
@@ -188,6 +196,10 @@ def _added_shapes(
     directions, sizes, _ = np.linalg.svd(energy, full_matrices=False)
     independent = directions[:, sizes > RANK_TOLERANCE]
     added = linalg.solve_triangular(group.factor.T, independent, lower=False)
+    # A rigid motion has hardly any strain energy: only its mass tells how much of it is left.
+    rigid = free[:, omega == 0.0]
+    if rigid.size:
+        added -= rigid @ (rigid.T @ (group.mass @ added))
     # `added` is stiffness-orthonormal: the eigenvalues of its mass are 1/omega², so the lowest
     # frequencies lose no accuracy.
     flexibility, rotation = np.linalg.eigh(added.T @ group.mass @ added)
@@ -195,17 +207,18 @@ def _added_shapes(
     return omega, added @ (rotation / np.sqrt(flexibility))[:, ::-1]
 
 
-def _highest_eigenvalue(stiffness: np.ndarray, mass: np.ndarray) -> float:
-    """Return an estimate of the highest eigenvalue in rad²/s², right within a small factor.
-
-    It is the largest ratio of diagonal terms.
-    """
-    return float(np.max(np.diag(stiffness) / np.diag(mass)))
-
-
-def _frequencies(squares: np.ndarray, shift: float) -> np.ndarray:
+def _frequencies(
+    squares: np.ndarray, shift: float, stiffness: np.ndarray, shapes: np.ndarray
+) -> np.ndarray:
     """Return (mode,) rad/s from eigenvalues in rad²/s².
 
-    Those below RIGID_BODY_TOLERANCE of the shift are rigid-body motion, exactly 0.
+    Where there is a shift, those below the round-off of their strain energy are rigid-body motion,
+    exactly 0. Source of the bound: N. J. Higham, Accuracy and Stability of Numerical Algorithms
+    (SIAM 2002), eq. 3.12.
+
+    shapes: (dof, mode), mass-orthonormal.
     """
-    return np.sqrt(np.where(squares < RIGID_BODY_TOLERANCE * shift, 0.0, squares))
+    if shift == 0.0:
+        return np.sqrt(np.maximum(squares, 0.0))
+    terms = np.sum(np.abs(shapes) * (np.abs(stiffness) @ np.abs(shapes)), axis=0)
+    return np.sqrt(np.where(squares < ROUND_OFF * terms, 0.0, squares))

@@ -171,7 +171,12 @@ def build_structure(config: ConfigPart) -> TubeStructure:
     """
     line = build_centreline(config.structure)
     contact = place_contact_points(line, config.supports)
-    key = repr(config.structure), contact.arc_length.tobytes(), contact.support.tobytes()
+    key = (
+        repr(config.structure),
+        contact.arc_length.tobytes(),
+        contact.support.tobytes(),
+        contact.pair.tobytes(),
+    )
     return replace(STRUCTURES.get(key, lambda: _built(config, line, contact)), contact=contact)
 
 
@@ -179,9 +184,8 @@ def _built(config: ConfigPart, line: Centreline, contact: ContactPoints) -> Tube
     """Return the TubeStructure on a mesh with nodes at contact points and at the ends of fluids."""
     structure = config.structure
     stretches = fluid_stretches(structure, line)
-    groups = [
-        contact.arc_length[contact.support == number] for number in range(len(config.supports))
-    ]
+    owner = 2 * contact.support + contact.pair  # the two pairs of bars of a lattice are apart
+    groups = [contact.arc_length[owner == number] for number in np.unique(owner)]
     groups += [np.array([place]) for each in stretches for place in (each.begin, each.end)]
     node_arc_length = mesh_arc_lengths(line, structure.mesh, groups)
     nodes = np.array([line.position(place) for place in node_arc_length])

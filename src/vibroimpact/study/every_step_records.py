@@ -1,6 +1,7 @@
 """Short runs recorded at every step, as `record.every_step` asks.
 
-They begin at the initial state, without start-up and without output filter.
+They begin at the initial state, without start-up and without output filter. Where a support presses
+at rest, the initial state is added to static equilibrium.
 """
 
 from __future__ import annotations
@@ -13,8 +14,11 @@ import xarray as xr
 
 from vibroimpact.excitation.force_channels import force_channels
 from vibroimpact.excitation.force_stream import normalised_force
+from vibroimpact.integration.batch import Schedule, rest_state
 from vibroimpact.integration.every_step import Traces, integrate_every_step
+from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.preload import seated
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
@@ -46,15 +50,14 @@ def trace_cases(
         def drive(at: int, count: int, forces: np.ndarray = forces) -> np.ndarray:
             return forces[at : at + count]
 
-        traces = integrate_every_step(
-            model,
-            rate,
-            steps,
-            np.array([case.gap_m for case in batch]),
-            offset,
-            drive,
-            config.integration.scheme,
-        )
+        gap = np.array([case.gap_m for case in batch])
+        scheme = config.integration.scheme
+        rest = None
+        if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+            schedule = Schedule(rate, rate / RATIO, 0.0, 1.0, scheme)
+            offset, rest = seated(model, schedule, gap, offset)
+            rest = rest_state(model, schedule, gap, offset, rest)
+        traces = integrate_every_step(model, rate, steps, gap, offset, drive, scheme, rest)
         for lane, case in enumerate(batch):
             yield case, _dataset(config, model, traces, lane, case)
 

@@ -11,9 +11,16 @@ import xarray as xr
 
 from vibroimpact.excitation.force_channels import force_channels
 from vibroimpact.excitation.force_stream import ForceStream
-from vibroimpact.integration.batch import ENERGY_TERMS, BatchResult, Schedule, integrate_batch
+from vibroimpact.integration.batch import (
+    ENERGY_TERMS,
+    BatchResult,
+    Schedule,
+    integrate_batch,
+    rest_state,
+)
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.preload import seated
 from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
@@ -32,7 +39,9 @@ def simulate_cases(
 ) -> Iterator[tuple[Case, xr.Dataset]]:
     """Yield (case, record) for every case, integrating LANES of them at a time.
 
-    A record does not depend on the other cases of the list. Its variables, dimensions and units
+    Where a support presses at rest, a run starts from static equilibrium; any other starts from
+    zero. The initial state of the configuration is added. A record does not depend on the other
+    cases of the list. Its variables, dimensions and units
     are those of record_variables.VARIABLES.
 
     config: the stage's settings, with study, seed, record, excitation, integration and
@@ -64,20 +73,24 @@ def simulate_cases(
         }
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
+        gap = np.array([case.gap_m for case in batch])
+        offset = np.stack([imperfection(config, model, case) for case in batch], axis=-1)
+        offset, rest = seated(model, schedule, gap, offset)
+        if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+            rest = rest_state(model, schedule, gap, offset, rest)
         with nullcontext() if writer is None else writer(schedule, batch) as put:
             lanes = integrate_batch(
                 model,
                 schedule,
-                gap=np.array([case.gap_m for case in batch]),
-                imperfection=np.stack(
-                    [imperfection(config, model, case) for case in batch], axis=-1
-                ),
+                gap=gap,
+                imperfection=offset,
                 drive=_drive(batch, forces, stopwatch),
                 receive=(
                     None
                     if put is None
                     else lambda at, *pieces, put=put: put(at, time_series(model, *pieces))
                 ),
+                initial=rest,
             )
         stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):

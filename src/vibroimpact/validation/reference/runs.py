@@ -14,6 +14,7 @@ from vibroimpact.validation.variant import changed
 from . import cases as reference_cases
 from .frequencies import frequency_checks
 from .random_stops import law_checks
+from .tubes import LAUNCHED_MM, cantilever_checks, launched_beam_checks
 
 STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
 # The position of a contact within a step is random, so that the order from four steps scatters.
@@ -74,6 +75,19 @@ def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
     return checks, rows
 
 
+def tube_checks(folder: Path) -> list[Check]:
+    """Return the Checks of R7 and R8.
+
+    folder: of the reference configurations.
+    """
+    launched = load_config(folder / "r7_beam_launched.yaml")
+    checks = []
+    for stiffness in LAUNCHED_MM:
+        record = run(changed(launched, {"supports.stiffness_N_per_m": stiffness}))[0]
+        checks += launched_beam_checks(record, stiffness)
+    return checks + cantilever_checks(run(load_config(folder / "r8_cantilever_gaps.yaml"))[0])
+
+
 def random_stop_checks(folder: Path, name: str) -> list[Check]:
     """Return the Checks of one configuration of R11, "r11_stops_10" or "r11_stops_100"."""
     config = load_config(folder / f"{name}.yaml")
@@ -97,7 +111,7 @@ def random_stop_checks(folder: Path, name: str) -> list[Check]:
 def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[dict]]:
     """Return (Checks, rows of R3's order) of one group of reference cases.
 
-    group: "frequencies", "impacts", "r11_stops_10" or "r11_stops_100".
+    group: "frequencies", "impacts", "tubes", "r11_stops_10" or "r11_stops_100".
     study: the configuration of the stand-in tube.
     folder: of the reference configurations.
     """
@@ -105,4 +119,6 @@ def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[
         return frequency_checks(study), []
     if group == "impacts":
         return impact_checks(folder)
+    if group == "tubes":
+        return tube_checks(folder), []
     return random_stop_checks(folder, group), []

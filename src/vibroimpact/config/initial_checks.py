@@ -1,0 +1,81 @@
+"""The checks of the initial state. Each yields (place, value, text), see checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M
+
+from .geometry_checks import centreline_of, off_the_tube
+from .initial import Initial
+from .name_checks import TUBES, names_of_points
+from .structure import Path, Structure, UTube
+
+Problems = Iterator[tuple[str, Any, str]]
+
+
+def initial_fields(
+    structure: Structure, points: Mapping[str, Sequence[float]], initial: Initial
+) -> Problems:
+    """Yield a problem unless the initial state is one that the kind of structure can have."""
+    if structure.kind in (*TUBES, "identified") and (
+        initial.displacement_m or initial.velocity_m_per_s
+    ):
+        yield (
+            "initial",
+            "given",
+            "sets dofs of a chain or of matrices: give initial.displacement or initial.velocity,"
+            " a field (on a tube rigid, mode or places; of measured modes mode)",
+        )
+    for key, values in (("displacement", "displacement_m"), ("velocity", "velocity_m_per_s")):
+        field, place = getattr(initial, key), f"initial.{key}"
+        if field is None:
+            continue
+        if getattr(initial, values):
+            yield place, field.kind, f"is given beside initial.{values}: give one of them"
+        if field.kind == "mode":
+            names = names_of_points(structure, points)
+            if field.point not in names:
+                known = ", ".join(names) or "none"
+                yield f"{place}.point", field.point, f"is not a named point: known are {known}"
+        elif not isinstance(structure, UTube | Path):
+            yield (
+                f"{place}.kind",
+                field.kind,
+                f"is for tubes, structure.kind is {structure.kind}: give initial.{values}, or mode",
+            )
+        elif field.kind == "places":
+            yield from _places(structure, f"{place}.values", field.values)
+
+
+def _places(structure: UTube | Path, place: str, values: Sequence[Any]) -> Problems:
+    """Yield a problem unless values are given along the whole tube, in order."""
+    centreline = centreline_of(structure)
+    if centreline is None:
+        return
+    off = [
+        problem
+        for index, value in enumerate(values)
+        for problem in off_the_tube(centreline, f"{place}[{index}].at_m", value.at_m)
+    ]
+    yield from off
+    if off:
+        return
+    lengths = [centreline.locate(value.at_m, place) for value in values]
+    for index, (before, after) in enumerate(zip(lengths[:-1], lengths[1:], strict=True), start=1):
+        if after <= before:
+            yield (
+                f"{place}[{index}].at_m",
+                list(values[index].at_m),
+                "is not after the place before it on the tube: give them from start to end",
+            )
+    for index, length, end in ((0, lengths[0], 0.0), (-1, lengths[-1], centreline.length)):
+        if abs(length - end) > LOCATION_TOLERANCE_M:
+            name = "start" if index == 0 else "end"
+            position = [round(float(x), 4) for x in centreline.position(end)]
+            yield (
+                f"{place}[{index % len(values)}].at_m",
+                list(values[index].at_m),
+                f"is not the {name} of the tube: add a value there, at {position}",
+            )

@@ -1,0 +1,119 @@
+"""The checks of the profiles of supports: which may touch or press, and where their lands are. Each
+yields (place, value, text), see checks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.geometry.centreline import Centreline
+from vibroimpact.geometry.directions import unit_vector
+
+from .geometry_checks import centreline_of, off_the_tube
+from .profiles import Bars, Broached, Lattice, has_flat_lands
+from .quantities import Vector
+from .structure import Path, Structure, UTube
+from .supports import Support
+
+Problems = Iterator[tuple[str, Any, str]]
+
+ACROSS_DEG = 2.0  # a normal given with a few digits may be this far off the plane across the tube
+
+
+def gaps_of_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
+    """Yield a problem unless only flat stops touch at rest."""
+    for index, support in enumerate(supports):
+        flat = has_flat_lands(support.profile)
+        if support.gap_m is not None and support.gap_m <= 0.0 and not flat:
+            yield (
+                f"supports[{index}].gap_m",
+                support.gap_m,
+                "must be > 0 round a centre: only flat stops (profile planes, bars, lattice or flat"
+                " lands) may touch or press",
+            )
+
+
+def preloads(supports: Sequence[Support]) -> Problems:
+    """Yield a problem unless only flat lands press, and their interference is not given twice."""
+    for index, support in enumerate(supports):
+        if support.preload_N is None:
+            continue
+        place = f"supports[{index}].preload_N"
+        if not has_flat_lands(support.profile):
+            yield (
+                place,
+                support.preload_N,
+                f"needs flat lands to press with, the profile is {support.profile.kind}: use bars",
+            )
+        if support.gap_m is not None:
+            yield (
+                place,
+                support.preload_N,
+                (
+                    f"is given beside gap_m = {support.gap_m:g}, both say how the support presses:"
+                    " give one of them"
+                ),
+            )
+
+
+def profile_normals(structure: Structure, supports: Sequence[Support]) -> Problems:
+    """Yield a problem unless a profile has one direction, across the structure."""
+    tube = isinstance(structure, UTube | Path)
+    centreline = centreline_of(structure) if isinstance(structure, UTube | Path) else None
+    if tube and centreline is None:
+        return
+    for index, support in enumerate(supports):
+        profile = support.profile
+        if not isinstance(profile, Broached | Bars | Lattice):
+            continue
+        place = f"supports[{index}].profile"
+        if isinstance(profile, Lattice) and profile.spacing_m > 0.0 and not tube:
+            yield f"{place}.spacing_m", profile.spacing_m, "is for tubes: leave it out"
+        if (profile.normal is None) == (profile.angle_deg is None):
+            given = "neither" if profile.normal is None else "both"
+            yield (
+                place,
+                profile.kind,
+                f"has {given} of normal and angle_deg: give one, the direction of its first land",
+            )
+        elif profile.normal is not None:
+            yield from _across(centreline, f"{place}.normal", profile.normal, support.at_m)
+
+
+def _across(
+    centreline: Centreline | None, place: str, normal: Vector, at_m: Vector | None
+) -> Problems:
+    """Yield a problem unless the normal of a profile is across the structure at its support.
+
+    at_m: position of the support on the centreline.
+    """
+    if not np.any(normal):
+        yield place, list(normal), "is not a direction: give three components that are not all 0"
+        return
+    tangent = np.array([0.0, 0.0, 1.0])  # a structure that is no tube has contact along x and y
+    if centreline is not None:
+        if at_m is None or any(off_the_tube(centreline, place, at_m)):
+            return
+        tangent = centreline.direction(centreline.locate(at_m, place))
+    along = float(unit_vector(normal) @ tangent)
+    if abs(along) <= math.sin(math.radians(ACROSS_DEG)):
+        return
+    where = "the tube, which runs along" if centreline is not None else "the axis of contact,"
+    across = unit_vector(normal) - along * tangent
+    remedy = (
+        f"give the part across, {np.round(unit_vector(across), 4).tolist()}"
+        if np.linalg.norm(across) > 1.0e-6
+        else "give a direction across it"
+    )
+    yield (
+        place,
+        list(normal),
+        (
+            f"is {math.degrees(math.asin(min(1.0, abs(along)))):.1f} degrees off the plane across"
+            f" {where} {np.round(tangent, 4).tolist()} there: {remedy}"
+        ),
+    )
