@@ -49,6 +49,7 @@ PACKAGES = (
     "validation",
     "reports",
     "figures",
+    "study_folder",
     "cli",
     "__main__",
 )

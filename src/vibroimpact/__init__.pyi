@@ -43,6 +43,7 @@ from .study.cases import all_cases as all_cases
 from .study.cases import cases_of_load as cases_of_load
 from .study.simulation import simulate_cases as simulate_cases
 from .study.statistics_table import statistics_rows as statistics_rows
+from .study_folder.shared_files import workflow_snakefile as workflow_snakefile
 
 __version__: str
 PUBLIC: dict[str, str]
