@@ -1,4 +1,4 @@
-"""What pyproject.toml can not state: the wheel brings the workflow, its configurations and examples.
+"""What pyproject.toml can not state: the wheel brings workflow, configurations and examples.
 
 They live at the top of the repository and are copied to vibroimpact/share/, where
 vibroimpact.study_folder finds them.

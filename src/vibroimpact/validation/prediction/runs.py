@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.structure import UTube
 from vibroimpact.records import read_record, read_table
@@ -11,7 +12,6 @@ from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case, load_values
 from vibroimpact.study.simulation import simulate_cases
-from vibroimpact.validation.variant import changed
 
 from .equivalent_law import FREE, fit_law, free_level, plate_stiffness
 from .table import amplified, linear_response, prediction_rows, recorded_response
@@ -182,7 +182,7 @@ def case_rows(cases, config, model, results: Path, second):
     if cases == "gaps":
         diameter = config.structure.section.outer_diameter_m
         return simulated_rows(
-            changed(config, RUN),
+            changed_config(config, RUN),
             "study tube, other gaps and loads",
             laws,
             gains,
@@ -195,4 +195,4 @@ def case_rows(cases, config, model, results: Path, second):
         / config.structure.section.outer_diameter_m
         * other.structure.section.outer_diameter_m
     )
-    return simulated_rows(changed(other, RUN), "second tube", laws, gains, [gap])
+    return simulated_rows(changed_config(other, RUN), "second tube", laws, gains, [gap])
