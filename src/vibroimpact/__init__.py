@@ -48,6 +48,7 @@ PUBLIC = {
     "import_folder": "campaign.importing.assemble",
     "read_record": "records",
     "write_record": "records",
+    "configurations": "study_folder.shared_files",
     "workflow_snakefile": "study_folder.shared_files",
 }
 __all__ = ["__version__", *PUBLIC]

@@ -48,6 +48,7 @@ from .study.in_process import simulate_case as simulate_case
 from .study.simulation import simulate_cases as simulate_cases
 from .study.statistics_table import statistics_rows as statistics_rows
 from .study.support_estimates import SupportEstimates as SupportEstimates
+from .study_folder.shared_files import configurations as configurations
 from .study_folder.shared_files import workflow_snakefile as workflow_snakefile
 
 __version__: str

@@ -80,4 +80,4 @@ def _line(estimate: Estimate) -> str:
 def _with_error(value: float, error: float) -> str:
     if not np.isfinite(value):
         return "-"
-    return f"{value:.3g} ± {error:.1g}" if np.isfinite(error) else f"{value:.3g}"
+    return f"{value:.3g} ± {error:.2g}" if np.isfinite(error) else f"{value:.3g}"
