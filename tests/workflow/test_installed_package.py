@@ -18,6 +18,7 @@ from pathlib import Path
 import pytest
 
 import vibroimpact
+from tests.docs.test_release import copied_to_container
 
 ROOT = Path(__file__).parents[2]
 BUILT_WITH = "setuptools>=77.0.3"  # as pyproject.toml says
@@ -177,6 +178,19 @@ def test_the_source_archive_holds_tests_and_locks(archives):
     there = {str(file.relative_to(ROOT)) for file in (ROOT / "tests").rglob("*.py")}
     assert there - held == set() and len(there) > 100
     assert {"requirements.lock", "CITATION.cff", "Makefile", "profiles/default/config.yaml"} <= held
+
+
+def test_the_container_copies_all_that_the_wheel_needs(tmp_path, archives, build_tools):
+    (tmp_path / "context").mkdir()
+    for name in copied_to_container():
+        source, target = ROOT / name, tmp_path / "context" / name
+        ignore = shutil.ignore_patterns(*NOT_COPIED)
+        if source.is_dir():
+            shutil.copytree(source, target, symlinks=True, ignore=ignore)
+        else:
+            shutil.copy(source, target)
+    wheel = build("wheel", tmp_path / "context", tmp_path / "wheel", build_tools)
+    assert names(wheel) == names(archives[0])
 
 
 def test_a_study_laid_out_by_the_wheel_is_planned(environment, study):

@@ -6,8 +6,14 @@ import sys
 from pathlib import Path
 
 # The folder that holds Snakefile, workflow/, config/ and examples/: a checkout with the library in
-# src/, or vibroimpact/share/ of the installed package.
-ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).parents[1]
+# src/, or vibroimpact/share/ of the installed package. That of the package also serves a module
+# that Snakemake reads from a repository in the network.
+if workflow.current_basedir.is_local:
+    ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).parents[1]
+else:
+    from vibroimpact import workflow_snakefile
+
+    ROOT = Path(workflow_snakefile()).parent
 IN_CHECKOUT = (ROOT / "src" / "vibroimpact").is_dir()
 
 
@@ -24,7 +30,7 @@ SOURCE = as_input(ROOT / "src" if IN_CHECKOUT else ROOT.parents[1])
 SCRIPTS = as_input(ROOT / "workflow" / "scripts")
 EXAMPLES = as_input(ROOT / "examples")
 CONFIGURATIONS = as_input(ROOT / "config")
-# Snakemake writes sys.executable into shell commands as it stands: a path with a space needs quotes.
+# Snakemake writes sys.executable into commands as it stands: a path with a space needs quotes.
 PYTHON = sys.executable if sys.executable.startswith("'") else shlex.quote(sys.executable)
 sys.executable = PYTHON
 # Jobs inherit these. The library of a checkout needs no installation; -j jobs use one thread each.
