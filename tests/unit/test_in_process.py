@@ -149,6 +149,13 @@ def test_without_identification_or_series_says_what_to_give(chain, tube, record)
         vibroimpact.identify_support(tube, record[["force_displacement"]])
 
 
+@pytest.mark.parametrize("name", vibroimpact.configurations())
+def test_a_key_set_to_its_own_value_changes_nothing(name, monkeypatch):
+    monkeypatch.chdir(ROOT)  # files that a configuration names are below its folder
+    config = vibroimpact.load_config(vibroimpact.configurations()[name])
+    assert vibroimpact.changed_config(config, {"seed": config.seed}) == config
+
+
 def test_a_model_is_built_once_for_the_same_keys(tube):
     model = in_process.reduced_model(tube)
     louder = vibroimpact.changed_config(tube, {"grid.load_rms_N": [8.0]})

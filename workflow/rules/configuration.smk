@@ -36,7 +36,7 @@ sys.executable = PYTHON
 # Jobs inherit these. The library of a checkout needs no installation; -j jobs use one thread each.
 if IN_CHECKOUT:
     sys.path.insert(0, SOURCE)
-    os.environ["PYTHONPATH"] = os.path.abspath(SOURCE)
+    os.environ.update(PYTHONPATH=os.path.abspath(SOURCE))
 os.environ.update(
     OMP_NUM_THREADS="1",
     OPENBLAS_NUM_THREADS="1",
