@@ -200,6 +200,16 @@ def test_a_study_laid_out_by_the_wheel_is_planned(environment, study):
     assert str(ROOT / "src") not in told
 
 
+def test_a_broken_configuration_is_named_with_its_line(environment, study):
+    folder = study("broken", "--example", "smoke")
+    (folder / "config" / "study.yaml").write_text("study: mine\nseed: [1\nspectra: {}\n")
+    command = [environment / "bin" / "python", "-m", "snakemake", "--dry-run"]
+    told = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert told.returncode == 1
+    last = told.stderr.strip().splitlines()[-1]
+    assert last.startswith("config/study.yaml: line 3, column 8: the list that [ opens in line 2")
+
+
 @pytest.mark.slow
 def test_the_wheel_runs_the_small_study_to_its_tables(environment, study):
     folder = study("à moi", "--example", "smoke")
