@@ -16,6 +16,7 @@ SHARED = (
     "workflow/rules/*.smk",
     "workflow/scripts/*.py",
     "workflow/profiles/*/config.yaml",
+    "workflow/report/*",
     "config/**/*",
     "examples/**/*",
 )

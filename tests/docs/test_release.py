@@ -116,4 +116,4 @@ def test_workflow_is_planned_as_a_module_of_another(tmp_path):
     )
     told = run.stdout + run.stderr
     assert run.returncode == 0, told
-    assert re.search(r"^_simulate +3$", told, re.M) and re.search(r"^study +1$", told, re.M)
+    assert re.search(r"^_simulate +3$", told, re.M) and re.search(r"^all +1$", told, re.M)
