@@ -23,21 +23,6 @@ from tests.docs.test_release import copied_to_container
 ROOT = Path(__file__).parents[2]
 BUILT_WITH = "setuptools>=77.0.3"  # as pyproject.toml says
 NOT_COPIED = (".git", ".venv*", "results", "build", "_build", "generated", "__pycache__", ".*cache")
-PLANNED = {
-    "_basis": 1,
-    "_simulate": 3,
-    "_spectra": 3,
-    "_synthetic_campaign": 1,
-    "_identify_from_0.1": 1,
-    "_identify_from_3.16": 1,
-    "_identify_from_10": 1,
-    "_consistency": 1,
-    "_figures_model": 1,
-    "_figures_response": 1,
-    "_figures_identification": 1,
-    "_figures_checks": 1,
-    "all": 1,
-}  # three loads in three half decades
 CASE = {"load_rms_N": 4.0, "gap_m": 2.8886e-4, "seed": 1}  # one of the small study
 
 
@@ -201,11 +186,16 @@ def test_the_container_copies_all_that_the_wheel_needs(tmp_path, archives, build
     assert names(wheel) == names(archives[0])
 
 
-def test_a_study_laid_out_by_the_wheel_is_planned(environment, study):
-    folder = study("mine", "--example", "smoke")
-    told = snakemake(environment, folder, "--dry-run")
-    assert planned(told) == PLANNED
+def test_the_wheel_plans_a_study_as_the_checkout_does(environment, study, tmp_path):
+    told = snakemake(environment, study("mine", "--example", "smoke"), "--dry-run")
     assert str(ROOT / "src") not in told
+    jobs = planned(told)
+    assert jobs["all"] == jobs["_basis"] == 1
+    assert jobs["_simulate"] == jobs["_spectra"] == 3  # one for each load
+    files = ["--snakefile", ROOT / "Snakefile", "--configfile", ROOT / "config" / "smoke.yaml"]
+    command = [sys.executable, "-m", "snakemake", "--dry-run", *files]
+    here = run(*command, cwd=tmp_path)
+    assert planned(here.stdout + here.stderr) == jobs
 
 
 def test_a_broken_configuration_is_named_with_its_line(environment, study):
