@@ -52,14 +52,14 @@ test-all: $(READY) ## every test, and the coverage of the library
 lint: $(READY) ## formatting, static checks and types
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/snakefmt --check Snakefile workflow/rules examples
+	$(BIN)/snakefmt --check Snakefile workflow examples src/vibroimpact/study_folder
 	$(BIN)/mypy
 	@$(BIN)/python tests/test_typed.py
 
 format: $(READY) ## format Python files and rules
 	$(BIN)/ruff check --fix --select I
 	$(BIN)/ruff format
-	$(BIN)/snakefmt Snakefile workflow/rules examples
+	$(BIN)/snakefmt Snakefile workflow examples src/vibroimpact/study_folder
 
 judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
 	.venv-judges/bin/python -m pytest tests/judges -rs

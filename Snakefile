@@ -43,7 +43,7 @@ rule all:
     input:
         targets(),
     message:
-        "Study '{STUDY.study}' is complete: tables and figures in {RESULTS}"
+        f"Study '{STUDY.study}' is complete: tables and figures in {RESULTS}"
 
 
 rule discrepancy:

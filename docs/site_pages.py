@@ -1,9 +1,10 @@
-"""The pages of the site that are made from the code: configuration keys, effects, command line and
-Python interface.
+"""The pages of the site that are made from the code: configuration keys, effects, command line,
+Python interface and notebooks.
 """
 
 import importlib
 import inspect
+import json
 import pkgutil
 import re
 import subprocess
@@ -64,6 +65,9 @@ def write_generated_pages(app, config):
         (packages / stale).unlink()
     for name, text in pages.items():
         _write(packages / name, text)
+    (folder / "notebooks").mkdir(exist_ok=True)
+    for path in sorted(Path(app.srcdir, "notebooks").glob("*.ipynb")):
+        _write(folder / "notebooks" / f"{path.stem}.md", _notebook_page(path))
 
 
 def docstring_as_rst(app, what, name, obj, options, lines):
@@ -186,6 +190,16 @@ def _command_line():
         env={"PYTHONPATH": str(root), "COLUMNS": "90"},
     ).stdout
     return f"```text\n{shown}```\n"
+
+
+def _notebook_page(path):
+    """Return the text and the code of a notebook as Markdown, without outputs."""
+    parts = []
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        text = "".join(cell["source"])
+        parts.append(text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```")
+    parts.insert(1, f"{{download}}`The notebook <../../notebooks/{path.name}>`")
+    return "\n\n".join(parts) + "\n"
 
 
 def _public_page():

@@ -50,6 +50,7 @@ PACKAGES = (
     "validation",
     "reports",
     "figures",
+    "study_folder",
     "cli",
     "__main__",
 )

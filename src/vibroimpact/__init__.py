@@ -16,6 +16,7 @@ PUBLIC = {
     "ConfigError": "config.problems",
     "load_config": "config.reading",
     "check_config": "config.reading",
+    "changed_config": "config.changed_keys",
     "json_schema": "config.json_schema",
     "build_model": "reduction.reduced_model",
     "basis_frequency_errors": "reduction.basis_accuracy",
@@ -24,6 +25,10 @@ PUBLIC = {
     "Case": "study.cases",
     "all_cases": "study.cases",
     "cases_of_load": "study.cases",
+    "simulate_case": "study.in_process",
+    "identify_support": "study.in_process",
+    "run_study": "study.in_process",
+    "SupportEstimates": "study.support_estimates",
     "simulate_cases": "study.simulation",
     "statistics_rows": "study.statistics_table",
     "case_spectra": "study.case_spectra",
@@ -43,6 +48,8 @@ PUBLIC = {
     "import_folder": "campaign.importing.assemble",
     "read_record": "records",
     "write_record": "records",
+    "configurations": "study_folder.shared_files",
+    "workflow_snakefile": "study_folder.shared_files",
 }
 __all__ = ["__version__", *PUBLIC]
 

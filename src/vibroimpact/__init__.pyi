@@ -20,6 +20,7 @@ from .campaign.file import (
     write_campaign as write_campaign,
 )
 from .campaign.importing.assemble import import_folder as import_folder
+from .config.changed_keys import changed_config as changed_config
 from .config.json_schema import json_schema as json_schema
 from .config.problems import ConfigError as ConfigError
 from .config.reading import check_config as check_config
@@ -41,8 +42,14 @@ from .study.case_spectra import case_spectra as case_spectra
 from .study.cases import Case as Case
 from .study.cases import all_cases as all_cases
 from .study.cases import cases_of_load as cases_of_load
+from .study.in_process import identify_support as identify_support
+from .study.in_process import run_study as run_study
+from .study.in_process import simulate_case as simulate_case
 from .study.simulation import simulate_cases as simulate_cases
 from .study.statistics_table import statistics_rows as statistics_rows
+from .study.support_estimates import SupportEstimates as SupportEstimates
+from .study_folder.shared_files import configurations as configurations
+from .study_folder.shared_files import workflow_snakefile as workflow_snakefile
 
 __version__: str
 PUBLIC: dict[str, str]

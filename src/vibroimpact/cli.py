@@ -1,4 +1,4 @@
-"""The command line: check a file, print the JSON schema or the reference of the configuration.
+"""The command line: lay out a study, check a file, print the JSON schema or the key reference.
 
 Commands import what they need when they run, so that `--help` answers at once.
 """
@@ -77,6 +77,22 @@ def _parser() -> argparse.ArgumentParser:
     )
     check.add_argument("file", metavar="FILE")
     check.set_defaults(command=_check)
+    new = commands.add_parser(
+        "new",
+        help="lay out a folder for a study of your own",
+        description="Lay out a folder for a study of your own: a configuration to edit, a Snakefile"
+        " that uses the workflow of this package, profiles and a README. `snakemake -j2` runs it"
+        " there. Nothing that exists is overwritten.",
+    )
+    new.add_argument("folder", metavar="DIR", help="a folder that is empty or does not exist yet")
+    new.add_argument(
+        "--example",
+        metavar="NAME",
+        default="study",
+        help="the configuration to start from; a name that does not exist lists them (default:"
+        " study, the study of the paper)",
+    )
+    new.set_defaults(command=_new)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),
@@ -95,6 +111,20 @@ def _check(options: argparse.Namespace) -> int:
     if summary:
         print(f"{options.file}: {summary}")
     return 0 if summary else 1
+
+
+def _new(options: argparse.Namespace) -> int:
+    """Lay out a folder for a study. Return 1 where it can not be done."""
+    from vibroimpact.study_folder.new_study import NewStudyError, new_study
+
+    try:
+        files = new_study(options.folder, options.example)
+    except NewStudyError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    print(f"{options.folder}: {', '.join(map(str, files))}")
+    print("Edit config/study.yaml, then, in that folder: snakemake -j2")
+    return 0
 
 
 def _schema(options: argparse.Namespace) -> int:

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.validation.convergence import contact_points
 from vibroimpact.validation.convergence import mesh as convergence_mesh
 from vibroimpact.validation.convergence.rate import extrapolated, fitted_order, successive_changes
-from vibroimpact.validation.variant import changed
 
 
 def failed(checks):
@@ -48,7 +48,7 @@ def test_bend_error_is_that_of_chords_for_arcs(mesh_rows):
 
 @pytest.mark.parametrize("points", [2, 3, 5, 9])
 def test_equal_points_turn_stiffer_than_the_layer(study_config, points):
-    contact = build_structure(changed(study_config, {"supports.points": points})).contact
+    contact = build_structure(changed_config(study_config, {"supports.points": points})).contact
     place = contact.arc_length[contact.support == 0]
     moment = contact.weight[contact.support == 0] @ (place - place.mean()) ** 2
     height = study_config.supports[0].height_m

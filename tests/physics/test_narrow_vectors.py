@@ -11,12 +11,12 @@ import pytest
 from llvmlite import binding
 from numba.core.registry import cpu_target
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.kernels.march import march
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.validation.variant import changed
 
 CONFIG = Path(__file__).resolve().parents[2] / "config" / "study.yaml"
 SMALL = {
@@ -36,7 +36,7 @@ def short_run():
     gap = np.linspace(2e-5, 4e-5, LANES)
     offset = 0.05 * gap * np.random.default_rng(1).uniform(-1.0, 1.0, (10, 2, LANES))
     lanes = integrate_batch(
-        build_model(changed(load_config(CONFIG), SMALL)),
+        build_model(changed_config(load_config(CONFIG), SMALL)),
         Schedule(20480, 2048, 0.0, 0.02, "exact"),
         gap,
         offset,

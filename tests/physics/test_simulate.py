@@ -7,6 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.records import read_record
 from vibroimpact.stopwatch import Stopwatch
@@ -16,7 +17,6 @@ from vibroimpact.study.record_variables import split_record
 from vibroimpact.study.series_writer import series_writer
 from vibroimpact.study.simulation import simulate_cases
 from vibroimpact.study.spectra_writer import spectra_writer
-from vibroimpact.validation.variant import changed
 
 GAP = 2.8886e-4
 
@@ -165,7 +165,7 @@ def test_records_balance_their_energy(
     """Newmark to round-off; the exact step as far as trapezoidal sums of work and damping go, with
     the longer step's loss at the gap.
     """
-    config = changed(
+    config = changed_config(
         study_config,
         {
             "integration.scheme": scheme,

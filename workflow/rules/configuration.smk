@@ -5,14 +5,39 @@ import shlex
 import sys
 from pathlib import Path
 
-SOURCE = os.path.relpath(Path(workflow.basedir, "src"))
-SCRIPTS = os.path.relpath(Path(workflow.basedir, "workflow", "scripts"))
-EXAMPLES = os.path.relpath(Path(workflow.basedir, "examples"))
-PYTHON = shlex.quote(sys.executable)
-sys.path.insert(0, SOURCE)
-# Jobs inherit these: the library needs no installation, and -j jobs use one thread each.
+# The folder that holds Snakefile, workflow/, config/ and examples/: a checkout with the library in
+# src/, or vibroimpact/share/ of the installed package. That of the package also serves a module
+# that Snakemake reads from a repository in the network.
+if workflow.current_basedir.is_local:
+    ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).parents[1]
+else:
+    from vibroimpact import workflow_snakefile
+
+    ROOT = Path(workflow_snakefile()).parent
+IN_CHECKOUT = (ROOT / "src" / "vibroimpact").is_dir()
+
+
+def as_input(path):
+    """A path as rules name it: relative below the working folder, else absolute.
+
+    A study that is moved then finds the same inputs of an installed library.
+    """
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
+
+
+SOURCE = as_input(ROOT / "src" if IN_CHECKOUT else ROOT.parents[1])
+SCRIPTS = as_input(ROOT / "workflow" / "scripts")
+EXAMPLES = as_input(ROOT / "examples")
+CONFIGURATIONS = as_input(ROOT / "config")
+# Snakemake writes sys.executable into commands as it stands: a path with a space needs quotes.
+PYTHON = sys.executable if sys.executable.startswith("'") else shlex.quote(sys.executable)
+sys.executable = PYTHON
+# Jobs inherit these. The library of a checkout needs no installation; -j jobs use one thread each.
+if IN_CHECKOUT:
+    sys.path.insert(0, SOURCE)
+    os.environ.update(PYTHONPATH=os.path.abspath(SOURCE))
 os.environ.update(
-    PYTHONPATH=os.path.abspath(SOURCE),
     OMP_NUM_THREADS="1",
     OPENBLAS_NUM_THREADS="1",
     MKL_NUM_THREADS="1",

@@ -4,6 +4,7 @@
 rule _basis:
     input:
         library=library("basis"),
+        matrices=matrix_files(),
     output:
         model=f"{RESULTS}/model.nc",
         quality=f"{RESULTS}/basis_quality.csv",

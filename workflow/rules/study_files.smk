@@ -54,6 +54,14 @@ def settings(stage):
     return stage_params(STUDY, stage)
 
 
+def matrix_files():
+    """The files of the matrices that give the structure; an edit of one reruns what follows."""
+    if STUDY.structure.kind != "matrices":
+        return []
+    named = (STUDY.structure.mass, STUDY.structure.stiffness, STUDY.structure.damping)
+    return sorted({file for file in named if file})
+
+
 def files_of_load(folder, suffix="nc"):
     """The files of the cases of wildcard {load}, one per gap and seed."""
     return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in ids_of_load(STUDY.grid, "{load}")]

@@ -33,7 +33,7 @@ wildcard_constraints:
 rule _validation_reference:
     input:
         library=library("validation_reference"),
-        configs=[str(path) for path in sorted(Path("config/reference").glob("*.yaml"))],
+        configs=[str(path) for path in sorted(Path(CONFIGURATIONS, "reference").glob("*.yaml"))],
     output:
         checks=f"{VALIDATION}/checks_{{group}}.csv",
         rows=f"{VALIDATION}/order_{{group}}.csv",
@@ -94,7 +94,7 @@ rule _validation_prediction_cases:
         table=f"{RESULTS}/consistency_summary.csv",
         records=files_of_study("records"),
         spectra=files_of_study("spectra"),
-        second="config/validation/second_tube.yaml",
+        second=f"{CONFIGURATIONS}/validation/second_tube.yaml",
     output:
         table=f"{VALIDATION}/prediction_{{cases}}.csv",
     log:

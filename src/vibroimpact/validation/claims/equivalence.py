@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.study_curves import STIFFNESS
-from vibroimpact.validation.variant import changed
 
 from .claim import AGREE, Claim, graded
 
@@ -84,7 +84,7 @@ def five_points(config):
     shares = np.ones(LAYER_POINTS)
     shares[[0, -1]] = 0.5  # trapezoidal: the layer's own integral
     layer = _frequencies(
-        changed(
+        changed_config(
             config,
             {
                 "supports.points": LAYER_POINTS,
@@ -96,7 +96,9 @@ def five_points(config):
         points: (
             np.abs(
                 _frequencies(
-                    changed(config, {"supports.points": points, "supports.stiffness_N_per_m": OWN})
+                    changed_config(
+                        config, {"supports.points": points, "supports.stiffness_N_per_m": OWN}
+                    )
                 )
                 / layer
                 - 1.0
@@ -132,7 +134,7 @@ def _frequencies(config):
 def theories(config):
     """Return the Claim that Euler-Bernoulli and Timoshenko beams differ little."""
     tables = [
-        _frequencies(changed(config, {"structure.theory": theory}))
+        _frequencies(changed_config(config, {"structure.theory": theory}))
         for theory in ("euler_bernoulli", "timoshenko")
     ]
     difference = np.abs(tables[0] / tables[1] - 1.0)

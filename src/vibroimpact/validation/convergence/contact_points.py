@@ -9,10 +9,10 @@ order 2. Both orders are checked.
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.check import Check
-from vibroimpact.validation.variant import changed
 
 from .rate import extrapolated, fitted_order, successive_changes
 
@@ -52,7 +52,7 @@ def model_with_points(config, points, weights="equal"):
         share[[0, -1]] = 0.5
     total = float(np.sum(config.supports[0].stiffness_N_per_m))
     return build_model(
-        changed(
+        changed_config(
             config,
             {
                 "supports.points": points,
@@ -138,7 +138,7 @@ def refinement_rows(config, stiffness=REFINED_STIFFNESS, points=REFINED_POINTS):
 
 def published_checks(config):
     """Return the Checks against the published first frequencies, on the published mesh."""
-    stated = changed(
+    stated = changed_config(
         config, {"structure.mesh.elements_per_span": 20, "structure.mesh.elements_per_bend": 40}
     )
     models = {points: model_with_points(stated, points) for _, points in PUBLISHED}

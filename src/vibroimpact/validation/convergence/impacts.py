@@ -9,13 +9,13 @@ control.
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import effective_averages
 from vibroimpact.spectra.window_leakage import spectral_kernel
 from vibroimpact.study.cases import Case
 from vibroimpact.study.simulation import simulate_cases
 from vibroimpact.validation.check import Check
-from vibroimpact.validation.variant import changed
 
 from .spectra import CASE, DECIBEL, POINT, averaging, estimates_of
 
@@ -37,7 +37,7 @@ def impact_spectra(config, loads=LOADS_N, seeds=SEEDS, settings=SETTINGS):
     at POINT)}.
     contact: {load: fraction of time in contact}.
     """
-    run = changed(config, {"grid.seeds": seeds})
+    run = changed_config(config, {"grid.seeds": seeds})
     model, rate = build_model(run), run.record.sampling_frequency_Hz
     found, contact = {}, {}
     for load in loads:

@@ -10,9 +10,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.validation.check import Check
-from vibroimpact.validation.variant import changed
 
 from .rate import extrapolated, fitted_order, successive_changes
 
@@ -76,7 +76,7 @@ def mesh_rows(config, refined=tuple(MESHES), theories=THEORIES, stiffness=STIFFN
             meshes = MESHES[part]
             tubes = [
                 build_structure(
-                    changed(
+                    changed_config(
                         config,
                         {
                             "structure.theory": theory,

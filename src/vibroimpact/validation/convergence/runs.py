@@ -7,11 +7,11 @@ lines at every step, because the synthesis length is the same time at all rates.
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.study.simulation import simulate_cases
-from vibroimpact.validation.variant import changed
 
 STEP_RATES = (25600, 51200, 102400, 204800)  # steps per second, the paper's scheme
 EXACT_RATES = (10240, 20480, 40960)  # steps per second, the exact modal step
@@ -67,7 +67,7 @@ def step_variant(config, steps_per_second, scheme="newmark"):
     A step that the configuration would refuse (omega step above 1) is set after its check: its
     effect is what is measured.
     """
-    run = changed(config, RUN)
+    run = changed_config(config, RUN)
     integration = run.integration.model_copy(
         update={"steps_per_second": steps_per_second, "scheme": scheme}
     )
@@ -84,7 +84,7 @@ def modes_variant(config, free_modes_to_Hz):
 
     Constrained modes and attachment shapes are the same.
     """
-    run = changed(
+    run = changed_config(
         config,
         {
             **RUN,
@@ -102,7 +102,7 @@ def free_modes_alone(config, free_modes_to_Hz):
     The basis then lacks the shapes of local flexibility.
     """
     alone = {"basis.constrained_modes_to_Hz": NO_MODE_BELOW_HZ, "basis.attachment_shapes": False}
-    run = changed(
+    run = changed_config(
         config,
         {
             **RUN,

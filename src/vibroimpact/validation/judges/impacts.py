@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.integration.every_step import integrate_every_step
 from vibroimpact.integration.kernel_layout import FIXED_POINT_TOLERANCE
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.check import Check
-from vibroimpact.validation.variant import changed
 
 from .opensees import opensees_impacts
 
@@ -74,7 +74,7 @@ def impact_config(config, values=None):
     tube = config.structure
     at = tube.bend_radius_m * np.sqrt(0.5)
     drive = (-at, 0.0, tube.leg_length_m + at)
-    return changed(
+    return changed_config(
         config,
         {**RUN, f"points.{config.excitation.point}": list(map(float, drive)), **(values or {})},
     )

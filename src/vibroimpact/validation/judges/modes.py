@@ -4,17 +4,18 @@ OpenSees has the same nodes.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.structure.beam_elements import element_matrices
 from vibroimpact.structure.tube import build_structure, element_geometry
 from vibroimpact.validation.check import Check
 from vibroimpact.validation.reference.frequencies import plane_frequencies
-from vibroimpact.validation.variant import changed
 
 from .calculix import karman_factor, straight_tube_frequencies, u_tube_frequencies
 from .opensees import opensees_frequencies
@@ -47,7 +48,7 @@ def opensees_checks(config, stiffness=STIFFNESS) -> list[Check]:
     """
     checks = []
     for theory in THEORIES:
-        tube = changed(config, {"structure.theory": theory})
+        tube: Any = changed_config(config, {"structure.theory": theory})
         for k in stiffness:
             checks.append(
                 _largest(
@@ -63,7 +64,7 @@ def opensees_checks(config, stiffness=STIFFNESS) -> list[Check]:
             _largest(
                 f"tube, {theory}, k = 4e6 N/m, finer mesh",
                 f"OpenSees, {REFINED} elements for each of ours",
-                opensees_frequencies(changed(tube, _refined(tube)), 4.0e6, MODES),
+                opensees_frequencies(changed_config(tube, _refined(tube)), 4.0e6, MODES),
                 beam_frequencies(tube, 4.0e6)[:MODES],
                 MESH_SAFETY * 2.0 * angle**2 / 24.0,
             )
@@ -85,9 +86,9 @@ def calculix_checks(config, stiffness=SOLID_STIFFNESS) -> list[Check]:
     A straight tube is compared with a beam, the U-tube with a beam whose bend is softer by Karman's
     factor. Raises JudgeAbsent.
     """
-    tube, checks = changed(config, {"structure.theory": "timoshenko"}), []
+    tube, checks = changed_config(config, {"structure.theory": "timoshenko"}), []
     for poisson, tolerance in ((0.3, SOLID), (0.0, SOLID_WITHOUT_POISSON)):
-        metal = changed(
+        metal = changed_config(
             tube,
             {
                 "structure.material.poisson_ratio": poisson,

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.structure import UTube
 from vibroimpact.geometry.sections import outer_width
@@ -12,7 +13,6 @@ from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case, load_values
 from vibroimpact.study.simulation import simulate_cases
-from vibroimpact.validation.variant import changed
 
 from .equivalent_law import FREE, fit_law, free_level, plate_stiffness
 from .table import amplified, linear_response, prediction_rows, recorded_response
@@ -183,7 +183,7 @@ def case_rows(cases, config, model, results: Path, second):
     if cases == "gaps":
         diameter = outer_width(config.structure.section)
         return simulated_rows(
-            changed(config, RUN),
+            changed_config(config, RUN),
             "study tube, other gaps and loads",
             laws,
             gains,
@@ -196,4 +196,4 @@ def case_rows(cases, config, model, results: Path, second):
         / outer_width(config.structure.section)
         * outer_width(other.structure.section)
     )
-    return simulated_rows(changed(other, RUN), "second tube", laws, gains, [gap])
+    return simulated_rows(changed_config(other, RUN), "second tube", laws, gains, [gap])

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.cases import all_cases, load_values
 from vibroimpact.study.simulation import simulate_cases
 from vibroimpact.validation.check import Check
-from vibroimpact.validation.variant import changed
 
 from . import cases as reference_cases
 from .frequencies import frequency_checks
@@ -51,7 +51,7 @@ def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
     wear = configs["r5_wear"]
     checks += reference_cases.wear_checks(run(wear), wear.elements[0].stick_stiffness_N_per_m)
     forced = [
-        run(changed(configs["r3_forced_impact"], {"integration.steps_per_second": rate}))[0]
+        run(changed_config(configs["r3_forced_impact"], {"integration.steps_per_second": rate}))[0]
         for rate in STEPS
     ]
     checks += reference_cases.forced_impact_checks(forced[-1])

@@ -1,14 +1,19 @@
 """A configuration with some keys changed, as a user would write it."""
 
-from vibroimpact.config.reading import check_config
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from .reading import check_config
+from .schema import Config
 
 
-def changed(config, values):
+def changed_config(config: Config, values: Mapping[str, Any]) -> Config:
     """Return the checked Config with the dotted keys of `values` changed.
 
     values: {key: value}, such as {"record.duration_s": 24.0}. "supports.points" changes the key in
-    every support.
-
+        every support.
     Raises ConfigError as check_config does, KeyError for a section that does not exist.
     """
     data = config.model_dump(mode="json")

@@ -1,0 +1,120 @@
+"""A case, or a small study, from its configuration to the equivalent support in one process.
+
+For notebooks and scripts. The workflow makes the same numbers in parallel jobs and keeps them in
+files.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+
+from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.schema import Config
+from vibroimpact.config.stage_keys import stage_params
+from vibroimpact.identify.estimate import table_rows
+from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.memo import Memo
+from vibroimpact.provenance import config_digest
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.reduced_model import build_model
+
+from .case_spectra import case_spectra
+from .cases import Case, all_cases
+from .method_agreement import consistency_dataset, consistency_rows, summary_rows
+from .simulation import simulate_cases
+from .support_estimates import SupportEstimates
+
+MODELS = Memo()
+
+
+def simulate_case(
+    config: Config,
+    load_rms_N: float,
+    gap_m: float,
+    seed: int = 0,
+    duration_s: float | None = None,
+) -> xr.Dataset:
+    """Return the record of one load and gap: time series and statistics of contact and stress.
+
+    Its variables, dimensions and units are those of study.record_variables.VARIABLES. The grid of
+    the configuration is not read.
+
+    load_rms_N: RMS of the force, N.
+    gap_m: radial clearance of the supports without one of their own, m.
+    seed: of the force and the imperfections, from 0.
+    duration_s: of the record, s; that of the configuration where None.
+    Raises ConfigError for values that the configuration may not have, IntegrationError, ForceError.
+    """
+    values: dict[str, Any] = {
+        "grid.load_rms_N": [load_rms_N],
+        "grid.gap_m": [gap_m],
+        "grid.seeds": seed + 1,
+    }
+    if duration_s is not None:
+        values["record.duration_s"] = duration_s
+    config = changed_config(config, values)
+    case = Case(float(load_rms_N), float(gap_m), seed)
+    ((_, record),) = simulate_cases(config, reduced_model(config), [case])
+    return record
+
+
+def identify_support(
+    config: Config, record: xr.Dataset, spectra: xr.Dataset | None = None
+) -> SupportEstimates:
+    """Return the equivalent support of one case by every method: k (N/m) and c (N s/m) per support.
+
+    They are NaN where a method can not resolve the support.
+
+    record: of simulate_case, or read from results/<study>/records.
+    spectra: of case_spectra, or read from results/<study>/spectra; made from the record where None.
+    Raises ValueError for a configuration without identification, and for a record without time
+    series where the spectra are not given.
+    """
+    if config.identification is None:
+        raise ValueError(
+            f"study '{config.study}' has no section identification, which says where to look for"
+            " the equivalent support: add it, as in config/study.yaml"
+        )
+    if spectra is None:
+        if "displacement" not in record:
+            raise ValueError(
+                f"the record of {record.attrs.get('case', 'this case')} holds no time series: give"
+                " its spectra, from results/<study>/spectra"
+            )
+        spectra = case_spectra(config, record)
+    estimates, curves = identify_case(config, reduced_model(config), record, spectra)
+    case = record.attrs
+    return SupportEstimates(case["load_rms_N"], case["gap_m"], tuple(estimates), curves)
+
+
+def run_study(config: Config) -> xr.Dataset:
+    """Return the equivalent supports of all cases of a study, as in its file consistency.nc.
+
+    Variables: of every case (gap, load, seed, method), of the medians over seeds (gap, load,
+    method), and the verdict on the agreement of the methods (gap, load). Meant for small grids:
+    the workflow runs large ones in parallel and keeps their records.
+
+    Raises ValueError for a configuration without identification, and as simulate_case does.
+    """
+    model, tables = reduced_model(config), []
+    cases = all_cases(config.grid)
+    if config.identification is None:
+        raise ValueError(f"study '{config.study}' has no section identification: add it")
+    for _, record in simulate_cases(config, model, cases):
+        estimates, _ = identify_case(config, model, record, case_spectra(config, record))
+        tables.append(table_rows(estimates, record.attrs))
+    rows = consistency_rows(tables)
+    return consistency_dataset(rows, summary_rows(rows))
+
+
+def reduced_model(config: Config) -> ModalModel:
+    """Return the ModalModel of a configuration; the last few are kept.
+
+    That of matrices is always built again, because their files may have changed.
+    """
+    if config.structure.kind == "matrices":
+        return build_model(config)
+    key = config_digest(stage_params(config, "basis"))
+    return MODELS.get(key, lambda: build_model(config))
