@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.reference.runs import run, tube_checks
 from vibroimpact.validation.reference.tubes import cantilever_checks
-from vibroimpact.validation.variant import changed
 
 FOLDER = Path(__file__).resolve().parents[2] / "config" / "reference"
 FEW_MODES = {
@@ -48,6 +48,6 @@ def test_modes_of_the_reference_tubes(name, modes):
 
 def test_a_cantilever_on_four_gaps_with_few_modes():
     """R8 with 24 modes and no residual shapes: 23 to 25 N of others with 12 to 40 modes."""
-    config = changed(load_config(FOLDER / "r8_cantilever_gaps.yaml"), FEW_MODES)
+    config = changed_config(load_config(FOLDER / "r8_cantilever_gaps.yaml"), FEW_MODES)
     assert modes_in_the_plane(config) == 24
     assert 23.0 < cantilever_checks(run(config)[0])[0].ours < 25.0

@@ -20,9 +20,10 @@ from vibroimpact.provenance import config_digest
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
+from .agreement_dataset import consistency_dataset
 from .case_spectra import case_spectra
 from .cases import Case, all_cases
-from .method_agreement import consistency_dataset, consistency_rows, summary_rows
+from .method_agreement import consistency_rows, summary_rows
 from .simulation import simulate_cases
 from .support_estimates import SupportEstimates
 
@@ -92,9 +93,10 @@ def identify_support(
 def run_study(config: Config) -> xr.Dataset:
     """Return the equivalent supports of all cases of a study, as in its file consistency.nc.
 
-    Variables: of every case (gap, load, seed, method), of the medians over seeds (gap, load,
-    method), and the verdict on the agreement of the methods (gap, load). Meant for small grids:
-    the workflow runs large ones in parallel and keeps their records.
+    Variables: of every case (support_direction, gap, load, seed, method), of the medians over seeds
+    (support_direction, gap, load, method), and the verdicts on the agreement of the methods
+    (support_direction, gap, load). Meant for small grids: the workflow runs large ones in parallel
+    and keeps their records.
 
     Raises ValueError for a configuration without identification, and as simulate_case does.
     """

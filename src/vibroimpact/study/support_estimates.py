@@ -1,9 +1,9 @@
-"""The equivalent support of one case by every method, as a notebook shows it."""
+"""The equivalent supports of one case by every method, as a notebook shows them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -25,11 +25,14 @@ ABOUT = {
 
 @dataclass(frozen=True, repr=False)
 class SupportEstimates(Mapping[str, Estimate]):
-    """The estimates of the equivalent support of one case, by method: estimates["lscf"].k in N/m.
+    """The estimates of the equivalent supports of one case, by method: estimates["lscf"].k in N/m.
+
+    Where several groups of supports or directions are identified, `of` selects one of them first:
+    estimates.of("plate_1", "y")["lscf"].k.
 
     load_rms_N: RMS of the force, N.
     gap_m: radial clearance, m.
-    estimates: one Estimate per method.
+    estimates: one Estimate per method, group of supports and direction.
     curves: Dataset of what was fitted: poles, spectra and shapes of every method.
     """
 
@@ -38,36 +41,70 @@ class SupportEstimates(Mapping[str, Estimate]):
     estimates: tuple[Estimate, ...]
     curves: xr.Dataset
 
+    @property
+    def directions(self) -> list[tuple[str, str]]:
+        """Return (group of supports, direction) of everything that was identified."""
+        return list(dict.fromkeys((each.group, each.direction) for each in self.estimates))
+
+    def of(self, group: str, direction: str) -> SupportEstimates:
+        """Return the estimates of one group of supports in one direction."""
+        chosen = [
+            each for each in self.estimates if (each.group, each.direction) == (group, direction)
+        ]
+        if not chosen:
+            known = ", ".join(f"{each} in {along}" for each, along in self.directions)
+            raise KeyError(f"{group} in {direction}: identified are {known}")
+        return replace(self, estimates=tuple(chosen))
+
     def __getitem__(self, method: str) -> Estimate:
+        if len(self.directions) > 1:
+            group, direction = self.directions[0]
+            raise KeyError(
+                f"{method}: several supports are identified; choose one by"
+                f' .of("{group}", "{direction}")["{method}"]'
+            )
         for estimate in self.estimates:
             if estimate.method == method:
                 return estimate
         raise KeyError(f"{method}: the methods are {', '.join(self)}")
 
     def __iter__(self) -> Iterator[str]:
-        return (estimate.method for estimate in self.estimates)
+        return iter(dict.fromkeys(estimate.method for estimate in self.estimates))
 
     def __len__(self) -> int:
-        return len(self.estimates)
+        return len(list(iter(self)))
 
     def __repr__(self) -> str:
         title = f"Equivalent support at {self.load_rms_N:g} N RMS, gap {1e3 * self.gap_m:.4g} mm"
-        head = f"{'method':<26} {'k N/m':>18} {'c N s/m':>16}  quality"
-        return "\n".join([title, head, *map(_line, self.estimates)])
+        lines = [title]
+        for group, direction in self.directions:
+            place = f"group {group} in {direction}"
+            lines.append(f"{place:<26} {'k N/m':>18} {'c N s/m':>16}  quality")
+            lines += map(_line, self.of(group, direction).estimates)
+        return "\n".join(lines)
 
     def to_dataset(self) -> xr.Dataset:
-        """Return the estimates as variables along the dimension `method`, with units.
+        """Return the estimates as variables (support_direction, method), with units.
 
         One method is selected by dataset.sel({"method": "lscf"}): the word is taken as an option in
         dataset.sel(method=...).
         """
         columns = {}
         for name, (unit, meaning) in ABOUT.items():
-            values = np.array([getattr(estimate, name) for estimate in self.estimates])
+            values = np.array(
+                [
+                    [getattr(estimate, name) for estimate in self.of(*place).estimates]
+                    for place in self.directions
+                ]
+            )
             about = {"long_name": meaning} | ({"units": unit} if unit else {})
-            columns[name] = ("method", values, about)
-        case = {"load_rms_N": self.load_rms_N, "gap_m": self.gap_m}
-        return xr.Dataset(columns, {"method": list(self)}, case)
+            columns[name] = (("support_direction", "method"), values, about)
+        coords = {
+            "method": list(self),
+            "group": ("support_direction", [group for group, _ in self.directions]),
+            "direction": ("support_direction", [direction for _, direction in self.directions]),
+        }
+        return xr.Dataset(columns, coords, {"load_rms_N": self.load_rms_N, "gap_m": self.gap_m})
 
 
 def _line(estimate: Estimate) -> str:

@@ -83,7 +83,7 @@ def tube_checks(folder: Path) -> list[Check]:
     launched = load_config(folder / "r7_beam_launched.yaml")
     checks = []
     for stiffness in LAUNCHED_MM:
-        record = run(changed(launched, {"supports.stiffness_N_per_m": stiffness}))[0]
+        record = run(changed_config(launched, {"supports.stiffness_N_per_m": stiffness}))[0]
         checks += launched_beam_checks(record, stiffness)
     return checks + cantilever_checks(run(load_config(folder / "r8_cantilever_gaps.yaml"))[0])
 
