@@ -4,10 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import vibroimpact
-from vibroimpact.identify.estimate import METHODS
+from vibroimpact.identify.estimate import METHODS, Estimate
 from vibroimpact.study import in_process
+from vibroimpact.study.support_estimates import SupportEstimates
 
 ROOT = Path(__file__).parents[2]
 # A mass of 1 kg on a spring of 40 Hz between two stops.
@@ -101,12 +103,32 @@ def test_values_that_can_not_be_are_refused(chain, values, sentence):
 
 def test_every_method_has_an_estimate_with_its_units(estimates):
     assert list(estimates) == list(METHODS) and len(estimates) == len(METHODS)
-    table = estimates.to_dataset()
+    assert estimates.directions == [("all", "y")]
+    table = estimates.to_dataset().isel(support_direction=0)
     assert table["k"].attrs["units"] == "N m-1" and table["c"].attrs["units"] == "N s m-1"
     assert float(table["k"].sel({"method": "ods"})) == estimates["ods"].k
     assert table.attrs == {"load_rms_N": 4.0, "gap_m": 2.8886e-4}
     with pytest.raises(KeyError, match="lsfc: the methods are peak_half, "):
         _ = estimates["lsfc"]
+
+
+def test_several_supports_are_chosen_by_group_and_direction():
+    places = [("plate_1", "y"), ("plate_2", "y")]
+    found = SupportEstimates(
+        4.0,
+        1.0e-3,
+        tuple(
+            Estimate("ods", 1.0e5 * (1 + number), 1.0, group=group, direction=direction)
+            for number, (group, direction) in enumerate(places)
+        ),
+        xr.Dataset(),
+    )
+    assert found.directions == places and found.of("plate_2", "y")["ods"].k == 2.0e5
+    assert found.to_dataset()["k"].values.tolist() == [[1.0e5], [2.0e5]]
+    with pytest.raises(KeyError, match=r'choose one by .of."plate_1", "y"'):
+        _ = found["ods"]
+    with pytest.raises(KeyError, match="identified are plate_1 in y, plate_2 in y"):
+        found.of("plate_3", "y")
 
 
 def test_estimates_are_shown_as_a_table_with_units(estimates):
@@ -137,7 +159,7 @@ def test_a_study_holds_the_estimates_of_its_cases(tube, estimates):
     study = vibroimpact.run_study(tube)
     k = study["k"].sel(load=4.0, gap=2.8886e-4, seed=0).values
     assert np.array_equal(k, estimates.to_dataset()["k"].values, equal_nan=True)
-    assert np.array_equal(study["k_median"].values.ravel(), k, equal_nan=True)
+    assert np.array_equal(study["k_median"].values.ravel(), k.ravel(), equal_nan=True)
 
 
 def test_without_identification_or_series_says_what_to_give(chain, tube, record):
