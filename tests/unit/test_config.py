@@ -215,6 +215,16 @@ REFUSALS = [
     ),
     ("points.apex", [0.0, 0.02, 1.0], ["points.apex", "0.0200 m off the tube"]),
     ("points.apex", [0.0, 1.0], ["points.apex = [0.0, 1.0] has 2 values", "x, y and z"]),
+    (
+        "identification.groups",
+        [["left"], ["rigt"]],
+        ["identification.groups[1][0] = 'rigt' is no support", "did you mean 'right'?"],
+    ),
+    (
+        "identification.groups",
+        [["left", "right"], ["left"]],
+        ["identification.groups[1][0] = 'left' is in group 0 already"],
+    ),
     ("excitation.point", "shakr", ["excitation.point = 'shakr'", "did you mean 'shaker'?"]),
     ("excitation.direction", [0, 0, 0], ["excitation.direction", "not a direction"]),
     ("excitation.band_Hz", [200.0, 5.0], ["excitation.band_Hz = [200.0, 5.0]", "ascending"]),

@@ -341,6 +341,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     names.drag_partners,
     names.identified_points,
     names.identification_needs,
+    names.grouped_supports_are_there,
     initial_checks.initial_fields,
     _every_step,
     names.sensors,

@@ -148,6 +148,26 @@ def identification_needs(
         )
 
 
+def grouped_supports_are_there(
+    supports: Sequence[Support], identification: Identification
+) -> Problems:
+    """Yield a problem unless groups name supports that are there, each once."""
+    if isinstance(identification.groups, str):
+        return
+    names = [support.name for support in supports]
+    taken: dict[str, int] = {}
+    for index, group in enumerate(identification.groups):
+        for place, name in enumerate(group):
+            key = f"identification.groups[{index}][{place}]"
+            if name not in names:
+                close = get_close_matches(name, names, n=1)
+                remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(names)}"
+                yield key, name, f"is no support: {remedy}"
+            elif name in taken:
+                yield key, name, f"is in group {taken[name]} already: a support is in one group"
+            taken.setdefault(name, index)
+
+
 def point_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless supports of a structure that is no tube are at its points."""
     for index, support in enumerate(supports):
