@@ -42,9 +42,9 @@ rule _consistency:
         library=library("consistency"),
         tables=files_of_study("estimates", "csv"),
     output:
-        table=f"{RESULTS}/consistency.csv",
-        summary=f"{RESULTS}/consistency_summary.csv",
-        collapse=f"{RESULTS}/consistency_collapse.csv",
+        table=reported(f"{RESULTS}/consistency.csv"),
+        summary=reported(f"{RESULTS}/consistency_summary.csv"),
+        collapse=reported(f"{RESULTS}/consistency_collapse.csv"),
         dataset=f"{RESULTS}/consistency.nc",
     log:
         f"{RESULTS}/logs/consistency.log",

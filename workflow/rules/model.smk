@@ -6,7 +6,7 @@ rule _basis:
         library=library("basis"),
     output:
         model=f"{RESULTS}/model.nc",
-        quality=f"{RESULTS}/basis_quality.csv",
+        quality=reported(f"{RESULTS}/basis_quality.csv", "basis_quality_table"),
     log:
         f"{RESULTS}/logs/basis.log",
     benchmark:

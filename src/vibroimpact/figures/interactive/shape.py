@@ -1,0 +1,222 @@
+"""The deflection shape along the tube at any load, animated, above the contact of its supports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.figures.style import BLACK, BLUE, GREY, PALE
+from vibroimpact.linear.modes import first_mode_shape
+from vibroimpact.reports.study_statistics import StudyStatistics
+from vibroimpact.study.cases import case_from_id
+
+from .plot import Plot, axis, label, layout, numbers
+
+Place = tuple[float, float]  # gap in m, load
+
+
+def shapes_of(
+    paths: Sequence[str | Path], read: Callable, places: Sequence[Place]
+) -> dict[Place, np.ndarray]:
+    """Return {(gap, load): complex deflection shape (line_point,)} of the first seed that has one.
+
+    The largest component has length one.
+
+    paths: files of estimates named after their cases; read: function (path).
+    """
+    found: dict[Place, np.ndarray] = {}
+    for path in paths:
+        case = case_from_id(Path(path).stem)
+        place = case.gap_m, case.load_rms_N
+        if place not in places or place in found:
+            continue
+        dataset = read(path)
+        if "ods_re" in dataset:
+            shape = dataset["ods_re"].values + 1j * dataset["ods_im"].values
+            found[place] = shape / np.abs(shape).max()
+    return found
+
+
+def support_places(model: Any) -> np.ndarray:
+    """Return (support,) arc lengths in m of the middles of the supports, on the shape line."""
+    middles = [
+        model.contact_position[model.support_of_point == index].mean(axis=0)
+        for index in range(len(model.support_names))
+    ]
+    nearest = [
+        np.argmin(np.linalg.norm(model.line_positions - middle, axis=1)) for middle in middles
+    ]
+    return model.line_arc_length[np.array(nearest, dtype=int)]
+
+
+def shape_plot(
+    model: Any,
+    shapes: dict[Place, np.ndarray],
+    places: Sequence[tuple[str, Place]],
+    stiffness: float,
+    direction: str,
+) -> Plot:
+    """Return the Plot of the deflection shape by gap and load.
+
+    shapes: of shapes_of.
+    places: (key of the frame, (gap, load)).
+    stiffness: N/m of a support in full contact.
+    direction: of the displacement, such as y.
+    """
+    frames = {key: _traces(shapes[place]) for key, place in places if place in shapes}
+    limits = [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": name,
+            "x": "@place",
+            "y": numbers(shape / shape[np.argmax(np.abs(shape))]),
+            "line": {"color": GREY, "width": 1, "dash": dash},
+            "hoverinfo": "skip",
+        }
+        for name, k, dash in (
+            ("linear, without contact", 0.0, "dash"),
+            ("linear, in full contact", stiffness, "solid"),
+        )
+        for shape in (first_mode_shape(model, k),)
+    ]
+    return Plot(
+        "shape",
+        "Deflection shape along the tube",
+        (
+            "Shape of the motion around the main peak (largest = 1): its value over one cycle"
+            " (blue, Play moves it), its envelope (pale), and the first mode of the linear tube"
+            " (grey). Vertical lines are the supports; a shape that moves as one has no part left"
+            " where it passes through zero."
+        ),
+        layout(
+            axis(label("arc_length_m")),
+            axis(f"Shape, {direction} (largest = 1)", range=[-1.15, 1.15]),
+            height=400,
+            shapes=[_support_line(place) for place in support_places(model)],
+        ),
+        {key: [*limits, *traces] for key, traces in frames.items()},
+        ("gap", "load"),
+        shared={"place": numbers(model.line_arc_length)},
+        empty="No shape of this load: no main peak was found, or the load is not in the selection.",
+    )
+
+
+def _traces(shape: np.ndarray) -> list[dict]:
+    """Return the envelope, the animated shape and its part in quadrature."""
+    size = np.abs(shape)
+    edge = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": "@place",
+        "line": {"width": 0},
+        "hoverinfo": "skip",
+        "showlegend": False,
+    }
+    return [
+        {**edge, "y": numbers(-size)},
+        {
+            **edge,
+            "y": numbers(size),
+            "fill": "tonexty",
+            "fillcolor": "rgba(0,114,178,0.14)",
+            "name": "envelope",
+            "showlegend": True,
+        },
+        {
+            "type": "scatter",
+            "mode": "lines+markers",
+            "name": "with contact",
+            "x": "@place",
+            "y": numbers(shape.real),
+            "line": {"color": BLUE, "width": 2},
+            "marker": {"size": 4, "color": BLUE},
+            "hovertemplate": "%{x:.3f} m: %{y:.3f}<extra></extra>",
+            "meta": {"re": numbers(shape.real), "im": numbers(shape.imag)},
+        },
+    ]
+
+
+def _support_line(place: float) -> dict:
+    return {
+        "type": "line",
+        "yref": "paper",
+        "x0": float(place),
+        "x1": float(place),
+        "y0": 0,
+        "y1": 1,
+        "line": {"color": PALE, "width": 6},
+        "layer": "below",
+    }
+
+
+def contact_along_plot(
+    statistics: StudyStatistics,
+    places: Sequence[tuple[str, Place]],
+    arc_lengths: Sequence[float] | None,
+) -> Plot:
+    """Return the Plot of the time in contact of each support, along the tube.
+
+    arc_lengths: m, of the supports in their order; None where the structure has no centreline.
+    """
+    names = statistics.supports
+    along = arc_lengths is not None
+    frames = {}
+    for key, (gap, load) in places:
+        rows = [statistics.spread("contact_fraction", gap, load, name) for name in names]
+        if not any(np.isfinite(row.median) for row in rows):
+            continue
+        frames[key] = [
+            {
+                "type": "bar",
+                "x": numbers(arc_lengths) if arc_lengths is not None else names,
+                "y": numbers([100.0 * row.median for row in rows]),
+                "customdata": names,
+                "marker": {"color": BLUE},
+                "error_y": {
+                    "type": "data",
+                    "symmetric": False,
+                    "array": numbers([100.0 * (row.high - row.median) for row in rows]),
+                    "arrayminus": numbers([100.0 * (row.median - row.low) for row in rows]),
+                    "color": BLACK,
+                    "thickness": 1,
+                },
+                "hovertemplate": "support %{customdata}: in contact %{y:.3g} % of the time"
+                "<extra></extra>",
+                **(
+                    {"width": 0.03 * float(np.ptp(np.asarray(arc_lengths)) or 1.0)} if along else {}
+                ),
+                "text": names,
+                "textposition": "outside",
+                "cliponaxis": False,
+            }
+        ]
+    return Plot(
+        "contact_along",
+        "Time in contact of each support" + (" along the tube" if along else ""),
+        (
+            "Share of the time that each support is touched at the chosen gap and load, median and"
+            " range over seeds. Supports of a symmetric structure are touched alike; one that"
+            " stands out carries more of the wear."
+        ),
+        layout(
+            axis(label("arc_length_m") if along else "Support", **_line_range(arc_lengths)),
+            axis("Time in contact (%)", range=[0, 108]),
+            height=400,
+            showlegend=False,
+        ),
+        frames,
+        ("gap", "load"),
+        empty="No contact was recorded here.",
+    )
+
+
+def _line_range(arc_lengths):
+    if arc_lengths is None:
+        return {"type": "category"}
+    low, high = float(np.min(arc_lengths)), float(np.max(arc_lengths))
+    margin = 0.25 * (high - low) or 0.5
+    return {"range": [low - margin, high + margin]}

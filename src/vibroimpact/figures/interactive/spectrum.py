@@ -1,0 +1,165 @@
+"""The spectrum of the response at any load: mean over segments and seeds, and their extremes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.figures.style import BLUE
+from vibroimpact.study.cases import case_from_id
+
+from .plot import Plot, axis, key_of, label, layout, numbers
+
+STATISTICS = ("mean", "min", "max")
+BLOCKS = 700  # of the frequency axis
+COLUMN = "psd_m2_per_Hz"
+
+
+def spectra_of_sensor(
+    paths: Sequence[str | Path], read: Callable, sensor: str, places: Sequence[tuple[float, float]]
+) -> tuple[np.ndarray, dict[tuple[float, float], dict[str, np.ndarray]]]:
+    """Return (frequency in Hz, {(gap in m, load): {statistic: PSD in m²/Hz}}) of one sensor.
+
+    paths: files of spectra named after their cases; read: function (path, names).
+    places: the (gap, load) that are wanted.
+
+    The mean is over segments and seeds, min and max over both.
+    """
+    names = [f"psd_displacement_{statistic}" for statistic in STATISTICS]
+    combine = {"mean": np.add, "min": np.minimum, "max": np.maximum}
+    found: dict[tuple[float, float], dict[str, np.ndarray]] = {}
+    counts: dict[tuple[float, float], int] = {}
+    frequency = np.zeros(0)
+    for path in paths:
+        case = case_from_id(Path(path).stem)
+        place = case.gap_m, case.load_rms_N
+        if place not in places:
+            continue
+        dataset = read(path, names)
+        at = [str(name) for name in dataset["sensor"].values].index(sensor)
+        frequency = dataset["frequency"].values
+        counts[place] = counts.get(place, 0) + 1
+        known = found.setdefault(place, {})
+        for statistic in STATISTICS:
+            values = dataset[f"psd_displacement_{statistic}"].values[at].astype(float)
+            known[statistic] = (
+                combine[statistic](known[statistic], values) if statistic in known else values
+            )
+    for place, known in found.items():
+        known["mean"] = known["mean"] / counts[place]
+    return frequency, found
+
+
+def blocks_of(frequency: np.ndarray, band_Hz: tuple[float, float]) -> np.ndarray:
+    """Return the first indices of blocks of lines inside a band, then the index after the last.
+
+    Blocks grow with frequency: a low one holds one line, so that no low peak is blunted.
+    """
+    first, last = np.searchsorted(frequency, band_Hz)
+    if last - first <= BLOCKS:
+        return np.arange(first, last + 1)
+    wanted = np.geomspace(max(frequency[first], 1e-6), frequency[last - 1], BLOCKS)
+    starts = np.unique(np.searchsorted(frequency, wanted))
+    return np.append(starts[(starts >= first) & (starts < last)], last)
+
+
+def spectrum_plot(
+    frequency: np.ndarray,
+    spectra: dict[tuple[float, float], dict[str, np.ndarray]],
+    places: Sequence[tuple[str, tuple[float, float]]],
+    sensor: str,
+    band_Hz: tuple[float, float],
+) -> Plot:
+    """Return the Plot of the spectrum of a sensor by gap and load.
+
+    frequency, spectra: of spectra_of_sensor.
+    places: (key of the frame, (gap, load)).
+    band_Hz: the band that is shown.
+    """
+    edges = blocks_of(frequency, band_Hz)
+    sizes = np.diff(edges)
+    inside = slice(edges[0], edges[-1])
+    starts = edges[:-1] - edges[0]
+    middle = np.add.reduceat(frequency[inside], starts) / sizes
+    frames = {}
+    for key, place in places:
+        if place not in spectra:
+            continue
+        values = spectra[place]
+        mean = np.add.reduceat(values["mean"][inside], starts) / sizes
+        low = np.minimum.reduceat(values["min"][inside], starts)
+        high = np.maximum.reduceat(values["max"][inside], starts)
+        frames[key] = [*_band(low, high), _mean(mean)]
+    lowest, highest = _limits(spectra, inside)
+    return Plot(
+        "spectrum",
+        f"Spectrum of the displacement at {sensor}",
+        (
+            "Power spectral density at the chosen gap and load: mean over segments and seeds"
+            " (line), smallest and largest segment (band). Move the slider to see the peaks move"
+            " and widen as the contact sets in; the axes stay the same at every load."
+        ),
+        layout(
+            axis("Frequency (Hz)", range=[float(middle[0]), float(middle[-1])]),
+            axis(label(COLUMN), log=True, range=[lowest, highest], dtick=2),
+            height=420,
+        ),
+        frames,
+        ("gap", "load"),
+        shared={"frequency": numbers(middle)},
+        empty="No spectrum of this load was read: the slider shows a selection of the loads.",
+        wide=True,
+    )
+
+
+def frame_places(
+    gaps: Sequence[float], loads: Sequence[float]
+) -> list[tuple[str, tuple[float, float]]]:
+    """Return (key of the frame, (gap, load)) of every position of the controls."""
+    return [
+        (key_of(row, column), (gap, load))
+        for row, gap in enumerate(gaps)
+        for column, load in enumerate(loads)
+    ]
+
+
+def _band(low, high):
+    edge = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": "@frequency",
+        "line": {"width": 0.5, "color": "rgba(0,114,178,0.35)"},
+        "hoverinfo": "skip",
+    }
+    return [
+        {**edge, "y": numbers(low), "name": "smallest segment", "showlegend": False},
+        {
+            **edge,
+            "y": numbers(high),
+            "name": "smallest to largest segment",
+            "fill": "tonexty",
+            "fillcolor": "rgba(0,114,178,0.18)",
+        },
+    ]
+
+
+def _mean(mean):
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": "mean",
+        "x": "@frequency",
+        "y": numbers(mean),
+        "line": {"width": 1.4, "color": BLUE},
+        "hovertemplate": "%{x:.2f} Hz: %{y:.3g} m²/Hz<extra></extra>",
+    }
+
+
+def _limits(spectra, inside):
+    """Return the decadic logarithms of the ends of an axis that holds all loads."""
+    means = [values["mean"][inside] for values in spectra.values()]
+    largest = max(values["max"][inside].max() for values in spectra.values())
+    smallest = min(np.percentile(mean[mean > 0.0], 1.0) for mean in means if np.any(mean > 0.0))
+    return float(np.log10(smallest)) - 1.0, float(np.log10(largest)) + 0.3

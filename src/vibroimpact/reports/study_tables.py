@@ -1,0 +1,264 @@
+"""The tables of a study's page and summary, as texts in the units that a reader expects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from .discrepancy_page import digits
+from .equivalent_answer import Answer, Value
+from .study_statistics import NOTHING, RESIDUALS, SEVERAL, Spread, StudyStatistics
+from .study_words import stiffness_unit
+
+AGREEMENTS = {"agree": "agree", "spread": "differ", "unresolved": "not resolved"}
+RESIDUAL_WORDS = {
+    "energy_residual": "with the work of the contact forces",
+    "potential_energy_residual": "with the contact's potential energy",
+    "fixed_point_residual": "contact iteration, bound",
+}
+
+
+class Table(NamedTuple):
+    """A table of texts.
+
+    columns: their headings, with units.
+    rows: one tuple of cells per row.
+    """
+
+    columns: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+    def numeric(self) -> list[bool]:
+        """Return for each column whether it holds numbers, which are aligned to the right."""
+        cells = [[row[at] for row in self.rows] for at in range(len(self.columns))]
+        return [
+            bool(column) and all(cell[:1].isdigit() or cell[:1] in "-" for cell in column)
+            for column in cells
+        ]
+
+
+def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
+    """Return recommended k and c with intervals over seeds and agreement, a row per answer.
+
+    several: whether to name group and direction.
+    unit: of the load.
+    """
+    stiffness, factor = stiffness_unit([row.k.value for row in answers])
+    places = ("supports", "direction") if several else ()
+    columns = (
+        "gap (mm)",
+        *places,
+        f"load ({unit} RMS)",
+        f"k ({stiffness})",
+        "range over seeds",
+        "methods on k",
+        "c (N s/m)",
+        "range over seeds ",
+        "methods on c",
+    )
+    rows = [
+        (
+            digits(1e3 * row.gap_m),
+            *((row.group, row.direction) if several else ()),
+            digits(row.load_rms_N),
+            *_value_cells(row.k, factor),
+            *_value_cells(row.c, 1.0),
+        )
+        for row in answers
+    ]
+    return Table(columns, rows)
+
+
+def _value_cells(value: Value, factor: float) -> tuple[str, str, str]:
+    agreement = AGREEMENTS.get(value.agreement, value.agreement)
+    if not value.resolved:
+        return "-", "-", agreement
+    return digits(factor * value.value), span(factor * value.low, factor * value.high), agreement
+
+
+def span(low: float, high: float) -> str:
+    """Return an interval as text."""
+    return f"{digits(low)} to {digits(high)}"
+
+
+def reason_table(
+    answers: Sequence[Answer], statistics: StudyStatistics, several: bool, unit: str
+) -> Table:
+    """Return why values are not resolved or differ, a row per run of loads with the same reason.
+
+    The share of time in contact tells whether there was a support to see.
+    """
+    places = ("supports", "direction") if several else ()
+    columns = ("gap (mm)", *places, f"loads ({unit} RMS)", "value", "why", "time in contact (%)")
+    rows = []
+    for place, group in groupby(answers, key=lambda row: row.place):
+        chosen = list(group)
+        for quantity in ("k", "c"):
+            for (agreement, reason), run in groupby(
+                chosen, key=lambda row: _reason(getattr(row, quantity))
+            ):
+                if agreement == "agree" and not reason:
+                    continue
+                loads = [row.load_rms_N for row in run]
+                rows.append(
+                    (
+                        digits(1e3 * place[0]),
+                        *(place[1:] if several else ()),
+                        digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
+                        f"{quantity}: {AGREEMENTS.get(agreement, agreement)}",
+                        reason or ("methods differ by more than 25 %" if agreement == "spread" else "-"),
+                        _touching(statistics, place[0], loads),
+                    )
+                )
+    return Table(columns, rows)
+
+
+def _reason(value: Value) -> tuple[str, str]:
+    return value.agreement, value.reason
+
+
+def _touching(statistics: StudyStatistics, gap_m: float, loads: Sequence[float]) -> str:
+    values = [
+        100.0 * statistics.spread("contact_fraction", gap_m, load, SEVERAL).median for load in loads
+    ]
+    finite = [value for value in values if math.isfinite(value)]
+    if not finite:
+        return "-"
+    low, high = digits(min(finite)), digits(max(finite))
+    return low if low == high else f"{low} to {high}"
+
+
+def contact_table(
+    statistics: StudyStatistics, gap_m: float, loads: Sequence[float], unit: str
+) -> Table:
+    """Return contact and wear of one gap, a row per load and support, medians over seeds."""
+    columns = (
+        f"load ({unit} RMS)",
+        "support",
+        "time in contact (%)",
+        "impacts (1/s)",
+        "RMS force (N)",
+        "peak force (N)",
+        "wear work rate (mW)",
+    )
+    rows = []
+    for load in loads:
+        for name in statistics.supports:
+            found = [
+                factor * statistics.spread(quantity, gap_m, load, name).median
+                for quantity, factor in (
+                    ("contact_fraction", 100.0),
+                    ("impact_rate", 1.0),
+                    ("rms_force", 1.0),
+                    ("peak_force", 1.0),
+                    ("wear_work_rate", 1e3),
+                )
+            ]
+            rows.append((digits(load), name, *map(digits, found)))
+    return Table(columns, rows)
+
+
+def stress_table(statistics: StudyStatistics, loads: Sequence[float], unit: str) -> Table:
+    """Return the stress of the most stressed section, a row per gap and load, medians over seeds.
+
+    The peak has its range over seeds.
+    """
+    columns = (
+        "gap (mm)",
+        f"load ({unit} RMS)",
+        "RMS stress (MPa)",
+        "peak stress (MPa)",
+        "range over seeds",
+        "most stressed section",
+        "above the limit",
+    )
+    flagged = set(statistics.flagged())
+    rows = []
+    for gap in statistics.gaps:
+        for load in loads:
+            rms, peak = (
+                _scaled(statistics.spread(quantity, gap, load, SEVERAL), 1e-6)
+                for quantity in ("stress_rms", "stress_peak")
+            )
+            if peak is NOTHING:
+                continue
+            worst = max(
+                statistics.sections,
+                key=lambda name: statistics.spread("stress_peak", gap, load, name).median,
+            )
+            rows.append(
+                (
+                    digits(1e3 * gap),
+                    digits(load),
+                    digits(rms.median),
+                    digits(peak.median),
+                    span(peak.low, peak.high),
+                    worst.replace("_", " "),
+                    "yes" if (gap, load) in flagged else "no",
+                )
+            )
+    return Table(columns, rows)
+
+
+def _scaled(spread: Spread, factor: float) -> Spread:
+    return Spread(*(factor * value for value in spread))
+
+
+def energy_table(statistics: StudyStatistics, limits: Mapping[str, float], unit: str) -> Table:
+    """Return the worst energy residual of all cases beside what is accepted."""
+    rows = []
+    for quantity in RESIDUALS:
+        value, gap, load = statistics.largest(quantity)
+        if not math.isfinite(value):
+            continue
+        limit = limits.get(quantity)
+        rows.append(
+            (
+                RESIDUAL_WORDS[quantity],
+                f"{value:.2g}",
+                "-" if limit is None else f"{limit:.2g}",
+                "-" if limit is None else "yes" if value <= limit else "no",
+                digits(load),
+                digits(1e3 * gap),
+            )
+        )
+    columns = (
+        "energy balance",
+        "worst residual / input work (-)",
+        "accepted (-)",
+        "within",
+        f"at load ({unit} RMS)",
+        "at gap (mm)",
+    )
+    return Table(columns, rows)
+
+
+def timing_table(rows: Sequence[dict]) -> Table:
+    """Return the time of the jobs by rule.
+
+    rows: of study.timing.study_timing.
+    """
+    columns = ("rule", "jobs", "wall time (s)", "CPU time (s)", "largest memory (MB)")
+    chosen = [row for row in rows if row["part"] == ""]
+    return Table(
+        columns,
+        [
+            (
+                str(row["rule"]).replace("_", " "),
+                str(row["jobs"]),
+                f"{row['wall_s']:.1f}",
+                f"{row['cpu_s']:.1f}",
+                f"{row['max_rss_MB']:.0f}",
+            )
+            for row in chosen
+        ],
+    )
+
+
+def spread_evenly(values: Sequence[float], most: int) -> list[float]:
+    """Return at most `most` of the values, both ends among them, evenly spaced in their order."""
+    if len(values) <= most:
+        return list(values)
+    return [values[round(at * (len(values) - 1) / (most - 1))] for at in range(most)]
