@@ -10,6 +10,7 @@
   let phase = 0, timer = null;
 
   const element = (name) => document.getElementById(name);
+  const place = (name) => "plot-" + name;
   const controlled = (name) => data.controls.find((control) => control.name === name);
 
   function filled(trace, shared) {
@@ -33,11 +34,12 @@
     const traces = (plot.frames[key] || []).map((trace) => filled(trace, plot.shared));
     const layout = {...plot.layout, shapes: [...(plot.layout.shapes || []),
       ...(plot.cursor && traces.length ? loadLine() : [])], uirevision: "kept"};
+    if (plot.ranges[key]) layout.yaxis = {...layout.yaxis, range: plot.ranges[key]};
     if (!traces.length) {
       layout.annotations = [{text: plot.empty, showarrow: false, xref: "paper", yref: "paper",
         x: 0.5, y: 0.5, font: {color: "#666"}, width: 260}];
     }
-    Plotly.react(plot.name, traces, layout, settings);
+    Plotly.react(place(plot.name), traces, layout, settings);
   }
 
   function show(changed) {
@@ -51,12 +53,12 @@
 
   function move() {
     phase = (phase + 2 * Math.PI / FRAMES_PER_CYCLE) % (2 * Math.PI);
-    const traces = element("shape").data || [];
+    const traces = element(place("shape")).data || [];
     traces.forEach((trace, index) => {
       if (!trace.meta || !trace.meta.re) return;
       const y = trace.meta.re.map((re, at) =>
         re * Math.cos(phase) - trace.meta.im[at] * Math.sin(phase));
-      Plotly.restyle("shape", {y: [y]}, [index]);
+      Plotly.restyle(place("shape"), {y: [y]}, [index]);
     });
   }
 
@@ -78,6 +80,7 @@
   const button = element("play");
   if (button) button.addEventListener("click", play);
   if (button && still) button.hidden = true;
-  addEventListener("beforeprint", () => data.plots.forEach((plot) => Plotly.Plots.resize(plot.name)));
+  addEventListener("beforeprint",
+    () => data.plots.forEach((plot) => Plotly.Plots.resize(place(plot.name))));
   show(null);
 })();

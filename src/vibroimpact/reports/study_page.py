@@ -67,9 +67,7 @@ def study_page(content: StudyContent, plots: PagePlots, pictures: Sequence[Pictu
         library=plots.library,
         data=_as_json(
             {
-                "plots": [
-                    plot.drawn() for section in plots.sections.values() for plot in section
-                ],
+                "plots": [plot.drawn() for section in plots.sections.values() for plot in section],
                 "controls": [
                     {"name": control.name, "numbers": control.numbers, "values": control.values}
                     for control in plots.controls
@@ -82,12 +80,11 @@ def study_page(content: StudyContent, plots: PagePlots, pictures: Sequence[Pictu
 
 def _useful_controls(plots: PagePlots) -> list[Any]:
     """Return the controls with more than one position that some plot uses."""
-    used = {name for section in plots.sections.values() for plot in section for name in
-            plot.controls}
+    used = {
+        name for section in plots.sections.values() for plot in section for name in plot.controls
+    }
     return [
-        control
-        for control in plots.controls
-        if len(control.values) > 1 and control.name in used
+        control for control in plots.controls if len(control.values) > 1 and control.name in used
     ]
 
 

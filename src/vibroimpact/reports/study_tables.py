@@ -52,10 +52,10 @@ def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
         *places,
         f"load ({unit} RMS)",
         f"k ({stiffness})",
-        "range over seeds",
+        "interval of k",
         "methods on k",
         "c (N s/m)",
-        "range over seeds ",
+        "interval of c",
         "methods on c",
     )
     rows = [
@@ -108,7 +108,8 @@ def reason_table(
                         *(place[1:] if several else ()),
                         digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
                         f"{quantity}: {AGREEMENTS.get(agreement, agreement)}",
-                        reason or ("methods differ by more than 25 %" if agreement == "spread" else "-"),
+                        reason
+                        or ("methods differ by more than 25 %" if agreement == "spread" else "-"),
                         _touching(statistics, place[0], loads),
                     )
                 )

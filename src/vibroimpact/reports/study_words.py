@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from .discrepancy_page import digits
-from .equivalent_answer import ALL_SUPPORTS, AGREEMENT, Answer, Value
+from .equivalent_answer import AGREEMENT, ALL_SUPPORTS, Answer, Value
 from .study_statistics import StudyStatistics
 
 STRUCTURES = {
@@ -17,6 +17,7 @@ STRUCTURES = {
     "matrices": "A structure given by its matrices",
     "identified": "A structure given by its measured modes",
 }
+NAMES = {"k": "Stiffness k", "c": "Damping c"}
 MOST_PLACES = 6  # curves that have a sentence of their own
 
 
@@ -45,7 +46,7 @@ def run_sentence(config: Any, statistics: StudyStatistics) -> str:
         f"{STRUCTURES.get(config.structure.kind, 'A structure')}{held} under"
         f" {_excitation(config.excitation)}: {_count(loads, 'load')}"
         f" {_range(loads)} {load_unit(config)} RMS, {_count(gaps, 'gap')}"
-        f" ({_listed([digits(1e3 * gap) for gap in gaps])} mm),"
+        f" (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm),"
         f" {seeds} seed{'s' * (seeds != 1)}; {statistics.cases} records of"
         f" {digits(config.record.duration_s)} s."
     )
@@ -114,15 +115,13 @@ def _agreement(answers: Sequence[Answer], quantity: str) -> str:
     agree, spread, missing = (kinds.count(word) for word in ("agree", "spread", "unresolved"))
     total = len(kinds)
     cases = "case of load and gap" if total == 1 else "cases of load and gap"
-    parts = [f"the independent methods agree within {AGREEMENT:.0%} in {agree}"]
+    parts = [f"the independent methods agree within {100 * AGREEMENT:.0f} % in {agree}"]
     parts += [f"differ by more in {spread}"] if spread else []
     parts += [f"do not all resolve it in {missing}"] if missing else []
-    return f"{quantity}: of {total} {cases}, {_listed(parts)}."
+    return f"{NAMES[quantity]}: of {total} {cases}, {_listed(parts)}."
 
 
-def _course(
-    rows: Sequence[Answer], quantity: str, scale: tuple[str, float], load: str
-) -> str:
+def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], load: str) -> str:
     """Return the first and the last resolved value with their loads."""
     found: list[tuple[float, Value]] = [
         (row.load_rms_N, getattr(row, quantity)) for row in rows if getattr(row, quantity).resolved
@@ -132,9 +131,11 @@ def _course(
         return f"{quantity} is not resolved at any load"
     (first, low), (last, high) = found[0], found[-1]
     if len(found) == 1:
-        return f"{quantity} = {digits(factor * low.value)} {unit} at {digits(first)} {load} RMS only"
+        return (
+            f"{quantity} = {digits(factor * low.value)} {unit} at {digits(first)} {load} RMS only"
+        )
     return (
-        f"{quantity} from {digits(factor * low.value)} {unit} at {digits(first)} to"
+        f"{quantity} from {digits(factor * low.value)} {unit} at {digits(first)} {load} RMS to"
         f" {digits(factor * high.value)} {unit} at {digits(last)} {load} RMS"
     )
 

@@ -103,9 +103,7 @@ def study_timing(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -
     )
 
 
-def timing_so_far(
-    benchmarks: Iterable[str | Path], logs: Iterable[str | Path]
-) -> list[dict]:
+def timing_so_far(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -> list[dict]:
     """Return study_timing of the jobs whose benchmark file and log are there.
 
     A study that was made by parts or copied has not all of them.

@@ -11,7 +11,19 @@ from vibroimpact.figures.style import BLACK, GREY, METHODS, ORANGE, PALE, shown
 from vibroimpact.reports.equivalent_answer import AGREEMENT, COMPARED, Answer, Value
 from vibroimpact.reports.method_names import method_name
 
-from .plot import Plot, axis, bars_between, in_unit, key_of, label, layout, numbers, points
+from .plot import (
+    Plot,
+    axis,
+    bars_between,
+    in_unit,
+    key_of,
+    label,
+    layout,
+    load_axis,
+    log_axis,
+    numbers,
+    points,
+)
 
 COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
 UNITS = {"k": "N/m", "c": "N s/m"}
@@ -33,7 +45,7 @@ def equivalent_plots(
     """
     plots = [_against_load(quantity, answers, summary, load_label) for quantity in COLUMNS]
     plots.append(_ratios(answers, summary, load_label))
-    return [*plots, *(_agreement(quantity, answers) for quantity in COLUMNS)]
+    return [*plots, *(_agreement(quantity, answers, load_label) for quantity in COLUMNS)]
 
 
 def places_of(answers: Sequence[Answer]) -> tuple[list[float], list[tuple[str, str]]]:
@@ -60,8 +72,8 @@ def _against_load(quantity, answers, summary, load_label):
             " black line the methods do not all resolve the value; the table below says why."
         ),
         layout(
-            axis(load_label, log=True),
-            axis(label(column), log=quantity == "k"),
+            load_axis(load_label, [row.load_rms_N for row in answers]),
+            log_axis(label(column), frames) if quantity == "k" else axis(label(column)),
             height=460,
         ),
         frames,
@@ -183,11 +195,11 @@ def _ratios(answers, summary, load_label):
         "Each method over the recommended value",
         (
             "k (solid) and c (dotted, open) of the compared methods divided by the recommended"
-            f" value. Inside the shaded band, within {AGREEMENT:.0%}, they are said to agree."
+            f" value. They agree inside the shaded band, within {100 * AGREEMENT:.0f} %."
         ),
         layout(
-            axis(load_label, log=True),
-            axis("Method / recommended (-)"),
+            load_axis(load_label, [row.load_rms_N for row in answers]),
+            axis("Method / recommended (-)", range=_around_one(frames)),
             height=400,
             shapes=[
                 {
@@ -210,6 +222,12 @@ def _ratios(answers, summary, load_label):
         wide=True,
         cursor=True,
     )
+
+
+def _around_one(frames):
+    """Return the range of an axis that holds the band of agreement and all ratios."""
+    values = [value for traces in frames.values() for trace in traces for value in trace["y"]]
+    return [min([0.9 - AGREEMENT, *values]) - 0.05, max([1.1 + AGREEMENT, *values]) + 0.05]
 
 
 def _ratio(quantity, method, rows, centre, dash):
@@ -237,7 +255,7 @@ def _ratio(quantity, method, rows, centre, dash):
     return [trace]
 
 
-def _agreement(quantity, answers):
+def _agreement(quantity, answers, load_label):
     """Return the Plot of the agreement by gap and load: one cell per case, with its reason."""
     gaps, pairs = places_of(answers)
     frames = {}
@@ -276,10 +294,9 @@ def _agreement(quantity, answers):
             " reason why there is none."
         ),
         layout(
-            axis("Load (RMS)", type="category", tickangle=-60),
-            axis("Gap (mm)", type="category"),
+            axis(load_label, type="category", tickangle=-60),
+            axis("Gap (mm)", type="category", autorange="reversed"),
             height=150 + 40 * len(gaps),
-            font={"family": "system-ui, sans-serif", "size": 12, "color": "#222"},
         ),
         frames,
         ("place",),

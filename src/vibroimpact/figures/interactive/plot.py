@@ -27,6 +27,7 @@ SYMBOLS = {
     "+": "cross-thin-open",
 }
 GRID = "#E6E6E6"
+PLAIN_DECADES = 4.0
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class Plot:
     empty: sentence for a position without traces.
     wide: whether it has the whole width of the page.
     cursor: whether the load of the slider is marked on the axis.
+    ranges: {key of a frame: range of the vertical axis}; empty where plotly.js finds them.
     """
 
     name: str
@@ -70,6 +72,7 @@ class Plot:
     empty: str = "Nothing to show here."
     wide: bool = False
     cursor: bool = False
+    ranges: dict[str, list] = field(default_factory=dict)
 
     def drawn(self) -> dict[str, Any]:
         """Return what the page's script needs, as plain values."""
@@ -81,6 +84,7 @@ class Plot:
             "shared": self.shared,
             "empty": self.empty,
             "cursor": self.cursor,
+            "ranges": self.ranges,
         }
 
 
@@ -119,19 +123,48 @@ def unit(column: str) -> str:
     return "" if found == "-" else f" {found}"
 
 
-def axis(title: str, log: bool = False, **more: Any) -> dict[str, Any]:
-    """Return an axis with a title and light grid; logarithmic ones have powers of ten."""
-    kind = {"type": "log", "exponentformat": "power"} if log else {"exponentformat": "power"}
+def axis(title: str, **more: Any) -> dict[str, Any]:
+    """Return an axis with a title and a light grid."""
     return {
         "title": {"text": title, "standoff": 8},
         "gridcolor": GRID,
-        "zerolinecolor": GRID if log else GREY,
+        "zerolinecolor": GREY,
         "linecolor": GREY,
         "ticks": "outside",
         "automargin": True,
-        **kind,
+        "exponentformat": "power",
         **more,
     }
+
+
+def log_axis(title: str, frames: dict[str, list[dict]], **more: Any) -> dict[str, Any]:
+    """Return a logarithmic axis of the y values of frames.
+
+    Up to four decades have ticks at 1, 2 and 5 in plain numbers, more have powers of ten only.
+    """
+    values = [
+        value
+        for traces in frames.values()
+        for trace in traces
+        for value in trace["y"]
+        if value is not None and value > 0.0
+    ]
+    decades = float(np.log10(max(values) / min(values))) if values else 1.0
+    ticks: dict[str, Any] = {"dtick": "D2", "tickformat": "~g"}
+    if decades > PLAIN_DECADES:
+        ticks = {"dtick": int(np.ceil(decades / 6.0))}
+    elif max(values, default=1.0) >= 1e4:
+        ticks["tickformat"] = "~s"
+    return axis(title, **{"type": "log", "zerolinecolor": GRID, **ticks, **more})
+
+
+def load_axis(title: str, loads: Sequence[float]) -> dict[str, Any]:
+    """Return the logarithmic axis of all loads of a study, the same in every plot."""
+    low, high = np.log10([min(loads), max(loads)])
+    margin = 0.04 * (high - low) or 0.3
+    return axis(
+        title, type="log", range=numbers([low - margin, high + margin]), tickformat="~g", dtick="D2"
+    )
 
 
 def layout(x: dict, y: dict, height: int = 360, **more: Any) -> dict[str, Any]:
@@ -140,11 +173,18 @@ def layout(x: dict, y: dict, height: int = 360, **more: Any) -> dict[str, Any]:
         "xaxis": x,
         "yaxis": y,
         "height": height,
-        "margin": {"l": 60, "r": 14, "t": 14, "b": 50},
+        "margin": {"l": 60, "r": 14, "t": 32, "b": 50},
         "font": {"family": "system-ui, sans-serif", "size": 12, "color": "#222"},
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
-        "legend": {"orientation": "h", "y": -0.24, "yanchor": "top", "x": 0, "font": {"size": 11}},
+        "legend": {
+            "orientation": "h",
+            "y": -0.24,
+            "yanchor": "top",
+            "x": 0,
+            "font": {"size": 11},
+            "traceorder": "normal",
+        },
         "hovermode": "closest",
         **more,
     }

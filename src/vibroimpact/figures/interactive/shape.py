@@ -93,7 +93,7 @@ def shape_plot(
             " where it passes through zero."
         ),
         layout(
-            axis(label("arc_length_m")),
+            axis(label("arc_length_m"), range=_tube_range(model.line_arc_length)),
             axis(f"Shape, {direction} (largest = 1)", range=[-1.15, 1.15]),
             height=400,
             shapes=[_support_line(place) for place in support_places(model)],
@@ -148,22 +148,18 @@ def _support_line(place: float) -> dict:
         "x1": float(place),
         "y0": 0,
         "y1": 1,
-        "line": {"color": PALE, "width": 6},
+        "line": {"color": PALE, "width": 5},
         "layer": "below",
     }
 
 
 def contact_along_plot(
-    statistics: StudyStatistics,
-    places: Sequence[tuple[str, Place]],
-    arc_lengths: Sequence[float] | None,
+    statistics: StudyStatistics, places: Sequence[tuple[str, Place]], model: Any
 ) -> Plot:
-    """Return the Plot of the time in contact of each support, along the tube.
-
-    arc_lengths: m, of the supports in their order; None where the structure has no centreline.
-    """
+    """Return the Plot of the time in contact of each support, along the tube if there is one."""
     names = statistics.supports
-    along = arc_lengths is not None
+    along = model.line_arc_length.size > 0 and len(names) == len(model.support_names)
+    arc_lengths = numbers(support_places(model)) if along else names
     frames = {}
     for key, (gap, load) in places:
         rows = [statistics.spread("contact_fraction", gap, load, name) for name in names]
@@ -172,7 +168,7 @@ def contact_along_plot(
         frames[key] = [
             {
                 "type": "bar",
-                "x": numbers(arc_lengths) if arc_lengths is not None else names,
+                "x": arc_lengths,
                 "y": numbers([100.0 * row.median for row in rows]),
                 "customdata": names,
                 "marker": {"color": BLUE},
@@ -186,9 +182,7 @@ def contact_along_plot(
                 },
                 "hovertemplate": "support %{customdata}: in contact %{y:.3g} % of the time"
                 "<extra></extra>",
-                **(
-                    {"width": 0.03 * float(np.ptp(np.asarray(arc_lengths)) or 1.0)} if along else {}
-                ),
+                **({"width": 0.02 * float(model.line_arc_length[-1])} if along else {}),
                 "text": names,
                 "textposition": "outside",
                 "cliponaxis": False,
@@ -203,8 +197,12 @@ def contact_along_plot(
             " stands out carries more of the wear."
         ),
         layout(
-            axis(label("arc_length_m") if along else "Support", **_line_range(arc_lengths)),
-            axis("Time in contact (%)", range=[0, 108]),
+            (
+                axis(label("arc_length_m"), range=_tube_range(model.line_arc_length))
+                if along
+                else axis("Support", type="category")
+            ),
+            axis("Time in contact (%)", range=[0, 112]),
             height=400,
             showlegend=False,
         ),
@@ -214,9 +212,7 @@ def contact_along_plot(
     )
 
 
-def _line_range(arc_lengths):
-    if arc_lengths is None:
-        return {"type": "category"}
-    low, high = float(np.min(arc_lengths)), float(np.max(arc_lengths))
-    margin = 0.25 * (high - low) or 0.5
-    return {"range": [low - margin, high + margin]}
+def _tube_range(arc_length: np.ndarray) -> list[float | None]:
+    """Return the range of an axis from end to end of the tube, whose ends are no line points."""
+    step = float(arc_length[1] - arc_length[0]) if arc_length.size > 1 else 0.1
+    return numbers([arc_length[0] - step, arc_length[-1] + step])

@@ -92,18 +92,17 @@ def spectrum_plot(
         low = np.minimum.reduceat(values["min"][inside], starts)
         high = np.maximum.reduceat(values["max"][inside], starts)
         frames[key] = [*_band(low, high), _mean(mean)]
-    lowest, highest = _limits(spectra, inside)
     return Plot(
         "spectrum",
         f"Spectrum of the displacement at {sensor}",
         (
             "Power spectral density at the chosen gap and load: mean over segments and seeds"
             " (line), smallest and largest segment (band). Move the slider to see the peaks move"
-            " and widen as the contact sets in; the axes stay the same at every load."
+            " and widen as the contact sets in; the axis follows the level and keeps its decades."
         ),
         layout(
             axis("Frequency (Hz)", range=[float(middle[0]), float(middle[-1])]),
-            axis(label(COLUMN), log=True, range=[lowest, highest], dtick=2),
+            axis(label(COLUMN), type="log", dtick=2),
             height=420,
         ),
         frames,
@@ -111,6 +110,7 @@ def spectrum_plot(
         shared={"frequency": numbers(middle)},
         empty="No spectrum of this load was read: the slider shows a selection of the loads.",
         wide=True,
+        ranges=_ranges(frames),
     )
 
 
@@ -157,9 +157,12 @@ def _mean(mean):
     }
 
 
-def _limits(spectra, inside):
-    """Return the decadic logarithms of the ends of an axis that holds all loads."""
-    means = [values["mean"][inside] for values in spectra.values()]
-    largest = max(values["max"][inside].max() for values in spectra.values())
-    smallest = min(np.percentile(mean[mean > 0.0], 1.0) for mean in means if np.any(mean > 0.0))
-    return float(np.log10(smallest)) - 1.0, float(np.log10(largest)) + 0.3
+def _ranges(frames):
+    """Return {key: decadic logarithms of the ends of the axis}, the same number of decades each."""
+    ends = {}
+    for key, (_, high, mean) in frames.items():
+        positive = [value for value in mean["y"] if value]
+        if positive:
+            ends[key] = np.log10(min(positive)) - 1.0, np.log10(max(high["y"])) + 0.3
+    decades = max((high - low for low, high in ends.values()), default=0.0)
+    return {key: numbers([high - decades, high]) for key, (_, high) in ends.items()}

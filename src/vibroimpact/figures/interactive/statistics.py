@@ -19,6 +19,8 @@ from .plot import (
     key_of,
     label,
     layout,
+    load_axis,
+    log_axis,
     numbers,
     points,
     shown,
@@ -108,7 +110,6 @@ def _against_load(statistics, gaps, quantity, load_label):
                 colour_of(index),
                 GAP_MARKERS[index % len(GAP_MARKERS)],
                 error_y=bars_between(middle, low, high),
-                connectgaps=False,
             )
             for name, index, loads, (middle, low, high) in _curves(
                 statistics, quantity, gap, column
@@ -119,12 +120,16 @@ def _against_load(statistics, gaps, quantity, load_label):
         quantity,
         title,
         caption,
-        layout(axis(load_label, log=True), axis(label(column), log=log), height=340),
+        layout(load_axis(load_label, statistics.loads), _axis_of(column, log, frames), height=340),
         frames,
         ("gap",),
         empty="No contact at any load of this gap.",
         cursor=True,
     )
+
+
+def _axis_of(column, log, frames):
+    return log_axis(label(column), frames) if log else axis(label(column), rangemode="tozero")
 
 
 def _forces(statistics, gaps, load_label):
@@ -152,10 +157,12 @@ def _forces(statistics, gaps, load_label):
         "Support force",
         (
             "RMS (solid) and largest (dotted) force of each support against load, median and range"
-            " over seeds. The peak is that of the longest record simulated; it grows slowly with"
-            " the length of the record."
+            " over seeds. The largest force grows slowly with the length of the record; the RMS"
+            " does not."
         ),
-        layout(axis(load_label, log=True), axis(label("force_N"), log=True), height=340),
+        layout(
+            load_axis(load_label, statistics.loads), log_axis(label("force_N"), frames), height=340
+        ),
         frames,
         ("gap",),
         empty="No contact at any load of this gap.",
@@ -200,7 +207,11 @@ def stress_plots(
                 " and range over seeds. A case whose peak passes the dashed limit is flagged; the"
                 " model itself stays linear elastic."
             ),
-            layout(axis(load_label, log=True), axis(label("stress_Pa"), log=True), height=340),
+            layout(
+                load_axis(load_label, statistics.loads),
+                log_axis(label("stress_Pa"), frames),
+                height=340,
+            ),
             frames,
             ("gap",),
             cursor=True,
@@ -233,7 +244,7 @@ def _stress_by_section(statistics, places):
             {
                 "type": "bar",
                 "name": word,
-                "x": statistics.sections,
+                "x": [name.replace("_", " ") for name in statistics.sections],
                 "y": in_unit(
                     "stress_Pa",
                     [
@@ -244,7 +255,10 @@ def _stress_by_section(statistics, places):
                 "marker": {"color": colour},
                 "hovertemplate": f"%{{x}}: {word} %{{y:.4g}} MPa<extra></extra>",
             }
-            for quantity, word, colour in (("stress_rms", "RMS", BLUE), ("stress_peak", "peak", RED))
+            for quantity, word, colour in (
+                ("stress_rms", "RMS", BLUE),
+                ("stress_peak", "peak", RED),
+            )
         ]
         for key, (gap, load) in places
     }
@@ -258,8 +272,9 @@ def _stress_by_section(statistics, places):
         layout(
             axis("Section", type="category", tickangle=-50),
             axis(label("stress_Pa")),
-            height=340,
+            height=360,
             barmode="group",
+            legend={"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0},
         ),
         frames,
         ("gap", "load"),
@@ -309,7 +324,9 @@ def energy_plot(
             f" what the time step allows; exact zeros are drawn at {FLOOR:g}."
         ),
         layout(
-            axis(load_label, log=True), axis(label("residual"), log=True, dtick=3), height=380
+            load_axis(load_label, statistics.loads),
+            log_axis(label("residual"), {"": traces}),
+            height=380,
         ),
         {"": traces},
         (),

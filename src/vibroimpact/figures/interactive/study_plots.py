@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from vibroimpact.figures.study.linear_limits import contact_stiffness, shown_band
 from vibroimpact.figures.study.psd_table import driven_sensor
 from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, with_places
@@ -18,7 +16,7 @@ from vibroimpact.spectra.welch import driven_axis
 
 from .equivalent import equivalent_plots, places_of
 from .plot import Control, Plot, plotly_library
-from .shape import contact_along_plot, shape_plot, shapes_of, support_places
+from .shape import contact_along_plot, shape_plot, shapes_of
 from .spectrum import frame_places, spectra_of_sensor, spectrum_plot
 from .statistics import contact_plots, energy_plot, stress_plots
 
@@ -58,18 +56,16 @@ def study_plots(content: StudyContent, files: StudyFiles) -> PagePlots:
     gaps, loads = statistics.gaps, shown_loads(statistics.gaps, statistics.loads)
     title = load_label(config)
     frames = frame_places(gaps, loads)
-    along = _arc_lengths(files.model)
     contact = contact_plots(statistics, gaps, title)
+    response = _response_plots(content, files, frames) if files.spectra else []
     if contact:
-        contact.insert(0, contact_along_plot(statistics, frames, along))
+        (response or contact).append(contact_along_plot(statistics, frames, files.model))
     energy = energy_plot(statistics, dict(content.limits), title)
     sections = {
         "answer": _answer_plots(content, files, title),
-        "response": _response_plots(content, files, frames) if files.spectra else [],
+        "response": response,
         "contact": contact,
-        "stress": stress_plots(
-            statistics, gaps, frames, config.record.stress_limit_Pa, title
-        ),
+        "stress": stress_plots(statistics, gaps, frames, config.record.stress_limit_Pa, title),
         "energy": [energy] if energy is not None else [],
     }
     return PagePlots(sections, _controls(content, gaps, loads), plotly_library())
@@ -109,10 +105,3 @@ def _response_plots(content, files, frames):
         direction = config.record.shape_line.direction
         plots.append(shape_plot(model, shapes, frames, contact_stiffness(model), direction))
     return plots
-
-
-def _arc_lengths(model: Any) -> np.ndarray | None:
-    """Return (support,) m along the tube, None for a structure without a shape line."""
-    if model.line_arc_length.size == 0 or not model.support_names:
-        return None
-    return support_places(model)
