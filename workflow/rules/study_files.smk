@@ -116,8 +116,8 @@ def reported_figures(group):
 
 
 def figures_of_study():
-    """The names of the figures that a complete study has."""
-    groups = FIGURES if STUDY.identification is not None else {}
+    """The names of the figures that a complete study has, the answer first."""
+    groups = reversed(FIGURES) if STUDY.identification is not None else ()
     return [name for group in groups for name in FIGURES[group]]
 
 

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_pdf import PdfPages
 from vibroimpact.reports.equivalent_answer import Answer
 from vibroimpact.reports.study_content import StudyContent
 from vibroimpact.reports.study_statistics import SEVERAL
-from vibroimpact.reports.study_tables import answer_table, spread_evenly
+from vibroimpact.reports.study_tables import Table, answer_table, spread_evenly
 from vibroimpact.reports.study_words import load_label, place_in_words
 
 from .printed_page import LEFT_PT, PrintedPage
@@ -21,7 +21,7 @@ from .style import GAP_COLOURS, GAP_MARKERS, label_of, shown, tidy_log_axis
 
 MOST_CURVES = 6
 # Heights in points.
-FIGURE_PT, CONTACT_PT, STRESS_PT, REASONS_PT, ENERGY_PT = 195.0, 118.0, 120.0, 130.0, 80.0
+FIGURE_PT, CONTACT_PT, STRESS_PT, REASONS_PT, PROVENANCE_PT = 195.0, 100.0, 130.0, 150.0, 112.0
 
 
 def study_summary(content: StudyContent, path: str | Path) -> None:
@@ -67,35 +67,49 @@ def _first_page(content: StudyContent) -> PrintedPage:
     elif content.statistics.supports:
         page.heading("Contact against load")
         _contact_figure(page, content)
+        _contact_tables(page, content, 0.0)
     return page
 
 
 def _second_page(content: StudyContent) -> PrintedPage:
     """Return the page with contact, stress, agreement and provenance."""
     page = PrintedPage()
-    if content.statistics.supports:
+    stress, reasons, energy = content.stress(), content.reasons(), content.energy()
+    if content.answers and content.statistics.supports:
+        later = [_needed(stress, STRESS_PT), _needed(reasons, REASONS_PT), _needed(energy)]
         page.heading("Contact and wear")
-        tables = content.contact_tables()
-        for gap, table in [tables[round(at)] for at in spread_evenly(range(len(tables)), 2)]:
-            page.paragraph(f"Gap {1e3 * gap:.3g} mm, medians over seeds:", size=8.0)
-            page.table(table, CONTACT_PT)
-    if content.statistics.sections:
+        _contact_tables(page, content, sum(later) + PROVENANCE_PT)
+    if stress.rows:
         page.heading("Stress")
-        page.table(content.stress(), STRESS_PT)
+        page.table(stress, STRESS_PT)
     if content.answers:
         page.heading("What is not resolved, and why")
-        reasons = content.reasons()
         if reasons.rows:
             page.table(reasons, REASONS_PT)
         else:
             page.paragraph("Every value is resolved, and the methods agree on all of them.", 8.0)
-    if content.energy().rows:
+    if energy.rows:
         page.heading("Energy balance")
-        page.table(content.energy(), ENERGY_PT)
+        page.table(energy)
     page.heading("Provenance")
     page.paragraph(content.provenance.versions, size=7.2)
     page.table(content.provenance.stage_table())
     return page
+
+
+def _contact_tables(page: PrintedPage, content: StudyContent, later_pt: float) -> None:
+    """Write contact and wear of the first and the last gap; later_pt: what comes below them."""
+    tables = content.contact_tables()
+    tables = [tables[round(at)] for at in spread_evenly(range(len(tables)), 2)]
+    most = max((page.room_pt - later_pt) / len(tables) - 14.0, CONTACT_PT)
+    for gap, table in tables:
+        page.paragraph(f"Gap {1e3 * gap:.3g} mm, medians over seeds:", size=8.0)
+        page.table(table, most)
+
+
+def _needed(table: Table, most_pt: float = 200.0) -> float:
+    """Return about the height in points that a section with a table takes."""
+    return min(most_pt, 40.0 + 11.0 * len(table.rows)) + 27.0 if table.rows else 0.0
 
 
 def _equivalent_figure(page: PrintedPage, content: StudyContent) -> None:

@@ -16,6 +16,7 @@ from .study_tables import (
     Table,
     answer_table,
     contact_table,
+    element_table,
     energy_table,
     reason_table,
     spread_evenly,
@@ -150,6 +151,16 @@ class StudyContent:
         loads = self.loads_in_tables(most)
         return [
             (gap, contact_table(self.statistics, gap, loads, self.unit))
+            for gap in self.statistics.gaps
+        ]
+
+    def element_tables(self) -> list[tuple[float, Table]]:
+        """Return (gap in m, power and work of the local elements) of each gap."""
+        if not self.statistics.elements:
+            return []
+        loads = self.loads_in_tables()
+        return [
+            (gap, element_table(self.statistics, gap, loads, self.unit))
             for gap in self.statistics.gaps
         ]
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from jinja2 import Environment, StrictUndefined
 
 from .captions import CATEGORIES, Caption
-from .discrepancy_page import digits
+from .number_text import digits
 from .page_style import STUDY_STYLE
 from .study_content import StudyContent
 

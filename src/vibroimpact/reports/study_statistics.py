@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibroimpact.study.cases import Case, case_from_id
 from vibroimpact.study.statistics_table import statistics_rows
 
 SUPPORT_QUANTITIES = (
@@ -20,10 +21,12 @@ SUPPORT_QUANTITIES = (
     "rms_force",
     "peak_force",
     "wear_work_rate",
+    "sliding_work",
 )
+ELEMENT_QUANTITIES = ("element_power", "slip_power", "slip_work")
 STRESSES = ("stress_rms", "stress_peak")
 RESIDUALS = ("energy_residual", "potential_energy_residual", "fixed_point_residual")
-READ = (*SUPPORT_QUANTITIES, *STRESSES, "stress_flag", *RESIDUALS)
+READ = (*SUPPORT_QUANTITIES, *ELEMENT_QUANTITIES, *STRESSES, "stress_flag", *RESIDUALS)
 SEVERAL = "all"  # the place of a largest value over supports, sections or the whole case
 
 
@@ -41,17 +44,21 @@ NOTHING = Spread(math.nan, math.nan, math.nan)
 class StudyStatistics:
     """The statistics of all cases of a study.
 
+    cases: of the study.
     rows: {load_rms_N, gap_m, seed, quantity, of, value} as statistics_rows gives them.
 
-    Attributes: gaps (m, largest first), loads (N RMS, ascending), supports and sections (names).
+    Attributes: gaps (m, largest first), loads (N RMS, ascending), supports, elements and sections
+    (names), quantities (those that have a value).
     """
 
-    def __init__(self, rows: Iterable[dict]):
+    def __init__(self, cases: Sequence[Case], rows: Iterable[dict]):
         rows = list(rows)
-        self.gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
-        self.loads = sorted({row["load_rms_N"] for row in rows})
-        self.cases = len({(row["gap_m"], row["load_rms_N"], row["seed"]) for row in rows})
+        self.gaps = sorted({case.gap_m for case in cases}, reverse=True)
+        self.loads = sorted({case.load_rms_N for case in cases})
+        self.cases = len(cases)
+        self.quantities = {row["quantity"] for row in rows}
         self.supports = _places(rows, SUPPORT_QUANTITIES)
+        self.elements = _places(rows, ELEMENT_QUANTITIES)
         self.sections = _places(rows, STRESSES)
         self._values: dict[tuple, list[float]] = {}
         self._largest: dict[tuple, dict[int, float]] = {}
@@ -99,14 +106,17 @@ class StudyStatistics:
 
 
 def study_statistics(paths: Sequence[str | Path], read: Callable) -> StudyStatistics:
-    """Return the statistics of record files.
+    """Return the statistics of record files, which are named after their cases.
 
     read: function (path, names) as records.read_record. Records of single steps have few of the
     quantities; those that are not there are left out.
     """
     present = set(read(paths[0])) if paths else set()
     names = [name for name in READ if name in present]
-    return StudyStatistics(row for path in paths for row in statistics_rows(read(path, names)))
+    return StudyStatistics(
+        [case_from_id(Path(path).stem) for path in paths],
+        (row for path in paths for row in statistics_rows(read(path, names))),
+    )
 
 
 def _places(rows: list[dict], quantities: Sequence[str]) -> list[str]:

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from .discrepancy_page import digits
 from .equivalent_answer import Answer, Value
-from .study_statistics import NOTHING, RESIDUALS, SEVERAL, Spread, StudyStatistics
+from .number_text import digits
+from .study_statistics import RESIDUALS, SEVERAL, Spread, StudyStatistics
 from .study_words import stiffness_unit
 
 AGREEMENTS = {"agree": "agree", "spread": "differ", "unresolved": "not resolved"}
@@ -17,6 +17,20 @@ RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
     "fixed_point_residual": "contact iteration, bound",
+}
+# Quantity -> (heading with its unit, units per SI unit).
+SUPPORT_COLUMNS = {
+    "contact_fraction": ("time in contact (%)", 100.0),
+    "impact_rate": ("impacts (1/s)", 1.0),
+    "rms_force": ("RMS force (N)", 1.0),
+    "peak_force": ("peak force (N)", 1.0),
+    "wear_work_rate": ("wear work rate (mW)", 1e3),
+    "sliding_work": ("sliding work (J)", 1.0),
+}
+ELEMENT_COLUMNS = {
+    "element_power": ("mean power (W)", 1.0),
+    "slip_power": ("slip power (W)", 1.0),
+    "slip_work": ("slip work (J)", 1.0),
 }
 
 
@@ -28,7 +42,7 @@ class Table(NamedTuple):
     """
 
     columns: tuple[str, ...]
-    rows: list[tuple[str, ...]]
+    rows: Sequence[tuple[str, ...]]
 
     def numeric(self) -> list[bool]:
         """Return for each column whether it holds numbers, which are aligned to the right."""
@@ -135,30 +149,40 @@ def contact_table(
     statistics: StudyStatistics, gap_m: float, loads: Sequence[float], unit: str
 ) -> Table:
     """Return contact and wear of one gap, a row per load and support, medians over seeds."""
-    columns = (
-        f"load ({unit} RMS)",
-        "support",
-        "time in contact (%)",
-        "impacts (1/s)",
-        "RMS force (N)",
-        "peak force (N)",
-        "wear work rate (mW)",
-    )
-    rows = []
-    for load in loads:
-        for name in statistics.supports:
-            found = [
-                factor * statistics.spread(quantity, gap_m, load, name).median
-                for quantity, factor in (
-                    ("contact_fraction", 100.0),
-                    ("impact_rate", 1.0),
-                    ("rms_force", 1.0),
-                    ("peak_force", 1.0),
-                    ("wear_work_rate", 1e3),
-                )
-            ]
-            rows.append((digits(load), name, *map(digits, found)))
-    return Table(columns, rows)
+    return _of_places(statistics, gap_m, loads, unit, SUPPORT_COLUMNS)
+
+
+def element_table(
+    statistics: StudyStatistics, gap_m: float, loads: Sequence[float], unit: str
+) -> Table:
+    """Return power and work of the local elements, a row per load and element, medians."""
+    return _of_places(statistics, gap_m, loads, unit, ELEMENT_COLUMNS)
+
+
+def _of_places(
+    statistics: StudyStatistics,
+    gap_m: float,
+    loads: Sequence[float],
+    unit: str,
+    columns: Mapping[str, tuple[str, float]],
+) -> Table:
+    """Return the quantities of supports or elements that were recorded."""
+    present = {name: about for name, about in columns.items() if name in statistics.quantities}
+    supports = columns is SUPPORT_COLUMNS
+    rows = [
+        (
+            digits(load),
+            place,
+            *(
+                digits(factor * statistics.spread(quantity, gap_m, load, place).median)
+                for quantity, (_, factor) in present.items()
+            ),
+        )
+        for load in loads
+        for place in (statistics.supports if supports else statistics.elements)
+    ]
+    titles = [title for title, _ in present.values()]
+    return Table((f"load ({unit} RMS)", "support" if supports else "element", *titles), rows)
 
 
 def stress_table(statistics: StudyStatistics, loads: Sequence[float], unit: str) -> Table:
@@ -183,7 +207,7 @@ def stress_table(statistics: StudyStatistics, loads: Sequence[float], unit: str)
                 _scaled(statistics.spread(quantity, gap, load, SEVERAL), 1e-6)
                 for quantity in ("stress_rms", "stress_peak")
             )
-            if peak is NOTHING:
+            if not math.isfinite(peak.median):
                 continue
             worst = max(
                 statistics.sections,

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from .discrepancy_page import digits
 from .equivalent_answer import AGREEMENT, ALL_SUPPORTS, Answer, Value
+from .number_text import digits
 from .study_statistics import StudyStatistics
 
 STRUCTURES = {
@@ -42,13 +42,22 @@ def run_sentence(config: Any, statistics: StudyStatistics) -> str:
     supports = len(config.supports)
     held = f" with {supports} gap support{'s' * (supports != 1)}" if supports else ""
     loads, gaps, seeds = statistics.loads, statistics.gaps, config.grid.seeds
+    own = [support.gap_m for support in config.supports if support.gap_m is not None]
+    gaps_in_words = (
+        f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)"
+        if supports and len(own) == supports
+        else f"{_count(gaps, 'gap')} (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm)"
+    )
+    kinds = (
+        [gaps_in_words, _count(range(seeds), "seed")]
+        if supports
+        else [_count(range(seeds), "seed")]
+    )
     return (
         f"{STRUCTURES.get(config.structure.kind, 'A structure')}{held} under"
         f" {_excitation(config.excitation)}: {_count(loads, 'load')}"
-        f" {_range(loads)} {load_unit(config)} RMS, {_count(gaps, 'gap')}"
-        f" (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm),"
-        f" {seeds} seed{'s' * (seeds != 1)}; {statistics.cases} records of"
-        f" {digits(config.record.duration_s)} s."
+        f" {_range(loads)} {load_unit(config)} RMS, {', '.join(kinds)};"
+        f" {_count(range(statistics.cases), 'record')} of {digits(config.record.duration_s)} s."
     )
 
 

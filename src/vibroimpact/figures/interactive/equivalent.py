@@ -23,6 +23,7 @@ from .plot import (
     log_axis,
     numbers,
     points,
+    unit_of,
 )
 
 COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
@@ -60,9 +61,9 @@ def _against_load(quantity, answers, summary, load_label):
         traces = [
             trace
             for method in _methods(rows)
-            if (trace := _method(quantity, method, rows)) is not None
+            if (trace := _method(quantity, method, rows, unit_of(load_label))) is not None
         ]
-        frames[key] = [*_recommended(quantity, chosen), *traces]
+        frames[key] = [*_recommended(quantity, chosen, unit_of(load_label)), *traces]
     return Plot(
         f"equivalent_{quantity}",
         f"Equivalent {WORDS[quantity]} {quantity}",
@@ -105,7 +106,7 @@ def _methods(rows):
     return sorted(known, key=lambda method: method in COMPARED["k"])
 
 
-def _recommended(quantity: str, chosen: Sequence[Answer]) -> list[dict[str, Any]]:
+def _recommended(quantity: str, chosen: Sequence[Answer], load_unit: str) -> list[dict[str, Any]]:
     """Return the band and the line of the recommended value."""
     column = COLUMNS[quantity]
     values: list[Value] = [getattr(row, quantity) for row in chosen]
@@ -131,7 +132,7 @@ def _recommended(quantity: str, chosen: Sequence[Answer]) -> list[dict[str, Any]
         marker={"color": BLACK, "size": 4},
         customdata=[
             f"{value.low:.3g} to {value.high:.3g} {UNITS[quantity]} over seeds<br>"
-            f"{row.load_rms_N:.3g} at load; {value.agreement}"
+            f"at {row.load_rms_N:.3g} {load_unit}; methods: {value.agreement}"
             for row, value in zip(chosen, values, strict=True)
         ],
     )
@@ -147,7 +148,7 @@ def _recommended(quantity: str, chosen: Sequence[Answer]) -> list[dict[str, Any]
     ]
 
 
-def _method(quantity, method, rows):
+def _method(quantity, method, rows, load_unit):
     """Return the trace of one method, None where it has no value at any load."""
     column = COLUMNS[quantity]
     chosen = [
@@ -172,7 +173,8 @@ def _method(quantity, method, rows):
         method_name(method),
         numbers([row["load_rms_N"] for row in chosen]),
         numbers(middle),
-        f"{method_name(method)}: {quantity} = %{{y:.3s}} {UNITS[quantity]} at %{{x:.3g}}",
+        f"{method_name(method)}: {quantity} = %{{y:.3s}} {UNITS[quantity]}"
+        f" at %{{x:.3g}} {load_unit}",
         colour,
         marker,
         line={"color": colour, "width": 1.2, "dash": "dot" if predicted else "solid"},
@@ -185,10 +187,10 @@ def _ratios(answers, summary, load_label):
     frames = {}
     for key, chosen, rows in _by_place(answers, summary):
         traces = []
-        for quantity, dash in (("k", "solid"), ("c", "dot")):
+        for quantity in COLUMNS:
             centre = {row.load_rms_N: getattr(row, quantity).value for row in chosen}
             for method in COMPARED[quantity]:
-                traces += _ratio(quantity, method, rows, centre, dash)
+                traces += _ratio(quantity, method, rows, centre)
         frames[key] = traces
     return Plot(
         "agreement_ratio",
@@ -230,7 +232,7 @@ def _around_one(frames):
     return [min([0.9 - AGREEMENT, *values]) - 0.05, max([1.1 + AGREEMENT, *values]) + 0.05]
 
 
-def _ratio(quantity, method, rows, centre, dash):
+def _ratio(quantity, method, rows, centre):
     """Return the trace of one method's ratio in a list, empty without values."""
     chosen = [
         row
@@ -245,10 +247,10 @@ def _ratio(quantity, method, rows, centre, dash):
         f"{quantity}, {method_name(method)}",
         numbers([row["load_rms_N"] for row in chosen]),
         numbers([row[f"{quantity}_median"] / centre[row["load_rms_N"]] for row in chosen]),
-        f"{quantity} by {method_name(method)}: %{{y:.3f}} of the recommended, at %{{x:.3g}}",
+        f"{quantity} by {method_name(method)}: %{{y:.3f}} of the recommended value",
         colour,
         marker,
-        line={"color": colour, "width": 1.2, "dash": dash},
+        line={"color": colour, "width": 1.2, "dash": "dot" if quantity == "c" else "solid"},
     )
     if quantity == "c":
         trace["marker"]["symbol"] += "-open"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -116,11 +116,9 @@ def label(column: str) -> str:
     return COLUMNS[column][0]
 
 
-def unit(column: str) -> str:
-    """Return the unit of a column as its label has it, empty for a number without unit."""
-    text = COLUMNS[column][0]
-    found = text[text.rfind(" (") + 2 : -1] if text.endswith(")") else ""
-    return "" if found == "-" else f" {found}"
+def unit_of(title: str) -> str:
+    """Return the unit of an axis title, such as N RMS of "Load (N RMS)"; empty for none."""
+    return title[title.rfind(" (") + 2 : -1] if title.endswith(")") else ""
 
 
 def axis(title: str, **more: Any) -> dict[str, Any]:
@@ -227,8 +225,3 @@ def bars_between(middle: ArrayLike, low: ArrayLike, high: ArrayLike) -> dict[str
 def colour_of(index: int) -> str:
     """Return the colour of the curve of a support or gap."""
     return GAP_COLOURS[index % len(GAP_COLOURS)]
-
-
-def has_values(rows: Iterable) -> bool:
-    """Whether any value is finite."""
-    return bool(np.any(np.isfinite(np.asarray(list(rows), dtype=float))))

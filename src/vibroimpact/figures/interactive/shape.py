@@ -13,9 +13,10 @@ from vibroimpact.linear.modes import first_mode_shape
 from vibroimpact.reports.study_statistics import StudyStatistics
 from vibroimpact.study.cases import case_from_id
 
-from .plot import Plot, axis, label, layout, numbers
+from .plot import Plot, axis, layout, numbers
 
 Place = tuple[float, float]  # gap in m, load
+ALONG = "Arc length along the tube (m)"
 
 
 def shapes_of(
@@ -93,7 +94,7 @@ def shape_plot(
             " where it passes through zero."
         ),
         layout(
-            axis(label("arc_length_m"), range=_tube_range(model.line_arc_length)),
+            axis(ALONG, range=_tube_range(model.line_arc_length)),
             axis(f"Shape, {direction} (largest = 1)", range=[-1.15, 1.15]),
             height=400,
             shapes=[_support_line(place) for place in support_places(model)],
@@ -185,6 +186,8 @@ def contact_along_plot(
                 **({"width": 0.02 * float(model.line_arc_length[-1])} if along else {}),
                 "text": names,
                 "textposition": "outside",
+                "textangle": 0,
+                "constraintext": "none",
                 "cliponaxis": False,
             }
         ]
@@ -198,7 +201,7 @@ def contact_along_plot(
         ),
         layout(
             (
-                axis(label("arc_length_m"), range=_tube_range(model.line_arc_length))
+                axis(ALONG, range=_tube_range(model.line_arc_length))
                 if along
                 else axis("Support", type="category")
             ),

@@ -24,6 +24,7 @@ from .plot import (
     numbers,
     points,
     shown,
+    unit_of,
 )
 
 MOST_CURVES = 12  # more supports are shown by their largest and the median one
@@ -60,7 +61,6 @@ RESIDUALS = {
     "energy_residual": ("with the work of the contact forces", BLUE, "o"),
     "fixed_point_residual": ("contact iteration (bound)", GREY, "x"),
 }
-FLOOR = 1.0e-18  # exact zeros are drawn here
 
 
 def contact_plots(
@@ -77,7 +77,8 @@ def contact_plots(
         for quantity in AGAINST_LOAD
         if math.isfinite(statistics.largest(quantity)[0])
     ]
-    return [*plots[:2], _forces(statistics, gaps, load_label), *plots[2:]]
+    forces = [_forces(statistics, gaps, load_label)] if plots else []
+    return [*plots[:2], *forces, *plots[2:]]
 
 
 def _curves(statistics, quantity, gap, column):
@@ -106,7 +107,7 @@ def _against_load(statistics, gaps, quantity, load_label):
                 name,
                 numbers(loads),
                 numbers(_positive(log, middle)),
-                f"{name}: %{{y:.3g}} {unit} at %{{x:.3g}}",
+                f"{name}: %{{y:.3g}} {unit} at %{{x:.3g}} {unit_of(load_label)}",
                 colour_of(index),
                 GAP_MARKERS[index % len(GAP_MARKERS)],
                 error_y=bars_between(middle, low, high),
@@ -140,7 +141,7 @@ def _forces(statistics, gaps, load_label):
                 f"{name}, {word}",
                 numbers(loads),
                 numbers(_positive(True, middle)),
-                f"{name}, {word}: %{{y:.4g}} N at %{{x:.3g}}",
+                f"{name}, {word}: %{{y:.4g}} N at %{{x:.3g}} {unit_of(load_label)}",
                 colour_of(index),
                 GAP_MARKERS[index % len(GAP_MARKERS)],
                 error_y=bars_between(middle, low, high),
@@ -187,7 +188,10 @@ def stress_plots(
     frames = {}
     for at, gap in enumerate(gaps):
         frames[key_of(at)] = [
-            *(_largest_stress(statistics, gap, quantity) for quantity in ("rms", "peak")),
+            *(
+                _largest_stress(statistics, gap, quantity, unit_of(load_label))
+                for quantity in ("rms", "peak")
+            ),
             {
                 "type": "scatter",
                 "mode": "lines",
@@ -220,7 +224,7 @@ def stress_plots(
     ]
 
 
-def _largest_stress(statistics, gap, quantity):
+def _largest_stress(statistics, gap, quantity, load_unit):
     rows = [
         statistics.spread(f"stress_{quantity}", gap, load, SEVERAL) for load in statistics.loads
     ]
@@ -231,7 +235,7 @@ def _largest_stress(statistics, gap, quantity):
         word,
         numbers(statistics.loads),
         numbers(_positive(True, middle)),
-        f"{word}: %{{y:.4g}} MPa at %{{x:.3g}}",
+        f"{word}: %{{y:.4g}} MPa at %{{x:.3g}} {load_unit}",
         colour,
         "o" if quantity == "rms" else "^",
         error_y=bars_between(middle, low, high),
@@ -295,7 +299,7 @@ def energy_plot(
             for gap in statistics.gaps
             for load in statistics.loads
         ]
-        rows = [row for row in rows if math.isfinite(row[2])]
+        rows = [row for row in rows if row[2] > 0.0]
         if not rows:
             continue
         loads, shown_gaps, values = (list(part) for part in zip(*rows, strict=True))
@@ -303,8 +307,9 @@ def energy_plot(
             points(
                 name,
                 numbers(loads),
-                numbers(np.maximum(values, FLOOR)),
-                "%{y:.2g} of the input work<br>load %{x:.3g}, gap %{customdata} mm",
+                numbers(values),
+                f"%{{y:.2g}} of the input work<br>%{{x:.3g}} {unit_of(load_label)},"
+                " gap %{customdata} mm",
                 colour,
                 marker,
                 mode="markers",
@@ -317,11 +322,11 @@ def energy_plot(
         return None
     return Plot(
         "energy",
-        "Energy balance",
+        "What is not accounted for, case by case",
         (
             "Energy that the simulation fails to account for, over the work of the drive: the worst"
             " seed of every load and gap. Markers below the dashed line of their colour are within"
-            f" what the time step allows; exact zeros are drawn at {FLOOR:g}."
+            " what the time step allows; exact zeros, where nothing touches, are left out."
         ),
         layout(
             load_axis(load_label, statistics.loads),
