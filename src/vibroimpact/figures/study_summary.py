@@ -68,6 +68,9 @@ def _first_page(content: StudyContent) -> PrintedPage:
         page.heading("Contact against load")
         _contact_figure(page, content)
         _contact_tables(page, content, 0.0)
+    for gap, table in content.element_tables()[:1]:
+        page.heading(f"Local elements{content.at_gap(gap)}")
+        page.table(table)
     return page
 
 

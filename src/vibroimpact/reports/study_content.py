@@ -11,6 +11,7 @@ import yaml
 import vibroimpact
 
 from .equivalent_answer import ALL_SUPPORTS, Answer
+from .number_text import digits
 from .study_statistics import StudyStatistics
 from .study_tables import (
     Table,
@@ -122,6 +123,10 @@ class StudyContent:
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""
         return contact_sentences(self.statistics, self.config.record.stress_limit_Pa, self.unit)
+
+    def at_gap(self, gap_m: float) -> str:
+        """Return "at a gap of ... mm", empty for a structure without supports."""
+        return f" at a gap of {digits(1e3 * gap_m)} mm" if self.config.supports else ""
 
     def loads_in_tables(self, most: int = MOST_LOADS) -> list[float]:
         """Return the loads that tables of statistics list."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -13,6 +14,7 @@ from .study_statistics import RESIDUALS, SEVERAL, Spread, StudyStatistics
 from .study_words import stiffness_unit
 
 AGREEMENTS = {"agree": "agree", "spread": "differ", "unresolved": "not resolved"}
+NUMBER = re.compile(r"-|-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
 RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
@@ -47,10 +49,7 @@ class Table(NamedTuple):
     def numeric(self) -> list[bool]:
         """Return for each column whether it holds numbers, which are aligned to the right."""
         cells = [[row[at] for row in self.rows] for at in range(len(self.columns))]
-        return [
-            bool(column) and all(cell[:1].isdigit() or cell[:1] in "-" for cell in column)
-            for column in cells
-        ]
+        return [bool(column) and all(map(NUMBER.fullmatch, column)) for column in cells]
 
 
 def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:

@@ -74,6 +74,10 @@ class Plot:
     cursor: bool = False
     ranges: dict[str, list] = field(default_factory=dict)
 
+    def has_traces(self) -> bool:
+        """Whether anything is drawn at any position of the controls."""
+        return any(self.frames.values())
+
     def drawn(self) -> dict[str, Any]:
         """Return what the page's script needs, as plain values."""
         return {

@@ -183,7 +183,7 @@ def contact_along_plot(
                 },
                 "hovertemplate": "support %{customdata}: in contact %{y:.3g} % of the time"
                 "<extra></extra>",
-                **({"width": 0.02 * float(model.line_arc_length[-1])} if along else {}),
+                "width": 0.02 * float(model.line_arc_length[-1]) if along else 0.3,
                 "text": names,
                 "textposition": "outside",
                 "textangle": 0,

@@ -68,7 +68,10 @@ def study_plots(content: StudyContent, files: StudyFiles) -> PagePlots:
         "stress": stress_plots(statistics, gaps, frames, config.record.stress_limit_Pa, title),
         "energy": [energy] if energy is not None else [],
     }
-    return PagePlots(sections, _controls(content, gaps, loads), plotly_library())
+    drawn = {
+        name: [plot for plot in plots if plot.has_traces()] for name, plots in sections.items()
+    }
+    return PagePlots(drawn, _controls(content, gaps, loads), plotly_library())
 
 
 def _controls(content: StudyContent, gaps: Sequence[float], loads: Sequence[float]):
