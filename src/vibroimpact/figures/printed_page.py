@@ -22,8 +22,10 @@ from vibroimpact.reports.study_tables import Table, spread_evenly
 from .style import BLACK, GREY, PALE
 
 WIDTH_PT, HEIGHT_PT = 595.3, 841.9
-LEFT_PT, RIGHT_PT, TOP_PT, BOTTOM_PT = 51.0, 547.0, 796.0, 48.0
+LEFT_PT, RIGHT_PT, TOP_PT, BOTTOM_PT = 51.0, 547.0, 800.0, 44.0
+LEGEND_SIZE, LEGEND_HANDLE_PT = 7.0, 40.0
 PADDING_PT = 9.0  # between the columns of a table
+SIZES = (7.2, 6.6, 6.0)  # of the font of a table, the largest that fits
 LEADING = 1.32  # line spacing over size of the font
 
 
@@ -57,6 +59,7 @@ class PrintedPage:
         self.figure = Figure(figsize=(WIDTH_PT / 72.0, HEIGHT_PT / 72.0))
         FigureCanvasPdf(self.figure)
         self.y = TOP_PT
+        self._legend_y, self._legend_columns = TOP_PT, 1
 
     @property
     def room_pt(self) -> float:
@@ -84,8 +87,15 @@ class PrintedPage:
         self._rule(0.8, GREY)
         self.y -= 5.0
 
-    def axes(self, height_pt: float, columns: int) -> list[Axes]:
-        """Return axes side by side, with room for their labels."""
+    def axes(self, height_pt: float, columns: int, labels: Sequence[str]) -> list[Axes]:
+        """Return axes side by side, with room for their axis labels, and for a legend above.
+
+        labels: of the legend, which `legend` writes.
+        """
+        widest = max(width_pt(label, LEGEND_SIZE) for label in labels) + LEGEND_HANDLE_PT
+        self._legend_columns = max(int((RIGHT_PT - LEFT_PT) / widest), 1)
+        self._legend_y = self.y
+        self.y -= 11.0 * -(-len(labels) // self._legend_columns) + 4.0
         left, between, below = 38.0, 56.0, 34.0
         width = (RIGHT_PT - LEFT_PT - left - between * (columns - 1)) / columns
         self.y -= height_pt
@@ -103,42 +113,46 @@ class PrintedPage:
         self.y -= below
         return made
 
-    def table(self, table: Table, most_pt: float | None = None, size: float = 7.2) -> int:
-        """Write a table; return the number of its rows that are on the page.
+    def legend(self, axes: Axes) -> None:
+        """Write the legend of axes above them."""
+        handles, labels = axes.get_legend_handles_labels()
+        self.figure.legend(
+            handles,
+            labels,
+            loc="upper left",
+            bbox_to_anchor=(LEFT_PT / WIDTH_PT, (self._legend_y + 3.0) / HEIGHT_PT),
+            ncols=self._legend_columns,
+            fontsize=LEGEND_SIZE,
+            frameon=False,
+            borderaxespad=0.0,
+            borderpad=0.0,
+        )
+
+    def table(self, table: Table, most_pt: float | None = None, total: int | None = None) -> None:
+        """Write a table.
 
         most_pt: the height it may take; by default what is left of the page. Of a longer table rows
-        are left out evenly, never the first or the last, and a note says so.
+        are left out evenly, never the first or the last.
+        total: number of rows of which the table is a selection. Where rows are left out, a note
+        says how many.
         """
-        room = min(self.room_pt, self.room_pt if most_pt is None else most_pt) - 18.0
-        widths = _column_widths(table, size)
-        head = [
-            wrapped(title, size, width, "bold")
-            for title, width in zip(table.columns, widths, strict=True)
-        ]
-        rows = [
-            [wrapped(cell, size, width) for cell, width in zip(row, widths, strict=True)]
-            for row in table.rows
-        ]
+        size, widths, head, rows = _laid_out(table)
         step = LEADING * size
-        free = room - step * max(map(len, head))
-        shown = _rows_that_fit(rows, free / step)
+        room = min(self.room_pt, self.room_pt if most_pt is None else most_pt) - 20.0
+        shown = _rows_that_fit(rows, room / step - max(map(len, head)))
         self._rows([head], widths, table.numeric(), size, "bold", last=True)
         self._rule(0.6, BLACK)
         self.y -= 2.0
         self._rows([rows[at] for at in shown], widths, table.numeric(), size)
         self._rule(0.4, PALE)
         self.y -= 3.0
-        if len(shown) < len(rows):
-            self.write(
-                f"{len(shown)} of {len(rows)} rows; the page index.html has all of them.",
-                LEFT_PT,
-                self.y,
-                size - 0.7,
-                color=GREY,
+        if len(shown) < max(len(rows), total or 0):
+            note = (
+                f"{len(shown)} of {total or len(rows)} rows; the page index.html has all of them."
             )
+            self.write(note, LEFT_PT, self.y, 6.5, color=GREY)
             self.y -= step
         self.y -= 5.0
-        return len(shown)
 
     def footer(self, words: str) -> None:
         """Write a line at the foot of the page."""
@@ -170,20 +184,59 @@ class PrintedPage:
         )
 
 
-def _column_widths(table: Table, size: float) -> list[float]:
-    """Return the widths of the columns in points; long texts get what the others leave."""
-    wanted, least = [], []
-    for at, title in enumerate(table.columns):
+def height_pt(table: Table) -> float:
+    """Return the height of a table with all its rows, in points."""
+    size, _, head, rows = _laid_out(table)
+    return 20.0 + LEADING * size * sum(max(map(len, row)) for row in [head, *rows])
+
+
+def _laid_out(table: Table) -> tuple[float, list[float], list, list]:
+    """Return (size, widths, heading, rows) of a table, each cell as its lines."""
+    size, widths = _size_and_widths(table)
+    head = [
+        wrapped(title, size, width, "bold")
+        for title, width in zip(table.columns, widths, strict=True)
+    ]
+    rows = [
+        [wrapped(cell, size, width) for cell, width in zip(row, widths, strict=True)]
+        for row in table.rows
+    ]
+    return size, widths, head, rows
+
+
+def _size_and_widths(table: Table) -> tuple[float, list[float]]:
+    """Return (size of the font, widths of the columns in points) of a table that fits the page.
+
+    A smaller font is preferred to wrapped cells; long texts are wrapped all the same.
+    """
+    for shrink in (False, True):
+        for size in SIZES:
+            widths = _column_widths(table, size, shrink)
+            if sum(widths) + PADDING_PT * (len(widths) - 1) <= RIGHT_PT - LEFT_PT + 0.5:
+                return size, widths
+    return size, widths
+
+
+def _column_widths(table: Table, size: float, shrink: bool) -> list[float]:
+    """Return the widths of the columns; shrink: long texts get what the others leave."""
+    widths, least = [], []
+    for at, (title, numeric) in enumerate(zip(table.columns, table.numeric(), strict=True)):
+        words = [width_pt(word, size, "bold") for word in title.split()]
         cells = [width_pt(row[at], size) for row in table.rows]
-        longest_word = max(width_pt(word, size, "bold") for word in title.split())
-        least.append(max([longest_word, *(min(cell, 60.0) for cell in cells)]))
-        wanted.append(max([min(width_pt(title, size, "bold"), 70.0), longest_word, *cells]))
-    room = RIGHT_PT - LEFT_PT - PADDING_PT * (len(wanted) - 1)
-    over = sum(wanted) - room
-    if over > 0.0:
-        widest = int(np.argmax(wanted))
-        wanted[widest] = max(least[widest], wanted[widest] - over)
-    return wanted
+        if not numeric:
+            words += [width_pt(word, size) for row in table.rows for word in row[at].split()]
+        least.append(max([*words, *(cells if numeric else ())]))
+        widths.append(max([min(width_pt(title, size, "bold"), 70.0), *cells, least[-1]]))
+    over = sum(widths) + PADDING_PT * (len(widths) - 1) - (RIGHT_PT - LEFT_PT)
+    while shrink and over > 0.0:
+        slack = np.array(widths) - np.array(least)
+        widest = int(np.argmax(slack))
+        if slack[widest] <= 0.0:
+            break
+        taken = min(over, slack[widest])
+        widths[widest] -= taken
+        over -= taken
+    return widths
 
 
 def _rows_that_fit(rows: Sequence[list[list[str]]], lines: float) -> list[int]:

@@ -11,17 +11,17 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfPages
 
 from vibroimpact.reports.equivalent_answer import Answer
-from vibroimpact.reports.study_content import StudyContent
+from vibroimpact.reports.study_content import MOST_LOADS, StudyContent
 from vibroimpact.reports.study_statistics import SEVERAL
 from vibroimpact.reports.study_tables import Table, answer_table, spread_evenly
 from vibroimpact.reports.study_words import load_label, place_in_words
 
-from .printed_page import LEFT_PT, PrintedPage
+from .printed_page import LEFT_PT, PrintedPage, height_pt
 from .style import GAP_COLOURS, GAP_MARKERS, label_of, shown, tidy_log_axis
 
 MOST_CURVES = 6
 # Heights in points.
-FIGURE_PT, CONTACT_PT, STRESS_PT, REASONS_PT, PROVENANCE_PT = 195.0, 100.0, 130.0, 150.0, 112.0
+FIGURE_PT, LEAST_PT, HEADING_PT, GAP_LINE_PT, ROW_PT = 190.0, 99.0, 27.0, 14.0, 9.6
 
 
 def study_summary(content: StudyContent, path: str | Path) -> None:
@@ -67,7 +67,7 @@ def _first_page(content: StudyContent) -> PrintedPage:
     elif content.statistics.supports:
         page.heading("Contact against load")
         _contact_figure(page, content)
-        _contact_tables(page, content, 0.0)
+        _contact_tables(page, content, 0.5 * page.room_pt - 20.0)
     for gap, table in content.element_tables()[:1]:
         page.heading(f"Local elements{content.at_gap(gap)}")
         page.table(table)
@@ -77,18 +77,25 @@ def _first_page(content: StudyContent) -> PrintedPage:
 def _second_page(content: StudyContent) -> PrintedPage:
     """Return the page with contact, stress, agreement and provenance."""
     page = PrintedPage()
-    stress, reasons, energy = content.stress(), content.reasons(), content.energy()
-    if content.answers and content.statistics.supports:
-        later = [_needed(stress, STRESS_PT), _needed(reasons, REASONS_PT), _needed(energy)]
+    energy, stages = content.energy(), content.provenance.stage_table()
+    fixed = (
+        height_pt(stages) + 2.0 * HEADING_PT + (height_pt(energy) + HEADING_PT) * bool(energy.rows)
+    )
+    reasons = content.reasons() if content.answers else Table((), [])
+    contact = content.contact_tables() if content.answers else []
+    tables = [table for _, table in _ends(contact)] + [content.stress(), reasons]
+    most = _shares([height_pt(table) if table.rows else 0.0 for table in tables], page, fixed)
+    if contact:
         page.heading("Contact and wear")
-        _contact_tables(page, content, sum(later) + PROVENANCE_PT)
-    if stress.rows:
+        _contact_tables(page, content, most[0])
+    if content.statistics.sections:
         page.heading("Stress")
-        page.table(stress, STRESS_PT)
+        rows = int((most[-2] - 41.0) / ROW_PT) // len(content.statistics.gaps)
+        page.table(content.stress(max(rows, 2)), most[-2])
     if content.answers:
         page.heading("What is not resolved, and why")
         if reasons.rows:
-            page.table(reasons, REASONS_PT)
+            page.table(reasons, most[-1])
         else:
             page.paragraph("Every value is resolved, and the methods agree on all of them.", 8.0)
     if energy.rows:
@@ -96,39 +103,54 @@ def _second_page(content: StudyContent) -> PrintedPage:
         page.table(energy)
     page.heading("Provenance")
     page.paragraph(content.provenance.versions, size=7.2)
-    page.table(content.provenance.stage_table())
+    page.table(stages)
     return page
 
 
-def _contact_tables(page: PrintedPage, content: StudyContent, later_pt: float) -> None:
-    """Write contact and wear of the first and the last gap; later_pt: what comes below them."""
-    tables = content.contact_tables()
-    tables = [tables[round(at)] for at in spread_evenly(range(len(tables)), 2)]
-    most = max((page.room_pt - later_pt) / len(tables) - 14.0, CONTACT_PT)
-    for gap, table in tables:
+def _shares(needed: Sequence[float], page: PrintedPage, fixed: float) -> list[float]:
+    """Return the heights in points that tables may take: what they need, or a share of the page.
+
+    The last table gets what it needs before the others, as far as each keeps LEAST_PT.
+    """
+    room = page.room_pt - fixed - 3.0 * HEADING_PT - GAP_LINE_PT * (len(needed) - 2)
+    least = [min(need, LEAST_PT) for need in needed]
+    *more, last = [need - low for need, low in zip(needed, least, strict=True)]
+    last = max(min(last, room - sum(least)), 0.0)
+    left = max(room - sum(least) - last, 0.0)
+    share = min(left / sum(more), 1.0) if sum(more) > 0.0 else 0.0
+    return [
+        low + extra for low, extra in zip(least, [*(share * x for x in more), last], strict=True)
+    ]
+
+
+def _contact_tables(page: PrintedPage, content: StudyContent, most: float) -> None:
+    """Write contact and wear of the first and the last gap; most: height of each in points."""
+    loads = max(int((most - 41.0) / ROW_PT) // len(content.statistics.supports), 2)
+    for gap, table in _ends(content.contact_tables(min(loads, MOST_LOADS))):
         page.paragraph(f"Gap {1e3 * gap:.3g} mm, medians over seeds:", size=8.0)
         page.table(table, most)
 
 
-def _needed(table: Table, most_pt: float = 200.0) -> float:
-    """Return about the height in points that a section with a table takes."""
-    return min(most_pt, 40.0 + 11.0 * len(table.rows)) + 27.0 if table.rows else 0.0
+def _ends(values: Sequence) -> list:
+    """Return the first and the last of some values."""
+    return [values[round(at)] for at in spread_evenly(range(len(values)), 2)]
 
 
 def _equivalent_figure(page: PrintedPage, content: StudyContent) -> None:
     places = list(dict.fromkeys(row.place for row in content.answers))
     places = [places[round(at)] for at in spread_evenly(range(len(places)), MOST_CURVES)]
     columns = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
-    drawn = page.axes(FIGURE_PT, 2)
+    labels = [place_in_words(*place, several=content.several) for place in places]
+    drawn = page.axes(FIGURE_PT, 2, labels)
     for axes, (quantity, column) in zip(drawn, columns.items(), strict=True):
         for index, place in enumerate(places):
             rows = [row for row in content.answers if row.place == place]
             values = [getattr(row, quantity) for row in rows]
             spread = [[getattr(value, part) for value in values] for part in PARTS]
-            label = place_in_words(*place, several=content.several)
-            _curve(axes, index, [row.load_rms_N for row in rows], shown(column, spread), label)
+            loads = [row.load_rms_N for row in rows]
+            _curve(axes, index, loads, shown(column, spread), labels[index])
         _finish(axes, content, column, quantity == "k", f"{quantity} is not resolved")
-    drawn[0].legend(loc="best", fontsize=7.0)
+    page.legend(drawn[0])
 
 
 PARTS = ("value", "low", "high")
@@ -137,14 +159,16 @@ PARTS = ("value", "low", "high")
 def _contact_figure(page: PrintedPage, content: StudyContent) -> None:
     statistics = content.statistics
     panels = (("contact_fraction", "contact_fraction", False), ("rms_force", "force_N", True))
-    drawn = page.axes(FIGURE_PT, 2)
+    gaps = statistics.gaps[:MOST_CURVES]
+    labels = [f"gap {1e3 * gap:.3g} mm, largest of the supports" for gap in gaps]
+    drawn = page.axes(FIGURE_PT, 2, labels)
     for axes, (quantity, column, log) in zip(drawn, panels, strict=True):
-        for index, gap in enumerate(statistics.gaps[:MOST_CURVES]):
+        for index, gap in enumerate(gaps):
             rows = [statistics.spread(quantity, gap, load, SEVERAL) for load in statistics.loads]
-            label = f"gap {1e3 * gap:.3g} mm, largest of the supports"
-            _curve(axes, index, statistics.loads, shown(column, np.array(rows).T), label)
+            values = shown(column, np.array(rows).T)
+            _curve(axes, index, statistics.loads, values, labels[index])
         _finish(axes, content, column, log, "no contact")
-    drawn[0].legend(loc="best", fontsize=7.0)
+    page.legend(drawn[0])
 
 
 def _curve(axes: Axes, index: int, loads: Sequence[float], values: np.ndarray, label: str) -> None:
@@ -195,8 +219,5 @@ def _answer_table(page: PrintedPage, content: StudyContent) -> None:
         curve = [row for row in content.answers if row.place == place]
         kept = spread_evenly(range(len(curve)), max(rows // len(places), 2))
         chosen += [curve[round(at)] for at in kept]
-    page.table(answer_table(chosen, content.several, content.unit))
-    if len(chosen) < len(content.answers):
-        page.paragraph(
-            f"{len(chosen)} of {len(content.answers)} values; the page index.html has all.", 6.5
-        )
+    table = answer_table(chosen, content.several, content.unit)
+    page.table(table, total=len(content.answers))

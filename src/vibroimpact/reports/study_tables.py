@@ -15,6 +15,7 @@ from .study_words import stiffness_unit
 
 AGREEMENTS = {"agree": "agree", "spread": "differ", "unresolved": "not resolved"}
 NUMBER = re.compile(r"-|-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
+DIFFER = {"spread": "the methods differ by more than 25 %"}
 RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
@@ -109,28 +110,37 @@ def reason_table(
     for place, group in groupby(answers, key=lambda row: row.place):
         chosen = list(group)
         for quantity in ("k", "c"):
-            for (agreement, reason), run in groupby(
-                chosen, key=lambda row: _reason(getattr(row, quantity))
+            for (agreement, kind), run in groupby(
+                chosen, key=lambda row: _kind(getattr(row, quantity))
             ):
-                if agreement == "agree" and not reason:
+                if agreement == "agree" and not kind:
                     continue
-                loads = [row.load_rms_N for row in run]
+                alike = list(run)
+                loads = [row.load_rms_N for row in alike]
+                reason = _reason([getattr(row, quantity).reason for row in alike], loads[0], unit)
                 rows.append(
                     (
                         digits(1e3 * place[0]),
                         *(place[1:] if several else ()),
                         digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
                         f"{quantity}: {AGREEMENTS.get(agreement, agreement)}",
-                        reason
-                        or ("methods differ by more than 25 %" if agreement == "spread" else "-"),
+                        reason or DIFFER.get(agreement, "-"),
                         _touching(statistics, place[0], loads),
                     )
                 )
     return Table(columns, rows)
 
 
-def _reason(value: Value) -> tuple[str, str]:
-    return value.agreement, value.reason
+def _kind(value: Value) -> tuple[str, str]:
+    """Return (agreement, reason without its numbers): loads alike in both share a row."""
+    return value.agreement, re.sub(r"[-+]?\d[-+.e\d]*", "#", value.reason)
+
+
+def _reason(reasons: Sequence[str], load: float, unit: str) -> str:
+    """Return the reason of a run of loads; that of its first load where the numbers change."""
+    if len(set(reasons)) == 1:
+        return reasons[0]
+    return f"{reasons[0]} (at {digits(load)} {unit} RMS, likewise at the others)"
 
 
 def _touching(statistics: StudyStatistics, gap_m: float, loads: Sequence[float]) -> str:

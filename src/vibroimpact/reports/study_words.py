@@ -18,7 +18,7 @@ STRUCTURES = {
     "identified": "A structure given by its measured modes",
 }
 NAMES = {"k": "Stiffness k", "c": "Damping c"}
-MOST_PLACES = 6  # curves that have a sentence of their own
+MOST_PLACES = 4  # curves that have a sentence of their own
 
 
 def load_unit(config: Any) -> str:
@@ -104,8 +104,9 @@ def headline(answers: Sequence[Answer], unit: str) -> list[str]:
     """
     if not answers:
         return []
-    sentences = [_agreement(answers, quantity) for quantity in ("k", "c")]
     places = list(dict.fromkeys(row.place for row in answers))
+    several = len({place[1:] for place in places}) > 1
+    sentences = [_agreement(answers, quantity, several) for quantity in ("k", "c")]
     scale = stiffness_unit([row.k.value for row in answers])
     for place in places[:MOST_PLACES]:
         rows = [row for row in answers if row.place == place]
@@ -114,16 +115,17 @@ def headline(answers: Sequence[Answer], unit: str) -> list[str]:
             f" {_course(rows, 'c', ('N s/m', 1.0), unit)}."
         )
     if len(places) > MOST_PLACES:
-        sentences.append(f"{len(places) - MOST_PLACES} more are in the table.")
+        sentences.append(f"The other {len(places) - MOST_PLACES} are in the table.")
     return sentences
 
 
-def _agreement(answers: Sequence[Answer], quantity: str) -> str:
+def _agreement(answers: Sequence[Answer], quantity: str, several: bool) -> str:
     """Return how many cases agree, differ and are not resolved."""
     kinds = [getattr(row, quantity).agreement for row in answers]
     agree, spread, missing = (kinds.count(word) for word in ("agree", "spread", "unresolved"))
     total = len(kinds)
-    cases = "case of load and gap" if total == 1 else "cases of load and gap"
+    of_what = "load, gap, supports and direction" if several else "load and gap"
+    cases = f"case{'s' * (total != 1)} of {of_what}"
     parts = [f"the independent methods agree within {100 * AGREEMENT:.0f} % in {agree}"]
     parts += [f"differ by more in {spread}"] if spread else []
     parts += [f"do not all resolve it in {missing}"] if missing else []

@@ -74,7 +74,7 @@ def _against_load(quantity, answers, summary, load_label):
         ),
         layout(
             load_axis(load_label, [row.load_rms_N for row in answers]),
-            log_axis(label(column), frames) if quantity == "k" else axis(label(column)),
+            _stiffness_axis(frames) if quantity == "k" else axis(label(column)),
             height=460,
         ),
         frames,
@@ -82,6 +82,32 @@ def _against_load(quantity, answers, summary, load_label):
         empty=f"No method resolves {quantity} at any load of this gap.",
         cursor=True,
     )
+
+
+def _stiffness_axis(frames):
+    """Return the axis of k, from the smallest identified value up.
+
+    Predictions go down to nothing at low loads; they would flatten the rest.
+    """
+    predicted = {method_name(method) for method in PREDICTED}
+    identified = {
+        key: [trace for trace in traces if trace.get("name") not in predicted]
+        for key, traces in frames.items()
+    }
+    values = [
+        value
+        for traces in identified.values()
+        for trace in traces
+        for value in trace["y"]
+        if value is not None and value > 0.0
+    ]
+    if not values:
+        return log_axis(label("k_N_per_m"), frames)
+    top = max(
+        value for traces in frames.values() for trace in traces for value in trace["y"] if value
+    )
+    ends = numbers(np.log10([0.6 * min(values), 1.6 * top]))
+    return log_axis(label("k_N_per_m"), identified, range=ends)
 
 
 def _by_place(answers, summary):
