@@ -42,7 +42,9 @@ ACT = """<script>
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 addEventListener("load", async () => {
   await pause(1500);
-  const found = await (async () => { %s })();
+  let found = null;
+  try { found = await (async () => { %s })(); }
+  catch (problem) { troubles.push("script: " + problem.stack); }
   const text = document.createElement("pre");
   text.id = "found-by-the-test";
   text.textContent = JSON.stringify({found, troubles});
@@ -60,10 +62,8 @@ def opened(page, script, folder, width=1280):
     width: of the window, px.
     """
     copy = folder / "page.html"
-    copy.write_text(
-        page.replace("<head>", f"<head>{WATCH}", 1).replace("</body>", ACT % script + "</body>"),
-        encoding="utf-8",
-    )
+    body, end, after = page.replace("<head>", f"<head>{WATCH}", 1).rpartition("</body>")
+    copy.write_text(body + ACT % script + end + after, encoding="utf-8")
     run = subprocess.run(
         [
             str(FOUND),
