@@ -273,7 +273,7 @@ def test_every_axis_of_the_page_has_a_title_with_its_unit(page, two_directions):
                 assert names or re.search(r"\(.+\)$", title), (plot["name"], title)
 
 
-def test_study_without_identification_has_contact_and_stress_only(model):
+def test_without_identification_contact_and_stress_are_shown(model):
     study = MadeUpStudy(model)
     study.content = type(study.content)(
         study.config, [], study.content.statistics, study.content.limits, study.content.provenance
