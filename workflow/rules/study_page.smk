@@ -10,7 +10,9 @@ rule _study_page:
         spectra=files_of_study("spectra") if STUDY.identification is not None else [],
         curves=files_of_study("estimates") if STUDY.identification is not None else [],
         tables=(
-            [f"{RESULTS}/{name}.csv" for name in TABLES] if STUDY.identification is not None else []
+            [f"{RESULTS}/{name}.csv" for name in TABLES]
+            if STUDY.identification is not None
+            else []
         ),
         figures=[f"{RESULTS}/figures/{name}.png" for name in figures_of_study()],
         captions=[caption_file(name) for name in figures_of_study()],
