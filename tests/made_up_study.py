@@ -190,7 +190,7 @@ class MadeUpStudy:
 
     def plots(self):
         """The plots of the page."""
-        files = StudyFiles(self.model, self.paths, self.paths, self.summary, self.read)
+        files = StudyFiles(self.model, [], self.paths, self.paths, self.summary, self.read)
         return study_plots(self.content, files)
 
     def page(self):

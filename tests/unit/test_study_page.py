@@ -10,16 +10,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from tests.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_up_config
 from vibroimpact.config.reading import load_config
-from vibroimpact.figures.interactive.spectrum import blocks_of
+from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
 from vibroimpact.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.study_tables import Table, reason_table
-from vibroimpact.reports.study_words import run_sentence
+from vibroimpact.reports.study_words import contact_sentences, run_sentence
 from vibroimpact.study.cases import case_from_id
 
 ROOT = Path(__file__).parents[2]
@@ -189,6 +191,32 @@ def test_every_load_and_gap_has_its_spectrum(page, study):
     assert np.all(np.array(low["y"]) < np.array(mean["y"]))
 
 
+def test_time_series_stand_in_where_there_are_no_spectra(study):
+    time = np.arange(0.0, 16.0, 1.0 / 512.0)
+
+    def read(path, names):
+        # 2 mm x load at 20 Hz on the first sensor, half of it on the second.
+        wave = 2e-3 * case_from_id(Path(path).stem).load_rms_N * np.sin(2.0 * np.pi * 20.0 * time)
+        return xr.Dataset(
+            {"displacement": (("sensor", "time"), np.array([wave, 0.5 * wave]))},
+            {"sensor": ["first", "second"]},
+            {"sampling_frequency": 512.0},
+        )
+
+    places = [(GAPS[0], load) for load in LOADS]
+    settings = study.config.spectra  # segments of 4 s
+    sensor, frequency, spectra = spectra_of_series(study.paths, read, settings, places)
+    assert sensor == "first" and sorted(spectra) == sorted(places)
+    mean = spectra[GAPS[0], 10.0]["mean"]
+    assert frequency[np.argmax(mean)] == pytest.approx(20.0)
+    # The PSD sums to the mean square of a sine of 20 mm.
+    assert np.sum(mean) * (frequency[1] - frequency[0]) == pytest.approx(0.5 * 20e-3**2, rel=1e-3)
+    low, high = band_of(frequency, spectra)
+    assert 9.0 < low < 10.5 and 29.5 < high < 31.0
+    short = {"segment_s": 20.0, "overlap": 0.5, "window": "hann"}
+    assert spectra_of_series(study.paths, read, StageSettings(short), places)[2] == {}
+
+
 def test_blocks_of_lines_hold_each_line_once():
     frequency = np.arange(0.0, 1024.0, 0.05)
     edges = blocks_of(frequency, (5.0, 200.0))
@@ -311,6 +339,24 @@ def test_what_was_run_is_said_with_its_units(study, changes, words):
     told = run_sentence(made_up_config(**changes), study.content.statistics)
     assert words in told and "2 gaps (radial, 0.2 and 0.05 mm)" in told
     assert told.startswith("A U-tube with 2 gap supports") and "12 records of 16 s" in told
+
+
+def test_what_is_to_be_known_of_contact_is_said_with_its_case(study):
+    assert study.content.contact() == [
+        "Most contact: 80 % of the time, at 10 N RMS and a gap of 0.2 mm.",
+        "Largest wear work rate: 0.008 W, at 10 N RMS and a gap of 0.2 mm.",
+        "Largest stress: 250 MPa. Above the limit of 240 MPa: at 10 N RMS and a gap of 0.2 mm; at"
+        " 10 N RMS and a gap of 0.05 mm.",
+    ]
+    supports = [
+        {**support, "gap_m": gap}
+        for support, gap in zip(study.config.supports, (1e-4, 3e-4), strict=True)
+    ]
+    own = StageSettings({**study.config, "supports": supports})
+    assert "gaps of their own (from 0.1 to 0.3 mm)" in run_sentence(own, study.content.statistics)
+    assert contact_sentences(own, study.content.statistics)[0] == (
+        "Most contact: 80 % of the time, at 10 N RMS."
+    )
 
 
 def test_slider_of_a_large_study_keeps_both_ends():

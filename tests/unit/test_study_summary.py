@@ -16,6 +16,7 @@ from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.study_tables import Table
 
 ROOT = Path(__file__).parents[2]
+FINE = 4.0
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +45,7 @@ def contents(model):
 def boxes(page):
     """(text, left, bottom, right, top) of the texts of a page, in points."""
     canvas = FigureCanvasAgg(page.figure)
-    page.figure.set_dpi(72.0)
+    page.figure.set_dpi(72.0 * FINE)  # the hinting of letters widens texts at low resolution
     canvas.draw()
     artists = [*page.figure.texts]
     for axes in page.figure.axes:
@@ -53,7 +54,7 @@ def boxes(page):
         artists += legend.get_texts()
     renderer = canvas.get_renderer()
     return [
-        (artist.get_text(), *artist.get_window_extent(renderer).extents)
+        (artist.get_text(), *(artist.get_window_extent(renderer).extents / FINE))
         for artist in artists
         if artist.get_text()
     ]

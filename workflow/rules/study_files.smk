@@ -94,6 +94,12 @@ def figure_files(group):
     ]
 
 
+def series_shown():
+    """The time series that the page of a study without spectra shows."""
+    kept = STUDY.record.keep_time_series and not STUDY.record.every_step
+    return files_of_study("timeseries") if kept and STUDY.identification is None else []
+
+
 def caption_file(name):
     """The file with the caption, title and category of a figure or table."""
     return f"{CAPTIONS}/{name}.rst"

@@ -7,6 +7,7 @@ rule _study_page:
         page=[str(file) for file in sorted(Path(SOURCE).glob("vibroimpact/reports/*study_page.*"))],
         model=f"{RESULTS}/model.nc",
         records=files_of_study("records"),
+        series=series_shown(),
         spectra=files_of_study("spectra") if STUDY.identification is not None else [],
         curves=files_of_study("estimates") if STUDY.identification is not None else [],
         tables=(

@@ -22,13 +22,16 @@ redirect_output(snakemake.log[0])
 config, given = StageSettings(snakemake.params.config), snakemake.input
 tables = {Path(path).stem: read_table(path) for path in given.tables}
 summary = tables.get("consistency_summary", [])
-written = {
-    "reduced model": given.model,
-    "simulation": given.records[0],
-    **{"spectra": path for path in given.spectra[:1]},
-    **{"identification": path for path in given.curves[:1]},
+stages = {
+    stage: read_attributes(paths[0])
+    for stage, paths in (
+        ("reduced model", [given.model]),
+        ("simulation", given.records),
+        ("spectra", given.spectra),
+        ("identification", given.curves),
+    )
+    if paths
 }
-stages = {stage: read_attributes(path) for stage, path in written.items()}
 content = StudyContent(
     config,
     answers(summary, tables.get("equivalent"), direction_of(config)),
@@ -36,7 +39,8 @@ content = StudyContent(
     limits(config.integration),
     provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
 )
-files = StudyFiles(read_model(given.model), given.spectra, given.curves, summary, read_record)
+model = read_model(given.model)
+files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_record)
 captions = {caption.name: caption for caption in map(read_caption, given.captions)}
 page = study_page(content, study_plots(content, files), pictures(given.figures, captions))
 write_text(page, snakemake.output.page)

@@ -127,7 +127,7 @@ def _contact_tables(page: PrintedPage, content: StudyContent, most: float) -> No
     """Write contact and wear of the first and the last gap; most: height of each in points."""
     loads = max(int((most - 41.0) / ROW_PT) // len(content.statistics.supports), 2)
     for gap, table in _ends(content.contact_tables(min(loads, MOST_LOADS))):
-        page.paragraph(f"Gap {1e3 * gap:.3g} mm, medians over seeds:", size=8.0)
+        page.paragraph(f"Medians over seeds{content.at_gap(gap)}:", size=8.0)
         page.table(table, most)
 
 

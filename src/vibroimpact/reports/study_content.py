@@ -24,7 +24,7 @@ from .study_tables import (
     stress_table,
     timing_table,
 )
-from .study_words import contact_sentences, headline, load_unit, run_sentence
+from .study_words import contact_sentences, has_own_gaps, headline, load_unit, run_sentence
 
 MOST_LOADS = 8  # of a table of statistics, per gap
 
@@ -45,12 +45,18 @@ class Provenance:
     timing: Sequence[dict] = ()
 
     def stage_table(self) -> Table:
-        """Return the digests of configuration and source of each stage."""
+        """Return when each stage wrote its results, and the digests of its keys and source."""
         rows = [
-            (stage, values.get("config_digest", "-"), values.get("source_digest", "-"))
+            (
+                stage,
+                values.get("history", "-").split(" written")[0].replace("T", " "),
+                values.get("config_digest", "-"),
+                values.get("source_digest", "-"),
+            )
             for stage, values in self.stages.items()
         ]
-        return Table(("results of", "digest of its configuration", "digest of its source"), rows)
+        columns = ("results of", "written (UTC)", "digest of configuration", "digest of source")
+        return Table(columns, rows)
 
     @property
     def versions(self) -> str:
@@ -69,7 +75,7 @@ def provenance(
     stages: {stage: global attributes of one of its files}.
     """
     text = yaml.safe_dump(dict(configuration), sort_keys=False, allow_unicode=True, width=96)
-    kept = ("config_digest", "source_digest", "versions")
+    kept = ("history", "config_digest", "source_digest", "versions")
     return Provenance(
         text,
         vibroimpact.__version__,
@@ -122,11 +128,11 @@ class StudyContent:
 
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""
-        return contact_sentences(self.statistics, self.config.record.stress_limit_Pa, self.unit)
+        return contact_sentences(self.config, self.statistics)
 
     def at_gap(self, gap_m: float) -> str:
-        """Return "at a gap of ... mm", empty for a structure without supports."""
-        return f" at a gap of {digits(1e3 * gap_m)} mm" if self.config.supports else ""
+        """Return " at a gap of ... mm", empty where the gap of a case means nothing."""
+        return "" if has_own_gaps(self.config) else f" at a gap of {digits(1e3 * gap_m)} mm"
 
     def loads_in_tables(self, most: int = MOST_LOADS) -> list[float]:
         """Return the loads that tables of statistics list."""

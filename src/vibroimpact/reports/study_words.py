@@ -42,10 +42,10 @@ def run_sentence(config: Any, statistics: StudyStatistics) -> str:
     supports = len(config.supports)
     held = f" with {supports} gap support{'s' * (supports != 1)}" if supports else ""
     loads, gaps, seeds = statistics.loads, statistics.gaps, config.grid.seeds
-    own = [support.gap_m for support in config.supports if support.gap_m is not None]
+    own = [support.gap_m for support in config.supports]
     gaps_in_words = (
         f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)"
-        if supports and len(own) == supports
+        if has_own_gaps(config)
         else f"{_count(gaps, 'gap')} (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm)"
     )
     kinds = (
@@ -162,45 +162,40 @@ def place_in_words(gap_m: float, group: str, direction: str, several: bool | Non
     return f"gap {digits(1e3 * gap_m)} mm{place}"
 
 
-def contact_sentences(statistics: StudyStatistics, limit_Pa: float, unit: str) -> list[str]:
-    """Return what is to be known of contact, wear and stress.
-
-    limit_Pa: of the stress.
-    unit: of the load.
-    """
+def contact_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
+    """Return what is to be known of contact, wear and stress."""
     sentences = []
     touching, gap, load = statistics.largest("contact_fraction")
     if math.isfinite(touching):
-        if touching == 0.0:
-            sentences.append("No support is touched in any case.")
-        else:
-            sentences.append(
-                f"Most contact: {_percent(touching)} of the time, at {digits(load)} {unit} RMS and"
-                f" a gap of {digits(1e3 * gap)} mm."
-            )
+        sentences.append(
+            f"Most contact: {digits(100.0 * touching)} % of the time, {_where(config, gap, load)}."
+            if touching > 0.0
+            else "No support is touched in any case."
+        )
     wear, gap, load = statistics.largest("wear_work_rate")
     if math.isfinite(wear) and wear > 0.0:
-        sentences.append(
-            f"Largest wear work rate: {digits(wear)} W, at {digits(load)} {unit} RMS and a gap of"
-            f" {digits(1e3 * gap)} mm."
-        )
-    stress, gap, load = statistics.largest("stress_peak")
+        sentences.append(f"Largest wear work rate: {digits(wear)} W, {_where(config, gap, load)}.")
+    stress, _, _ = statistics.largest("stress_peak")
     if math.isfinite(stress):
-        sentences.append(_stress(statistics, stress, limit_Pa, unit))
+        sentences.append(_stress(config, statistics, stress))
     return sentences
 
 
-def _stress(statistics: StudyStatistics, stress: float, limit_Pa: float, unit: str) -> str:
-    limit = f"the limit of {digits(1e-6 * limit_Pa)} MPa"
+def has_own_gaps(config: Any) -> bool:
+    """Whether every support has a gap of its own, so that the gap of a case means nothing."""
+    return all(support.gap_m is not None for support in config.supports)
+
+
+def _where(config: Any, gap_m: float, load: float) -> str:
+    gap = "" if has_own_gaps(config) else f" and a gap of {digits(1e3 * gap_m)} mm"
+    return f"at {digits(load)} {load_unit(config)} RMS{gap}"
+
+
+def _stress(config: Any, statistics: StudyStatistics, stress: float) -> str:
+    limit = f"the limit of {digits(1e-6 * config.record.stress_limit_Pa)} MPa"
     flagged = statistics.flagged()
     if not flagged:
         return f"Largest stress: {digits(1e-6 * stress)} MPa; no case exceeds {limit}."
-    named = "; ".join(
-        f"{digits(load)} {unit} RMS at {digits(1e3 * gap)} mm" for gap, load in flagged[:4]
-    )
+    named = "; ".join(_where(config, gap, load) for gap, load in flagged[:4])
     more = f" and {len(flagged) - 4} more" if len(flagged) > 4 else ""
     return f"Largest stress: {digits(1e-6 * stress)} MPa. Above {limit}: {named}{more}."
-
-
-def _percent(fraction: float) -> str:
-    return f"{digits(100.0 * fraction)} %"

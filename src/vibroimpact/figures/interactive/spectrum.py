@@ -4,22 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.figures.style import BLUE
+from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import case_from_id
 
 from .plot import Plot, axis, key_of, label, layout, numbers
 
 STATISTICS = ("mean", "min", "max")
+SERIES = ("displacement",)
+MOST_DECADES = 10.0  # of the axis; below is round-off of a sine
+OUTSIDE = 1e-4  # share of the power that a band may leave out at each end
+Place = tuple[float, float]  # gap in m, load
+Band = tuple[float, float]
 BLOCKS = 700  # of the frequency axis
 COLUMN = "psd_m2_per_Hz"
 
 
 def spectra_of_sensor(
-    paths: Sequence[str | Path], read: Callable, sensor: str, places: Sequence[tuple[float, float]]
-) -> tuple[np.ndarray, dict[tuple[float, float], dict[str, np.ndarray]]]:
+    paths: Sequence[str | Path], read: Callable, sensor: str, places: Sequence[Place]
+) -> tuple[np.ndarray, dict[Place, dict[str, np.ndarray]]]:
     """Return (frequency in Hz, {(gap in m, load): {statistic: PSD in m²/Hz}}) of one sensor.
 
     paths: files of spectra named after their cases; read: function (path, names).
@@ -29,8 +36,8 @@ def spectra_of_sensor(
     """
     names = [f"psd_displacement_{statistic}" for statistic in STATISTICS]
     combine = {"mean": np.add, "min": np.minimum, "max": np.maximum}
-    found: dict[tuple[float, float], dict[str, np.ndarray]] = {}
-    counts: dict[tuple[float, float], int] = {}
+    found: dict[Place, dict[str, np.ndarray]] = {}
+    counts: dict[Place, int] = {}
     frequency = np.zeros(0)
     for path in paths:
         case = case_from_id(Path(path).stem)
@@ -52,7 +59,55 @@ def spectra_of_sensor(
     return frequency, found
 
 
-def blocks_of(frequency: np.ndarray, band_Hz: tuple[float, float]) -> np.ndarray:
+def spectra_of_series(
+    paths: Sequence[str | Path], read: Callable, settings: Any, places: Sequence[Place]
+) -> tuple[str, np.ndarray, dict[Place, dict[str, np.ndarray]]]:
+    """Return (sensor, frequency, spectra) as spectra_of_sensor does, from time series.
+
+    For a study that keeps its time series and identifies nothing. The sensor is the one that moves
+    most at the largest load; the spectra are those of the first seed. They are empty where no
+    segment fits in a record.
+
+    paths: files of time series named after their cases.
+    settings: section of the configuration with segment_s, overlap and window.
+    """
+    first: dict[Place, str | Path] = {}
+    for path in paths:
+        case = case_from_id(Path(path).stem)
+        if (case.gap_m, case.load_rms_N) in places:
+            first.setdefault((case.gap_m, case.load_rms_N), path)
+    if not first:
+        return "", np.zeros(0), {}
+    loudest = read(first[max(first, key=lambda place: place[1])], SERIES)
+    at = int(np.argmax(np.mean(np.square(loudest["displacement"].values), axis=-1)))
+    found, frequency = {}, np.zeros(0)
+    for place, path in first.items():
+        dataset = read(path, SERIES)
+        rate = float(dataset.attrs["sampling_frequency"])
+        signal = dataset["displacement"].values[at]
+        if signal.size < settings.segment_s * rate:
+            return "", np.zeros(0), {}
+        segments = segment_spectra(signal, rate, settings)
+        frequency = segments.frequency
+        found[place] = {
+            name: values[0].astype(float)
+            for name, values in zip(STATISTICS, psd_statistics(segments.values), strict=True)
+        }
+    return str(loudest["sensor"].values[at]), frequency, found
+
+
+def band_of(frequency: np.ndarray, spectra: dict[Place, dict[str, np.ndarray]]) -> Band:
+    """Return (low, high) in Hz of the band that holds nearly all of the motion at every load."""
+    low, high = frequency[-1], frequency[1]
+    for values in spectra.values():
+        power = np.cumsum(values["mean"][1:])
+        inside = frequency[1:][(power > OUTSIDE * power[-1]) & (power < (1 - OUTSIDE) * power[-1])]
+        if inside.size:
+            low, high = min(low, inside[0]), max(high, inside[-1])
+    return max(0.5 * low, frequency[1]), min(1.5 * high, frequency[-1])
+
+
+def blocks_of(frequency: np.ndarray, band_Hz: Band) -> np.ndarray:
     """Return the first indices of blocks of lines inside a band, then the index after the last.
 
     Blocks grow with frequency: a low one holds one line, so that no low peak is blunted.
@@ -67,10 +122,10 @@ def blocks_of(frequency: np.ndarray, band_Hz: tuple[float, float]) -> np.ndarray
 
 def spectrum_plot(
     frequency: np.ndarray,
-    spectra: dict[tuple[float, float], dict[str, np.ndarray]],
-    places: Sequence[tuple[str, tuple[float, float]]],
+    spectra: dict[Place, dict[str, np.ndarray]],
+    places: Sequence[tuple[str, Place]],
     sensor: str,
-    band_Hz: tuple[float, float],
+    band_Hz: Band,
 ) -> Plot:
     """Return the Plot of the spectrum of a sensor by gap and load.
 
@@ -114,9 +169,7 @@ def spectrum_plot(
     )
 
 
-def frame_places(
-    gaps: Sequence[float], loads: Sequence[float]
-) -> list[tuple[str, tuple[float, float]]]:
+def frame_places(gaps: Sequence[float], loads: Sequence[float]) -> list[tuple[str, Place]]:
     """Return (key of the frame, (gap, load)) of every position of the controls."""
     return [
         (key_of(row, column), (gap, load))
@@ -164,5 +217,5 @@ def _ranges(frames):
         positive = [value for value in mean["y"] if value]
         if positive:
             ends[key] = np.log10(min(positive)) - 1.0, np.log10(max(high["y"])) + 0.3
-    decades = max((high - low for low, high in ends.values()), default=0.0)
+    decades = min(max((high - low for low, high in ends.values()), default=0.0), MOST_DECADES)
     return {key: numbers([high - decades, high]) for key, (_, high) in ends.items()}

@@ -17,7 +17,13 @@ from vibroimpact.spectra.welch import driven_axis
 from .equivalent import equivalent_plots, places_of
 from .plot import Control, Plot, plotly_library
 from .shape import contact_along_plot, shape_plot, shapes_of
-from .spectrum import frame_places, spectra_of_sensor, spectrum_plot
+from .spectrum import (
+    band_of,
+    frame_places,
+    spectra_of_sensor,
+    spectra_of_series,
+    spectrum_plot,
+)
 from .statistics import contact_plots, energy_plot, stress_plots
 
 MOST_FRAMES = 144  # spectra on the page, gaps times loads: 20 kB each
@@ -27,12 +33,14 @@ class StudyFiles(NamedTuple):
     """What the plots are made of; spectra and curves are empty without an identification.
 
     model: ModalModel.
+    series: paths of the time series, which are used where there are no spectra.
     spectra, curves: paths of the spectra and of the estimates, named after their cases.
     summary: rows of consistency_summary.csv.
     read: function (path, names) as records.read_record.
     """
 
     model: Any
+    series: Sequence[str]
     spectra: Sequence[str]
     curves: Sequence[str]
     summary: Sequence[dict]
@@ -57,9 +65,12 @@ def study_plots(content: StudyContent, files: StudyFiles) -> PagePlots:
     title = load_label(config)
     frames = frame_places(gaps, loads)
     contact = contact_plots(statistics, gaps, title)
-    response = _response_plots(content, files, frames) if files.spectra else []
+    respond = _response_plots if files.spectra else _response_of_series
+    response = respond(content, files, frames)
     if contact:
-        (response or contact).append(contact_along_plot(statistics, frames, files.model))
+        beside_shape = any(plot.name == "shape" for plot in response)
+        along = contact_along_plot(statistics, frames, files.model)
+        (response if beside_shape else contact).append(along)
     energy = energy_plot(statistics, dict(content.limits), title)
     sections = {
         "answer": _answer_plots(content, files, title),
@@ -92,6 +103,16 @@ def _answer_plots(content: StudyContent, files: StudyFiles, title: str) -> list[
         return []
     summary = with_places(files.summary, direction_of(content.config))
     return equivalent_plots(content.answers, summary, title)
+
+
+def _response_of_series(content, files, frames):
+    places = [place for _, place in frames]
+    settings = content.config.spectra
+    sensor, frequency, spectra = spectra_of_series(files.series, files.read, settings, places)
+    if not spectra:
+        return []
+    band = band_of(frequency, spectra)
+    return [spectrum_plot(frequency, spectra, frames, sensor, band)]
 
 
 def _response_plots(content, files, frames):
