@@ -2,6 +2,7 @@
 has its caption.
 """
 
+import io
 import json
 import math
 import re
@@ -11,18 +12,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 
 from tests.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_up_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.interactive.pictures import few_colours
+from vibroimpact.figures.interactive.shape import contact_along_plot
 from vibroimpact.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
 from vibroimpact.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.equivalent_answer import Answer, Value
+from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.reports.study_tables import Table, reason_table
 from vibroimpact.reports.study_words import contact_sentences, run_sentence
-from vibroimpact.study.cases import case_from_id
+from vibroimpact.study.cases import all_cases, case_from_id
 
 ROOT = Path(__file__).parents[2]
 CAPTIONS = ROOT / "workflow" / "report"
@@ -357,6 +362,64 @@ def test_what_is_to_be_known_of_contact_is_said_with_its_case(study):
     assert contact_sentences(own, study.content.statistics)[0] == (
         "Most contact: 80 % of the time, at 10 N RMS."
     )
+
+
+def test_structure_without_supports_has_no_gap_in_its_words(study):
+    free = StageSettings({**study.config, "supports": []})
+    told = run_sentence(free, study.content.statistics)
+    assert told.startswith("A U-tube under a random force") and "gap" not in told
+
+
+def test_supports_of_a_chain_stand_side_by_side_by_name():
+    config = check_config(
+        {
+            "study": "chain",
+            "structure": {
+                "kind": "chain",
+                "masses": [{"name": "mass", "mass_kg": 2.0}],
+                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": 2.0e4}],
+            },
+            "supports": [
+                {
+                    "name": "stop",
+                    "point": "mass",
+                    "stiffness_N_per_m": 1.0e6,
+                    "profile": {"kind": "planes", "normals_deg": [0.0]},
+                }
+            ],
+            "excitation": {
+                "kind": "band_limited",
+                "point": "mass",
+                "direction": [1.0, 0.0, 0.0],
+                "band_Hz": [2.0, 60.0],
+            },
+            "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1},
+            "record": {"duration_s": 5.0},
+        },
+        "chain",
+    )
+    case = all_cases(config.grid)[0]
+    touched = xr.Dataset(
+        {"contact_fraction": ("support", [0.25], {"units": "1"})},
+        {"support": ["stop"]},
+        {"load_rms_N": case.load_rms_N, "gap_m": case.gap_m, "seed": 0},
+    )
+    statistics = study_statistics([f"{case.id}.nc"], lambda path, names=None: touched)
+    plot = contact_along_plot(statistics, [("0,0", (1.0e-3, 1.0))], build_model(config))
+    (bars,) = plot.frames["0,0"]
+    assert (bars["x"], bars["y"]) == (["stop"], [25.0])
+    assert plot.layout["xaxis"]["type"] == "category" and statistics.sections == []
+
+
+def test_small_picture_looks_like_the_figure(tmp_path):
+    across = np.linspace(0.0, 255.0, 400).astype(np.uint8)
+    colours = np.stack(np.broadcast_arrays(across, across[:, None], 128), axis=-1)
+    path = tmp_path / "figure.png"
+    Image.fromarray(colours.astype(np.uint8)).save(path)
+    small = Image.open(io.BytesIO(few_colours(path)))
+    assert small.size == (400, 400) and small.mode == "P"
+    difference = np.abs(np.asarray(small.convert("RGB"), int) - colours)
+    assert difference.mean() < 8.0  # of 255; 40000 colours became 256
 
 
 def test_slider_of_a_large_study_keeps_both_ends():

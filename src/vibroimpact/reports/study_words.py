@@ -45,7 +45,7 @@ def run_sentence(config: Any, statistics: StudyStatistics) -> str:
     own = [support.gap_m for support in config.supports]
     gaps_in_words = (
         f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)"
-        if has_own_gaps(config)
+        if supports and has_own_gaps(config)
         else f"{_count(gaps, 'gap')} (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm)"
     )
     kinds = (

@@ -142,7 +142,8 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 def log_axis(title: str, frames: dict[str, list[dict]], **more: Any) -> dict[str, Any]:
     """Return a logarithmic axis of the y values of frames.
 
-    Up to four decades have ticks at 1, 2 and 5 in plain numbers, more have powers of ten only.
+    Up to four decades have ticks at 1, 2 and 5 in plain numbers, more have powers of ten only, and
+    less than one is left to plotly.js.
     """
     values = [
         value
@@ -153,9 +154,11 @@ def log_axis(title: str, frames: dict[str, list[dict]], **more: Any) -> dict[str
     ]
     decades = float(np.log10(max(values) / min(values))) if values else 1.0
     ticks: dict[str, Any] = {"dtick": "D2", "tickformat": "~g"}
-    if decades > PLAIN_DECADES:
+    if decades < 1.0:
+        ticks = {"nticks": 6, "tickformat": "~g"}
+    elif decades > PLAIN_DECADES:
         ticks = {"dtick": int(np.ceil(decades / 6.0))}
-    elif max(values, default=1.0) >= 1e4:
+    if decades <= PLAIN_DECADES and max(values, default=1.0) >= 1e4:
         ticks["tickformat"] = "~s"
     return axis(title, **{"type": "log", "zerolinecolor": GRID, **ticks, **more})
 

@@ -126,12 +126,14 @@ def spectrum_plot(
     places: Sequence[tuple[str, Place]],
     sensor: str,
     band_Hz: Band,
+    over: str = "segments and seeds",
 ) -> Plot:
     """Return the Plot of the spectrum of a sensor by gap and load.
 
     frequency, spectra: of spectra_of_sensor.
     places: (key of the frame, (gap, load)).
     band_Hz: the band that is shown.
+    over: what the mean is taken over.
     """
     edges = blocks_of(frequency, band_Hz)
     sizes = np.diff(edges)
@@ -151,7 +153,7 @@ def spectrum_plot(
         "spectrum",
         f"Spectrum of the displacement at {sensor}",
         (
-            "Power spectral density at the chosen gap and load: mean over segments and seeds"
+            f"Power spectral density at the chosen gap and load: mean over {over}"
             " (line), smallest and largest segment (band). Move the slider to see the peaks move"
             " and widen as the contact sets in; the axis follows the level and keeps its decades."
         ),

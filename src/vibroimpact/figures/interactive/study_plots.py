@@ -112,7 +112,8 @@ def _response_of_series(content, files, frames):
     if not spectra:
         return []
     band = band_of(frequency, spectra)
-    return [spectrum_plot(frequency, spectra, frames, sensor, band)]
+    over = "segments of the first seed"
+    return [spectrum_plot(frequency, spectra, frames, sensor, band, over)]
 
 
 def _response_plots(content, files, frames):
