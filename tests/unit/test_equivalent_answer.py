@@ -72,3 +72,4 @@ def test_a_group_named_by_a_number_is_a_text():
     row = with_places([{"gap_m": 1e-4, "group": 1, "direction": "x"}], "y")[0]
     assert (row["group"], row["direction"]) == ("1", "x")
     assert with_places([{"gap_m": 1e-4}], "y")[0]["direction"] == "y"
+    assert with_places([{"gap_m": 1e-4, "group": ""}], "y")[0]["group"] == "all"

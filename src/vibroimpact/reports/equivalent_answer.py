@@ -60,14 +60,13 @@ class Answer:
 
 
 def with_places(rows: Iterable[dict], direction: str) -> list[dict]:
-    """Return table rows with a group and a direction.
+    """Return table rows with a group and a direction, both texts.
 
-    direction: of rows without; tables of one group have neither column.
+    direction: of rows without; tables of one group may have neither column, or leave it empty.
     """
+    default = {"group": ALL_SUPPORTS, "direction": direction}
     return [
-        {"group": ALL_SUPPORTS, "direction": direction}
-        | row
-        | {key: str(row[key]) for key in ("group", "direction") if key in row}
+        row | {key: str(row.get(key, "")) or value for key, value in default.items()}
         for row in rows
     ]
 

@@ -13,7 +13,8 @@ from vibroimpact.records import read_text
 from vibroimpact.reports.captions import Caption
 from vibroimpact.reports.study_page import Picture
 
-COLOURS = 256  # of a picture on the page, which takes a third of the file's size
+LARGE_BYTES = 150_000  # files above it get a palette, which takes a third of their size
+COLOURS = 256
 
 
 def pictures(paths: Iterable[str | Path], captions: Mapping[str, Caption]) -> list[Picture]:
@@ -34,11 +35,15 @@ def pictures(paths: Iterable[str | Path], captions: Mapping[str, Caption]) -> li
 
 
 def few_colours(path: Path) -> bytes:
-    """Return a PNG file's picture as the bytes of a PNG with COLOURS colours."""
+    """Return the bytes of a PNG file; those of a large one as a picture with COLOURS colours."""
+    data = path.read_bytes()
+    if len(data) <= LARGE_BYTES:
+        return data
     target = io.BytesIO()
     with Image.open(path) as picture:
+        # Median cut keeps the colour maps smooth.
         reduced = picture.convert("RGB").quantize(
-            COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE
+            COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
         )
     reduced.save(target, "PNG")
     return target.getvalue()
