@@ -83,6 +83,8 @@ def test_numbers_of_the_summary_are_those_of_the_study(model):
     below = [text for text, *_ in boxes(second)]
     for value in ("405", "250", "root start", "yes", "c: differ", "0a1b"):
         assert value in below
+    # All three loads fit: at 1 N the largest force on the left is 40 and 50 N, at both gaps.
+    assert below.count("45") == 2
 
 
 def test_pdf_has_two_pages_of_a4(model, tmp_path):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,7 @@ from .style import GAP_COLOURS, GAP_MARKERS, label_of, shown, tidy_log_axis
 
 MOST_CURVES = 6
 # Heights in points.
-FIGURE_PT, LEAST_PT, HEADING_PT, GAP_LINE_PT, ROW_PT = 190.0, 99.0, 27.0, 14.0, 9.6
+FIGURE_PT, LEAST_PT, HEADING_PT, GAP_LINE_PT = 190.0, 99.0, 27.0, 14.0
 
 
 def study_summary(content: StudyContent, path: str | Path) -> None:
@@ -90,8 +90,7 @@ def _second_page(content: StudyContent) -> PrintedPage:
         _contact_tables(page, content, most[0])
     if content.statistics.sections:
         page.heading("Stress")
-        rows = int((most[-2] - 41.0) / ROW_PT) // len(content.statistics.gaps)
-        page.table(content.stress(max(rows, 2)), most[-2])
+        page.table(content.stress(_loads_that_fit(content.stress, most[-2])), most[-2])
     if content.answers:
         page.heading("What is not resolved, and why")
         if reasons.rows:
@@ -125,10 +124,19 @@ def _shares(needed: Sequence[float], page: PrintedPage, fixed: float) -> list[fl
 
 def _contact_tables(page: PrintedPage, content: StudyContent, most: float) -> None:
     """Write contact and wear of the first and the last gap; most: height of each in points."""
-    loads = max(int((most - 41.0) / ROW_PT) // len(content.statistics.supports), 2)
-    for gap, table in _ends(content.contact_tables(min(loads, MOST_LOADS))):
+    loads = _loads_that_fit(lambda count: content.contact_tables(count)[0][1], most)
+    for gap, table in _ends(content.contact_tables(loads)):
         page.paragraph(f"Medians over seeds{content.at_gap(gap)}:", size=8.0)
         page.table(table, most)
+
+
+def _loads_that_fit(table: Callable[[int], Table], most_pt: float) -> int:
+    """Return the number of loads, at least two, whose table takes at most a height.
+
+    table: of a number of loads.
+    """
+    fitting = (n for n in range(MOST_LOADS, 2, -1) if height_pt(table(n)) <= most_pt + 0.5)
+    return next(fitting, 2)
 
 
 def _ends(values: Sequence) -> list:
