@@ -9,6 +9,9 @@ if not workflow.configfiles:
     configfile: "config/study.yaml"
 
 
+report: "workflow/report/study.rst"
+
+
 include: "workflow/rules/configuration.smk"
 include: "workflow/rules/study_files.smk"
 include: "workflow/rules/completed_campaigns.smk"
@@ -17,6 +20,7 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/identify.smk"
 include: "workflow/rules/campaign.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/study_page.smk"
 include: "workflow/rules/import.smk"
 include: "workflow/rules/discrepancy_files.smk"
 include: "workflow/rules/discrepancy_quick.smk" if QUICK else "workflow/rules/discrepancy.smk"
@@ -43,7 +47,7 @@ rule all:
     input:
         targets(),
     message:
-        f"Study '{STUDY.study}' is complete: tables and figures in {RESULTS}"
+        f"Study '{STUDY.study}' is complete: {RESULTS}/index.html"
 
 
 rule discrepancy:

@@ -186,6 +186,11 @@ def module_of_figures(file):
     return LIBRARY in file.parents and module_of(file).split(".")[0] == "figures"
 
 
+def test_plotly_stays_in_the_interactive_figures():
+    found = [file for file in [*FILES, *SCRIPTS] if "plotly" in imported_tops(file)]
+    assert found and {file.parent for file in found} == {LIBRARY / "figures" / "interactive"}
+
+
 def test_compiled_code_stays_in_the_kernels():
     # The cache of compiled code sees edits in the files of this folder only.
     assert [
@@ -343,7 +348,7 @@ def test_test_names_are_short():
 
 def test_no_line_is_longer_than_100_columns():
     folders = ("src", "tests", "workflow", "examples", "benchmarks", "config", "docs")
-    endings = {".py", ".pyi", ".smk", ".yaml", ".toml", ".html", ".css", ".in"}
+    endings = {".py", ".pyi", ".smk", ".yaml", ".toml", ".html", ".css", ".js", ".rst", ".in"}
     files = [file for folder in folders for file in (ROOT / folder).rglob("*")]
     files = [file for file in [*files, *ROOT.glob("*")] if file.suffix in endings]
     files += [ROOT / "Makefile", ROOT / "Snakefile", ROOT / ".ci" / "run"]

@@ -175,6 +175,17 @@ def _variable(stored: netCDF4.Variable) -> tuple[xr.Variable, list[str]]:
     return xr.Variable(stored.dimensions, stored[...], attributes, fastpath=True), auxiliary
 
 
+def read_attributes(path: str | Path) -> dict[str, Any]:
+    """Return the global attributes of a netCDF file. Raises RecordError."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            return {name: file.getncattr(name) for name in file.ncattrs()}
+    except OSError as error:
+        raise RecordError(
+            f"{path}: cannot be read as netCDF ({error}): delete it and run again"
+        ) from error
+
+
 def read_dataset(path: str | Path) -> xr.Dataset:
     """Return the dataset of any netCDF file, decoded by the CF conventions. Raises RecordError."""
     try:

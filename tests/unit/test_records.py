@@ -100,6 +100,15 @@ def test_a_broken_file_is_named(tmp_path):
         records.read_record(tmp_path / "broken.nc")
 
 
+def test_attributes_are_read_without_the_data(tmp_path):
+    written = xr.Dataset({"value": ("x", np.zeros(3))}, attrs={"source_digest": "0a1b", "seed": 4})
+    records.write_record(written, tmp_path / "file.nc")
+    found = records.read_attributes(tmp_path / "file.nc")
+    assert (found["source_digest"], found["seed"]) == ("0a1b", 4)
+    with pytest.raises(records.RecordError, match="absent.nc: cannot be read"):
+        records.read_attributes(tmp_path / "absent.nc")
+
+
 def test_an_empty_table_keeps_its_header(tmp_path):
     records.write_table([], tmp_path / "table.csv", ("a", "b"))
     assert (tmp_path / "table.csv").read_text().strip() == "a,b"

@@ -10,7 +10,7 @@ import pytest
 from vibroimpact.figures.study.timing import timing
 from vibroimpact.records import RecordError
 from vibroimpact.stopwatch import Stopwatch, seconds_in
-from vibroimpact.study.timing import study_timing
+from vibroimpact.study.timing import study_timing, timing_so_far
 
 HEADER = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time"
 
@@ -111,3 +111,13 @@ def test_stopwatch_times_are_read_back_from_the_log():
     told = seconds_in("before\n" + stopwatch.line() + "\nafter")
     assert set(told) == {"work", "more work", "all"} and told["more work"] == 1.25
     assert seconds_in("nothing") == {}
+
+
+def test_timing_so_far_leaves_out_jobs_without_their_files(paths):
+    benchmarks, logs = paths
+    whole = timing_so_far(benchmarks, logs)
+    assert whole == study_timing(benchmarks, logs)
+    logs[0].unlink()
+    rows = timing_so_far(benchmarks, logs)
+    assert next(row for row in rows if row["rule"] == "all")["jobs"] == 3
+    assert timing_so_far([], []) == []

@@ -35,6 +35,7 @@ AFTER_SPECTRA = {
     "figures_response",
     "figures_identification",
     "figures_checks",
+    "study_page",
     "all",
 }
 
@@ -121,7 +122,7 @@ def study(tmp_path_factory):
 
 def test_the_default_study_is_planned_with_one_job_per_load(study):
     plan = study.plan(values=yaml.safe_load((ROOT / "config" / "study.yaml").read_text()))
-    once = {"basis", "synthetic_campaign", "consistency", "all"} | FIGURES
+    once = {"basis", "synthetic_campaign", "consistency", "study_page", "all"} | FIGURES
     assert plan == {"simulate_to_spectra": 24, "identify": 6, **dict.fromkeys(once, 1)}
 
 
@@ -138,7 +139,15 @@ def test_an_interrupted_study_continues_where_it_stopped(study):
     done = {"basis", "simulate", "spectra", "figures_model", "figures_response"}
     assert (
         set(study.plan_when_stopped)
-        == {"identify", "consistency", "figures_identification", "figures_checks", "all"} - done
+        == {
+            "identify",
+            "consistency",
+            "figures_identification",
+            "figures_checks",
+            "study_page",
+            "all",
+        }
+        - done
     )
     assert study.plan_when_stopped["identify"] == 2
     assert study.finished.returncode == 0, study.finished.stderr
@@ -149,6 +158,8 @@ def test_complete_study_has_tables_figures_and_no_jobs_left(study):
         "consistency.csv",
         "consistency_summary.csv",
         "consistency.nc",
+        "index.html",
+        "summary.pdf",
         "basis_quality.csv",
         "figures/figure_01_layout.png",
     ):
@@ -221,14 +232,17 @@ def test_the_timing_is_made_on_request_from_all_jobs(study):
 
 @pytest.mark.slow
 def test_edited_figure_or_method_reruns_no_simulation(study):
-    assert study.plan_after_edit("figures/study/shapes.py") == {"figures_identification", "all"}
+    after_figure = {"figures_identification", "study_page", "all"}
+    assert study.plan_after_edit("figures/study/shapes.py") == after_figure
     assert study.plan_after_edit("identify/lscf.py") == {
         "identify",
         "consistency",
         "figures_identification",
         "figures_checks",
+        "study_page",
         "all",
     }
+    assert study.plan_after_edit("reports/study_words.py") == {"study_page", "all"}
 
 
 @pytest.mark.slow

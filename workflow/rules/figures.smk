@@ -6,7 +6,7 @@ rule _figures_model:
         library=library("figures_model"),
         quality=f"{RESULTS}/basis_quality.csv",
     output:
-        figures=figure_files("model"),
+        figures=reported_figures("model"),
     log:
         f"{RESULTS}/logs/figures_model.log",
     benchmark:
@@ -30,7 +30,7 @@ rule _figures_response:
         campaign=STUDY.overlay.campaign or f"{RESULTS}/synthetic_campaign.nc",
         spectra=files_of_study("spectra"),
     output:
-        figures=figure_files("response"),
+        figures=reported_figures("response"),
     log:
         f"{RESULTS}/logs/figures_response.log",
     benchmark:
@@ -55,7 +55,7 @@ rule _figures_identification:
         curves=files_of_study("estimates"),
         table=f"{RESULTS}/consistency.csv",
     output:
-        figures=figure_files("identification"),
+        figures=reported_figures("identification"),
     log:
         f"{RESULTS}/logs/figures_identification.log",
     benchmark:
@@ -79,7 +79,7 @@ rule _figures_checks:
         records=files_of_study("records"),
         table=f"{RESULTS}/consistency.csv",
     output:
-        figures=figure_files("checks"),
+        figures=reported_figures("checks"),
     log:
         f"{RESULTS}/logs/figures_checks.log",
     benchmark:

@@ -43,10 +43,10 @@ rule _consistency:
         model=f"{RESULTS}/model.nc",
         tables=files_of_study("estimates", "csv"),
     output:
-        table=f"{RESULTS}/consistency.csv",
-        summary=f"{RESULTS}/consistency_summary.csv",
-        collapse=f"{RESULTS}/consistency_collapse.csv",
-        equivalent=f"{RESULTS}/equivalent.csv",
+        table=reported(f"{RESULTS}/consistency.csv"),
+        summary=reported(f"{RESULTS}/consistency_summary.csv"),
+        collapse=reported(f"{RESULTS}/consistency_collapse.csv"),
+        equivalent=reported(f"{RESULTS}/equivalent.csv"),
         dataset=f"{RESULTS}/consistency.nc",
     log:
         f"{RESULTS}/logs/consistency.log",

@@ -7,7 +7,7 @@ rule _basis:
         matrices=matrix_files(),
     output:
         model=f"{RESULTS}/model.nc",
-        quality=f"{RESULTS}/basis_quality.csv",
+        quality=reported(f"{RESULTS}/basis_quality.csv", "basis_quality_table"),
     log:
         f"{RESULTS}/logs/basis.log",
     benchmark:

@@ -88,7 +88,7 @@ rule _statistics:
         library=library("statistics"),
         records=files_of_study("records"),
     output:
-        table=f"{RESULTS}/statistics.csv",
+        table=reported(f"{RESULTS}/statistics.csv"),
     log:
         f"{RESULTS}/logs/statistics.log",
     benchmark:

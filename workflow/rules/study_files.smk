@@ -1,6 +1,7 @@
 # The names of the files of a study, and the inputs and params that rules get from functions.
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.provenance import imported_files
+from vibroimpact.reports.captions import read_caption
 from vibroimpact.study.cases import (
     all_cases,
     ids_of_load,
@@ -33,6 +34,9 @@ FIGURES = {
     ),
     "checks": ("figure_13_equivalent_support", "collapse", "energy_balance", "contact_statistics"),
 }
+
+TABLES = ("equivalent", "consistency", "consistency_summary", "consistency_collapse")
+CAPTIONS = as_input(ROOT / "workflow" / "report")
 
 CASES = [case.id for case in all_cases(STUDY.grid)]
 KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
@@ -98,6 +102,39 @@ def figure_files(group):
     ]
 
 
+def series_shown():
+    """The time series that the page of a study without spectra shows."""
+    kept = STUDY.record.keep_time_series and not STUDY.record.every_step
+    return files_of_study("timeseries") if kept and STUDY.identification is None else []
+
+
+def caption_file(name):
+    """The file with the caption, title and category of a figure or table."""
+    return f"{CAPTIONS}/{name}.rst"
+
+
+def reported(path, name=None):
+    """An output that `snakemake --report` shows, with the caption of its name."""
+    caption = read_caption(caption_file(name or Path(path).stem))
+    return report(
+        path,
+        caption=os.path.abspath(caption_file(caption.name)),
+        category=caption.category,
+        labels={"shows": caption.title, "file": Path(path).suffix.removeprefix(".").upper()},
+    )
+
+
+def reported_figures(group):
+    """The files of a group of figures; the report shows the pictures."""
+    return [reported(path) if path.endswith(".png") else path for path in figure_files(group)]
+
+
+def figures_of_study():
+    """The names of the figures that a complete study has, the answer first."""
+    groups = reversed(FIGURES) if STUDY.identification is not None else ()
+    return [name for group in groups for name in FIGURES[group]]
+
+
 def jobs_of_study():
     """The names of the benchmark files and logs of the jobs of a complete study."""
     loads = [value_text(load) for load in load_values(STUDY.grid)]
@@ -109,29 +146,21 @@ def jobs_of_study():
         jobs += [f"identify_{start}" for start in loads_by_half_decade(STUDY.grid)]
         jobs += ["consistency", *(f"figures_{group}" for group in FIGURES)]
         jobs += ["synthetic_campaign"] if not STUDY.overlay.campaign else []
-    return jobs
+    return [*jobs, "study_page"]
 
 
 def targets():
-    """The files of a complete study: tables, figures, and time series where they are kept.
+    """The files of a complete study: page, tables, figures, and time series where they are kept.
 
-    Without an identification: statistics of every case, and time series where they are kept.
+    Without an identification: page, statistics of every case, and time series where they are kept.
     """
     series = files_of_study("timeseries") if KEPT else []
+    pages = [f"{RESULTS}/index.html", f"{RESULTS}/summary.pdf"]
     if STUDY.identification is None:
-        return [f"{RESULTS}/statistics.csv", *series]
+        return [f"{RESULTS}/statistics.csv", *pages, *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
-    tables = [
-        f"{RESULTS}/{name}"
-        for name in (
-            "consistency.csv",
-            "consistency_summary.csv",
-            "consistency_collapse.csv",
-            "consistency.nc",
-            "equivalent.csv",
-        )
-    ]
-    return [*tables, *figures, *series]
+    tables = [*(f"{RESULTS}/{name}.csv" for name in TABLES), f"{RESULTS}/consistency.nc"]
+    return [*tables, *pages, *figures, *series]
 
 
 wildcard_constraints:

@@ -7,8 +7,11 @@ rule timing:
         library=library("timing"),
         benchmarks=[f"{RESULTS}/benchmarks/{job}.tsv" for job in jobs_of_study()],
     output:
-        table=f"{RESULTS}/timing.csv",
-        figures=[f"{RESULTS}/figures/timing.{suffix}" for suffix in ("png", "pdf", "csv", "txt")],
+        table=reported(f"{RESULTS}/timing.csv", "timing_table"),
+        figures=[
+            reported(f"{RESULTS}/figures/timing.png"),
+            *(f"{RESULTS}/figures/timing.{suffix}" for suffix in ("pdf", "csv", "txt")),
+        ],
     log:
         f"{RESULTS}/logs/timing.log",
     benchmark:

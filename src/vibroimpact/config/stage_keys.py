@@ -108,6 +108,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
         "identification.stiffness_range_N_per_m",
     ),
     "timing": ("study",),
+    "study_page": tuple(Config.model_fields),
     "validation": tuple(Config.model_fields),
 }
 

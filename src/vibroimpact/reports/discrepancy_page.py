@@ -17,6 +17,7 @@ from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.verdict.content import Misfit, Verdict
 
+from .number_text import digits, percent
 from .page_style import STYLE
 
 TEMPLATE = Path(__file__).with_suffix(".html")
@@ -231,13 +232,6 @@ def _unit(unit):
     return "" if unit in ("1", "", "-", None) else f" {unit}"
 
 
-def digits(value: float | None) -> str:
-    """Return a number with 3 digits, whole up to 100000, - where there is none."""
-    if value is None or value != value:
-        return "-"
-    return f"{value:.0f}" if 1e3 <= abs(value) < 1e5 else f"{value:.3g}"
-
-
 def _for_reading(row):
     """Return {value, low, high, unit} of an Estimate in the unit that it is shown in."""
     values = {"value": row.value, "low": row.low, "high": row.high}
@@ -246,11 +240,6 @@ def _for_reading(row):
         "unit": unit,
         **{key: None if value is None else factor * value for key, value in values.items()},
     }
-
-
-def percent(fraction: float | None) -> str:
-    """Return a share in whole per cent, - where there is none."""
-    return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"
 
 
 def _probability(value):

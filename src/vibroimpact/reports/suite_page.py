@@ -8,7 +8,8 @@ from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.acceptance.rates import TARGETS
 
-from .discrepancy_page import digits, embedded, in_words, percent
+from .discrepancy_page import embedded, in_words
+from .number_text import digits, percent
 from .page_style import STYLE
 
 TEMPLATE = Path(__file__).with_suffix(".html")

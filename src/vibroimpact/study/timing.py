@@ -101,3 +101,16 @@ def study_timing(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -
             for path, log in zip(benchmarks, logs, strict=True)
         ]
     )
+
+
+def timing_so_far(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -> list[dict]:
+    """Return study_timing of the jobs whose benchmark file and log are there.
+
+    A study that was made by parts or copied has not all of them.
+    """
+    present = [
+        (path, log)
+        for path, log in zip(benchmarks, logs, strict=True)
+        if Path(path).is_file() and Path(log).is_file()
+    ]
+    return study_timing(*zip(*present, strict=True)) if present else []

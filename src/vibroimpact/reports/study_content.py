@@ -1,0 +1,188 @@
+"""What the page and the summary of a study say: gathered once, so that both say the same."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+import vibroimpact
+
+from .equivalent_answer import ALL_SUPPORTS, Answer
+from .number_text import digits
+from .study_statistics import StudyStatistics
+from .study_tables import (
+    Table,
+    answer_table,
+    contact_table,
+    element_table,
+    energy_table,
+    reason_table,
+    spread_evenly,
+    stress_table,
+    timing_table,
+)
+from .study_words import contact_sentences, has_own_gaps, headline, load_unit, run_sentence
+
+MOST_LOADS = 8  # of a table of statistics, per gap
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where the numbers come from.
+
+    configuration: the configuration as it ran, as YAML.
+    version: of the library.
+    stages: {stage: attributes of a file that it wrote}.
+    timing: rows of study.timing; empty where the jobs left no benchmark files.
+    """
+
+    configuration: str
+    version: str
+    stages: dict[str, dict[str, str]]
+    timing: Sequence[dict] = ()
+
+    def stage_table(self) -> Table:
+        """Return when each stage wrote its results, and the digests of its keys and source."""
+        rows = [
+            (
+                stage,
+                values.get("history", "-").split(" written")[0].replace("T", " "),
+                values.get("config_digest", "-"),
+                values.get("source_digest", "-"),
+            )
+            for stage, values in self.stages.items()
+        ]
+        columns = ("results of", "written (UTC)", "digest of configuration", "digest of source")
+        return Table(columns, rows)
+
+    @property
+    def versions(self) -> str:
+        """The versions that the first stage was run with."""
+        return next((row["versions"] for row in self.stages.values() if "versions" in row), "")
+
+
+def provenance(
+    configuration: Mapping[str, Any],
+    stages: Mapping[str, Mapping[str, Any]],
+    timing: Sequence[dict] = (),
+) -> Provenance:
+    """Return the Provenance of a study.
+
+    configuration: the checked configuration in plain values.
+    stages: {stage: global attributes of one of its files}.
+    """
+    text = yaml.safe_dump(dict(configuration), sort_keys=False, allow_unicode=True, width=96)
+    kept = ("history", "config_digest", "source_digest", "versions")
+    return Provenance(
+        text,
+        vibroimpact.__version__,
+        {
+            stage: {key: str(values[key]) for key in kept if key in values}
+            for stage, values in stages.items()
+        },
+        timing,
+    )
+
+
+@dataclass(frozen=True)
+class StudyContent:
+    """What is said of a study.
+
+    config: its configuration.
+    answers: empty for a study without identification.
+    limits: {residual: largest accepted value}.
+    """
+
+    config: Any
+    answers: Sequence[Answer]
+    statistics: StudyStatistics
+    limits: Mapping[str, float]
+    provenance: Provenance
+
+    @property
+    def name(self) -> str:
+        """The name of the study."""
+        return str(self.config.study)
+
+    @property
+    def unit(self) -> str:
+        """The unit of the loads."""
+        return load_unit(self.config)
+
+    @property
+    def several(self) -> bool:
+        """Whether k and c belong to more than one group of supports or direction."""
+        places = {(row.group, row.direction) for row in self.answers}
+        return len(places) > 1 or any(group != ALL_SUPPORTS for group, _ in places)
+
+    def run(self) -> str:
+        """Return what was run."""
+        return run_sentence(self.config, self.statistics)
+
+    def headline(self) -> list[str]:
+        """Return the answer in sentences."""
+        return headline(self.answers, self.unit)
+
+    def contact(self) -> list[str]:
+        """Return contact, wear and stress in sentences."""
+        return contact_sentences(self.config, self.statistics)
+
+    def at_gap(self, gap_m: float) -> str:
+        """Return " at a gap of ... mm", empty where the gap of a case means nothing."""
+        return "" if has_own_gaps(self.config) else f" at a gap of {digits(1e3 * gap_m)} mm"
+
+    def loads_in_tables(self, most: int = MOST_LOADS) -> list[float]:
+        """Return the loads that tables of statistics list."""
+        return spread_evenly(self.statistics.loads, most)
+
+    def answer_tables(self) -> list[tuple[float, Table]]:
+        """Return (gap in m, table of the recommended values) of each gap."""
+        gaps = list(dict.fromkeys(row.gap_m for row in self.answers))
+        return [
+            (
+                gap,
+                answer_table(
+                    [row for row in self.answers if row.gap_m == gap], self.several, self.unit
+                ),
+            )
+            for gap in gaps
+        ]
+
+    def reasons(self) -> Table:
+        """Return why values are not resolved, or differ."""
+        return reason_table(self.answers, self.statistics, self.several, self.unit)
+
+    def contact_tables(self, most: int = MOST_LOADS) -> list[tuple[float, Table]]:
+        """Return (gap in m, contact and wear by load and support) of each gap."""
+        if not self.statistics.supports:
+            return []
+        loads = self.loads_in_tables(most)
+        return [
+            (gap, contact_table(self.statistics, gap, loads, self.unit))
+            for gap in self.statistics.gaps
+        ]
+
+    def element_tables(self) -> list[tuple[float, Table]]:
+        """Return (gap in m, power and work of the local elements) of each gap."""
+        if not self.statistics.elements:
+            return []
+        loads = self.loads_in_tables()
+        return [
+            (gap, element_table(self.statistics, gap, loads, self.unit))
+            for gap in self.statistics.gaps
+        ]
+
+    def stress(self, most: int = MOST_LOADS) -> Table:
+        """Return the stress by gap and load."""
+        return stress_table(self.statistics, self.loads_in_tables(most), self.unit)
+
+    def energy(self) -> Table:
+        """Return the worst energy residuals."""
+        return energy_table(self.statistics, self.limits, self.unit)
+
+    def timing(self) -> Table:
+        """Return the time of the jobs by rule."""
+        return timing_table(self.provenance.timing)

@@ -1,0 +1,201 @@
+"""What a study ran and what it found, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from .equivalent_answer import AGREEMENT, ALL_SUPPORTS, Answer, Value
+from .number_text import digits
+from .study_statistics import StudyStatistics
+
+STRUCTURES = {
+    "u_tube": "A U-tube",
+    "path": "A tube",
+    "chain": "A chain of masses and springs",
+    "matrices": "A structure given by its matrices",
+    "identified": "A structure given by its measured modes",
+}
+NAMES = {"k": "Stiffness k", "c": "Damping c"}
+MOST_PLACES = 4  # curves that have a sentence of their own
+
+
+def load_unit(config: Any) -> str:
+    """Return the unit of the loads: that of a force, or of the acceleration of the base."""
+    return "m/s²" if config.excitation.kind == "base_motion" else "N"
+
+
+def load_label(config: Any) -> str:
+    """Return the label of an axis of loads."""
+    return f"Load ({load_unit(config)} RMS)"
+
+
+def stiffness_unit(values: Sequence[float]) -> tuple[str, float]:
+    """Return (unit, units per N/m) that the stiffnesses of a study are shown in."""
+    largest = max((value for value in values if math.isfinite(value)), default=0.0)
+    return ("N/m", 1.0) if largest <= 2e3 else ("kN/m", 1e-3)
+
+
+def run_sentence(config: Any, statistics: StudyStatistics) -> str:
+    """Return what was run: structure, supports, force, loads, gaps and seeds."""
+    supports = len(config.supports)
+    held = f" with {supports} gap support{'s' * (supports != 1)}" if supports else ""
+    loads, gaps, seeds = statistics.loads, statistics.gaps, config.grid.seeds
+    own = [support.gap_m for support in config.supports]
+    gaps_in_words = (
+        f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)"
+        if supports and has_own_gaps(config)
+        else f"{_count(gaps, 'gap')} (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm)"
+    )
+    kinds = (
+        [gaps_in_words, _count(range(seeds), "seed")]
+        if supports
+        else [_count(range(seeds), "seed")]
+    )
+    return (
+        f"{STRUCTURES.get(config.structure.kind, 'A structure')}{held} under"
+        f" {_excitation(config.excitation)}: {_count(loads, 'load')}"
+        f" {_range(loads)} {load_unit(config)} RMS, {', '.join(kinds)};"
+        f" {_count(range(statistics.cases), 'record')} of {digits(config.record.duration_s)} s."
+    )
+
+
+def _excitation(excitation: Any) -> str:
+    kind = excitation.kind
+    place = f" at {excitation.point}" if "point" in excitation else ""
+    if kind == "band_limited":
+        return f"a random force from {_band(excitation.band_Hz)}{place}"
+    if kind == "harmonic":
+        return f"a sinusoidal force of {digits(excitation.frequency_Hz)} Hz{place}"
+    if kind == "base_motion":
+        signal = excitation.signal
+        what = (
+            f"random, from {_band(signal.band_Hz)}"
+            if signal.kind == "band_limited"
+            else f"sinusoidal, {digits(signal.frequency_Hz)} Hz"
+        )
+        return f"a motion of its base ({what})"
+    words = {"measured": "a measured force", "white_noise": "white noise", "none": "no force"}
+    return words.get(kind, kind.replace("_", " ")) + place
+
+
+def _band(band_Hz: Sequence[float]) -> str:
+    return f"{digits(band_Hz[0])} to {digits(band_Hz[1])} Hz"
+
+
+def _count(values: Sequence, word: str) -> str:
+    return f"{len(values)} {word}{'s' * (len(values) != 1)}"
+
+
+def _range(values: Sequence[float]) -> str:
+    low, high = digits(values[0]), digits(values[-1])
+    return f"of {low}" if low == high else f"from {low} to {high}"
+
+
+def _listed(texts: Sequence[str]) -> str:
+    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
+
+
+def headline(answers: Sequence[Answer], unit: str) -> list[str]:
+    """Return the answer in sentences: how often k and c are resolved, and their course with load.
+
+    unit: of the load.
+    """
+    if not answers:
+        return []
+    places = list(dict.fromkeys(row.place for row in answers))
+    several = len({place[1:] for place in places}) > 1
+    sentences = [_agreement(answers, quantity, several) for quantity in ("k", "c")]
+    scale = stiffness_unit([row.k.value for row in answers])
+    for place in places[:MOST_PLACES]:
+        rows = [row for row in answers if row.place == place]
+        sentences.append(
+            f"{place_in_words(*place).capitalize()}: {_course(rows, 'k', scale, unit)};"
+            f" {_course(rows, 'c', ('N s/m', 1.0), unit)}."
+        )
+    if len(places) > MOST_PLACES:
+        sentences.append(f"The other {len(places) - MOST_PLACES} are in the table.")
+    return sentences
+
+
+def _agreement(answers: Sequence[Answer], quantity: str, several: bool) -> str:
+    """Return how many cases agree, differ and are not resolved."""
+    kinds = [getattr(row, quantity).agreement for row in answers]
+    agree, spread, missing = (kinds.count(word) for word in ("agree", "spread", "unresolved"))
+    total = len(kinds)
+    of_what = "load, gap, supports and direction" if several else "load and gap"
+    cases = f"case{'s' * (total != 1)} of {of_what}"
+    parts = [f"the independent methods agree within {100 * AGREEMENT:.0f} % in {agree}"]
+    parts += [f"differ by more in {spread}"] if spread else []
+    parts += [f"do not all resolve it in {missing}"] if missing else []
+    return f"{NAMES[quantity]}: of {total} {cases}, {_listed(parts)}."
+
+
+def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], load: str) -> str:
+    """Return the first and the last resolved value with their loads."""
+    found: list[tuple[float, Value]] = [
+        (row.load_rms_N, getattr(row, quantity)) for row in rows if getattr(row, quantity).resolved
+    ]
+    unit, factor = scale
+    if not found:
+        return f"{quantity} is not resolved at any load"
+    (first, low), (last, high) = found[0], found[-1]
+    if len(found) == 1:
+        return (
+            f"{quantity} = {digits(factor * low.value)} {unit} at {digits(first)} {load} RMS only"
+        )
+    return (
+        f"{quantity} from {digits(factor * low.value)} {unit} at {digits(first)} {load} RMS to"
+        f" {digits(factor * high.value)} {unit} at {digits(last)} {load} RMS"
+    )
+
+
+def place_in_words(gap_m: float, group: str, direction: str, several: bool | None = None) -> str:
+    """Return a gap, group of supports and direction in words.
+
+    several: whether the study has more than one group or direction; by default, whether the group
+    has a name of its own.
+    """
+    named = group != ALL_SUPPORTS if several is None else several
+    place = f", {group}, direction {direction}" if named else ""
+    return f"gap {digits(1e3 * gap_m)} mm{place}"
+
+
+def contact_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
+    """Return what is to be known of contact, wear and stress."""
+    sentences = []
+    touching, gap, load = statistics.largest("contact_fraction")
+    if math.isfinite(touching):
+        sentences.append(
+            f"Most contact: {digits(100.0 * touching)} % of the time, {_where(config, gap, load)}."
+            if touching > 0.0
+            else "No support is touched in any case."
+        )
+    wear, gap, load = statistics.largest("wear_work_rate")
+    if math.isfinite(wear) and wear > 0.0:
+        sentences.append(f"Largest wear work rate: {digits(wear)} W, {_where(config, gap, load)}.")
+    stress, _, _ = statistics.largest("stress_peak")
+    if math.isfinite(stress):
+        sentences.append(_stress(config, statistics, stress))
+    return sentences
+
+
+def has_own_gaps(config: Any) -> bool:
+    """Whether every support has a gap of its own, so that the gap of a case means nothing."""
+    return all(support.gap_m is not None for support in config.supports)
+
+
+def _where(config: Any, gap_m: float, load: float) -> str:
+    gap = "" if has_own_gaps(config) else f" and a gap of {digits(1e3 * gap_m)} mm"
+    return f"at {digits(load)} {load_unit(config)} RMS{gap}"
+
+
+def _stress(config: Any, statistics: StudyStatistics, stress: float) -> str:
+    limit = f"the limit of {digits(1e-6 * config.record.stress_limit_Pa)} MPa"
+    flagged = statistics.flagged()
+    if not flagged:
+        return f"Largest stress: {digits(1e-6 * stress)} MPa; no case exceeds {limit}."
+    named = "; ".join(_where(config, gap, load) for gap, load in flagged[:4])
+    more = f" and {len(flagged) - 4} more" if len(flagged) > 4 else ""
+    return f"Largest stress: {digits(1e-6 * stress)} MPa. Above {limit}: {named}{more}."

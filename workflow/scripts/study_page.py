@@ -1,0 +1,49 @@
+"""Make the page of a study and its summary on two pages."""
+
+from pathlib import Path
+
+from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.interactive.pictures import pictures
+from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
+from vibroimpact.figures.study.checks import limits
+from vibroimpact.figures.study_summary import study_summary
+from vibroimpact.job_log import redirect_output
+from vibroimpact.records import read_attributes, read_record, read_table, write_text
+from vibroimpact.reduction.model_file import read_model
+from vibroimpact.reports.captions import read_caption
+from vibroimpact.reports.equivalent_answer import answers
+from vibroimpact.reports.study_content import StudyContent, provenance
+from vibroimpact.reports.study_page import study_page
+from vibroimpact.reports.study_statistics import study_statistics
+from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.timing import timing_so_far
+
+redirect_output(snakemake.log[0])
+config, given = StageSettings(snakemake.params.config), snakemake.input
+tables = {Path(path).stem: read_table(path) for path in given.tables}
+summary = tables.get("consistency_summary", [])
+stages = {
+    stage: read_attributes(paths[0])
+    for stage, paths in (
+        ("reduced model", [given.model]),
+        ("simulation", given.records),
+        ("spectra", given.spectra),
+        ("identification", given.curves),
+    )
+    if paths
+}
+content = StudyContent(
+    config,
+    answers(summary, tables.get("equivalent"), direction_of(config)),
+    study_statistics(given.records, read_record),
+    limits(config.integration),
+    provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
+)
+model = read_model(given.model)
+files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_record)
+captions = {caption.name: caption for caption in map(read_caption, given.captions)}
+page = study_page(content, study_plots(content, files), pictures(given.figures, captions))
+write_text(page, snakemake.output.page)
+study_summary(content, snakemake.output.summary)
+print(f"{len(page.encode()) / 1e6:.1f} MB")
+print(Stopwatch().line())
