@@ -197,7 +197,8 @@ def campaign_dataset(
 def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
     _require(campaign, path)
-    write_record(campaign.assign_attrs(title="vibroimpact campaign"), path)
+    # The names of dimensions and variables are the contract: nothing is renamed.
+    write_record(campaign.assign_attrs(title="vibroimpact campaign"), path, names_kept=True)
 
 
 def read_campaign(path: str | Path) -> xr.Dataset:
