@@ -18,13 +18,22 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 from .display import Display
 
-# What the bar says better, or no one reads at the start of every run.
+# What the bar or the end of the run says better, or no one reads at every start.
 PASSED_OVER = re.compile(
     r"\s*(Select jobs to execute|Execute \d+ jobs|Building DAG of jobs|Using shell:|"
     r"Provided (cores|resources|remote)|Rules claiming more threads|host:|"
-    r"Assuming unrestricted shared filesystem|None|$)"
+    r"Assuming unrestricted shared filesystem|Shutting down, this might|"
+    r"Exiting because a job execution failed|RuleException:\s*CalledProcessError|None|$)"
 )
 UNSHOWN = (LogEvent.JOB_STARTED, LogEvent.RESOURCES_INFO, LogEvent.WORKFLOW_STARTED)
+
+
+class RunConsole(Console):
+    """A console that falls silent when nobody reads it any more; the run goes on."""
+
+    def on_broken_pipe(self) -> None:
+        """Write nothing from now on."""
+        self.quiet = True
 
 
 class LogHandler(LogHandlerBase):
@@ -33,7 +42,7 @@ class LogHandler(LogHandlerBase):
     def __post_init__(self) -> None:
         """Open the console: standard error, as Snakemake's own messages."""
         settings = self.common_settings
-        self.console = Console(
+        self.console = RunConsole(
             stderr=not settings.stdout,
             no_color=settings.nocolor or None,  # None: as NO_COLOR says
             highlight=False,
@@ -45,8 +54,6 @@ class LogHandler(LogHandlerBase):
         """Show a record that passed Snakemake's filter, which knows --quiet."""
         try:
             self._show(record, event_of(record))
-        except BrokenPipeError:
-            self.display.close()  # nobody reads any more; the run goes on
         except Exception:
             self.handleError(record)
 
@@ -64,15 +71,16 @@ class LogHandler(LogHandlerBase):
             self.display.end(record.job_id)  # type: ignore[attr-defined]
         elif event == LogEvent.PROGRESS:
             self.display.progress(record.done, record.total)  # type: ignore[attr-defined]
+        elif event == LogEvent.JOB_ERROR:
+            # The log of the job is shown at the end of the run, where nothing scrolls it away.
+            self.display.fail(record.jobid, record.rule_name)  # type: ignore[attr-defined]
         elif event not in UNSHOWN:
-            if event == LogEvent.JOB_ERROR:
-                self.display.fail(record.jobid)  # type: ignore[attr-defined]
             self._print(record)
 
     def _print(self, record: LogRecord) -> None:
         """Print a record in Snakemake's words, unless it says nothing."""
         text = self.format(record)
-        if event_of(record) or not PASSED_OVER.match(text):
+        if self.common_settings.dryrun or not PASSED_OVER.match(text):
             self.console.print(Text(text, style="red" if record.levelname == "ERROR" else ""))
 
     def close(self) -> None:

@@ -60,14 +60,15 @@ class Display:
         if took is not None:
             self.console.print(Text(f"✓ {self.titles.pop(job)}, {duration(took)}"))
 
-    def fail(self, job: int) -> None:
-        """A job failed: it runs no more."""
+    def fail(self, job: int, rule: str) -> None:
+        """A job failed: print its title."""
         self.time_left.end(job, self.now())
-        self.titles.pop(job, None)
+        self.console.print(Text(f"✗ {self.titles.pop(job, rule)}", style="red"))
 
     def progress(self, done: int, total: int) -> None:
         """Take the numbers of jobs that are done and in all."""
         self.done, self.total = done, total
+        self._live.refresh()
 
     def close(self) -> None:
         """Take the bar away."""

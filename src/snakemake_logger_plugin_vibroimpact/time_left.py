@@ -55,17 +55,16 @@ class TimeLeft:
     def seconds(self, now: float) -> float | None:
         """Return the time left in s, None while too little has been measured to say.
 
-        Every job is taken to need the mean of its kind; a kind that has no ended job, the mean of
-        all. What the running jobs have done is taken off. The rest is shared by as many jobs as
-        have been running at once.
+        Every job is taken to need the mean of its kind; one of a kind that has no ended job, the
+        mean over the kinds that have. What the running jobs have done is taken off. The rest is
+        shared by as many jobs as have been running at once.
         """
         jobs = sum(self.waiting.values())
         known = sum(count for kind, count in self.waiting.items() if self.took.get(kind))
         if jobs == 0 or known < KNOWN_SHARE * jobs:
             return None
-        ended = [seconds for each in self.took.values() for seconds in each]
-        typical = sum(ended) / len(ended)
         mean = {kind: sum(took) / len(took) for kind, took in self.took.items() if took}
+        typical = sum(mean.values()) / len(mean)
         work = sum(count * mean.get(kind, typical) for kind, count in self.waiting.items())
         done = sum(
             min(now - started, mean.get(kind, typical)) for kind, started in self.running.values()

@@ -27,9 +27,12 @@ SUMMARY = [
     *rows(5.0e-5, 20.0, (9.0e6, 9.0e6, 9.0e6), "agree"),
 ]
 LOG = """\
+[Tue Nov 24 06:47:40 2026]
+Job 6: Simulation at 0.1 N RMS: 4 of 12 cases
+Job 7: Simulation at 4 N RMS: 4 of 12 cases
 [Tue Nov 24 06:47:46 2026]
 Error in rule _simulate:
-    message: Simulation at 4 N RMS: 4 of 12 cases
+    message: None
     jobid: 7
     output: results/smoke/records/load_4_gap_0.0001_seed_0.nc
     log: {log} (check log file(s) for error details)
@@ -80,7 +83,7 @@ def test_failure_names_case_log_and_remedy(tmp_path):
 def test_failure_with_an_empty_log_speaks_of_memory(tmp_path):
     (tmp_path / "empty.log").touch()
     told = failure_text(LOG.format(log=tmp_path / "empty.log"))
-    assert "is empty: the job was stopped from outside, as when memory runs out" in told
+    assert "empty.log is empty: see the lines above. A job that is stopped" in told
 
 
 def test_a_run_without_failed_jobs_says_nothing():

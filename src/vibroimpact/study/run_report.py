@@ -11,7 +11,8 @@ import numpy as np
 from .method_agreement import COMPARED
 
 # A failed job in the log that Snakemake writes.
-FAILED = re.compile(r"^Error in rule (?P<rule>\w+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
+FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
+STARTED = re.compile(r"^Job (?P<job>\d+): (?P<message>.*)$", flags=re.M)
 LAST_LINES = 6
 MENTIONED = ("report.html", "consistency_summary.csv", "consistency.csv", "statistics.csv")
 
@@ -81,7 +82,9 @@ def failure_text(log: str) -> str:
 
     log: text of the log that Snakemake wrote of the run.
     """
-    failed = {job["rule"] + job["about"]: job for job in map(_failed_job, FAILED.finditer(log))}
+    messages = {match["job"]: match["message"] for match in STARTED.finditer(log)}
+    jobs = [_failed_job(match, messages) for match in FAILED.finditer(log)]
+    failed = {(job["rule"], job["log"]): job for job in jobs}
     if not failed:
         return ""
     count = f"{len(failed)} jobs" if len(failed) > 1 else "1 job"
@@ -95,14 +98,13 @@ def failure_text(log: str) -> str:
     )
 
 
-def _failed_job(match: re.Match) -> dict[str, str]:
-    """Return {rule, about, message, log} of a failed job."""
+def _failed_job(match: re.Match, messages: dict[str, str]) -> dict[str, str]:
+    """Return {rule, message, log} of a failed job; messages: of the started jobs by number."""
     about = dict(re.findall(r"^    (\w+): (.*)$", match["about"], flags=re.M))
     log = about.get("log", "").removesuffix(" (check log file(s) for error details)")
     return {
         "rule": match["rule"],
-        "about": match["about"],
-        "message": about.get("message", "").strip(),
+        "message": messages.get(about.get("jobid", ""), ""),
         "log": log.split(", ")[0],
     }
 
@@ -119,7 +121,7 @@ def _about(job: dict[str, str]) -> list[str]:
     if not last:
         return [
             *lines,
-            f"    {job['log']} is empty: the job was stopped from outside, as when memory runs"
-            " out; run fewer jobs at a time (-j1)",
+            f"    {job['log']} is empty: see the lines above. A job that is stopped from outside,"
+            " as for lack of memory, leaves no word: run fewer jobs at a time (-j1)",
         ]
     return [*lines, f"    {job['log']} ends with", *(f"      {line}" for line in last)]
