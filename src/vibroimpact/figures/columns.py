@@ -3,7 +3,7 @@
 # column of the data -> (axis label, display units per SI unit)
 COLUMNS = {
     "x_m": ("x (m)", 1.0),
-    "y_m": ("y, out of plane (m)", 1.0),
+    "y_m": ("y (m)", 1.0),
     "z_m": ("z (m)", 1.0),
     "across_m": ("Across (mm)", 1e3),
     "along_m": ("Along the tube (mm)", 1e3),
@@ -13,7 +13,7 @@ COLUMNS = {
     "section_e2_m": ("Second transverse axis (mm)", 1e3),
     "height_in_support_m": ("Height from the middle of the support (mm)", 1e3),
     "stiffness_density_N_per_m2": ("Stiffness per unit height (MN/m²)", 1e-6),
-    "radial_displacement_m": ("Radial displacement of the tube (mm)", 1e3),
+    "radial_displacement_m": ("Displacement of the tube (mm)", 1e3),
     "contact_force_N": ("Contact force (N)", 1.0),
     "k_N_per_m": ("Equivalent k (N/m per support)", 1.0),
     "c_N_s_per_m": ("Equivalent c (N s/m per support)", 1.0),
