@@ -21,7 +21,9 @@ def drawn_texts(figure):
             labels |= {
                 label for tick in axis.get_minor_ticks() for label in (tick.label1, tick.label2)
             }
-            drawn = axis._update_ticks() if axes.get_visible() and axes.axison else []
+            visible = axes.get_visible() and axes.axison and axis.get_visible()
+            drawn = axis._update_ticks() if visible else []
+            hidden |= set() if visible else {axis.label, axis.offsetText}
             shown |= {label for tick in drawn for label in (tick.label1, tick.label2)}
             hidden |= labels
     texts = [
