@@ -48,7 +48,7 @@ def _free_top(boxes, moves, label):
 
 def _raise_above_the_axes(boxes, moves):
     """Move the lowest labels up to the bottom of their axes, and those that they then meet."""
-    floors: dict = {}
+    floors = {}
     for label in sorted(boxes, key=lambda each: boxes[each].y0 + moves[each]):
         box = boxes[label]
         floor = label.axes.get_window_extent().y0

@@ -144,7 +144,9 @@ def coordinate(name: str, values: Any) -> tuple:
     Raises KeyError for a coordinate that is not declared.
     """
     dims, units, long_name = COORDINATES[name]
-    return dims, values, {**({"units": units} if units else {}), "long_name": long_name}
+    if units is None:  # an empty list of names is still one of texts
+        return dims, np.array(values, dtype=str), {"long_name": long_name}
+    return dims, values, {"units": units, "long_name": long_name}
 
 
 def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
