@@ -237,10 +237,14 @@ def _variable(stored: netCDF4.Variable) -> tuple[xr.Variable, list[str]]:
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
-    """Return the dataset of any netCDF file, decoded by the CF conventions. Raises RecordError."""
+    """Return the dataset of any netCDF file, decoded by the CF conventions; the time of a record is
+    called `time`, as in read_record. Raises RecordError.
+    """
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+            own = {} if TIME in dataset.sizes else {TIME_IN_FILE: TIME}
+            names = {name: own[name] for name in (*dataset.variables, *dataset.dims) if name in own}
+            return dataset.load().rename(names)
     except OSError as error:
         raise RecordError(
             f"{path}: cannot be read as netCDF ({error}): delete it and run again"
