@@ -19,7 +19,7 @@ COLUMNS = {
     "c_N_s_per_m": ("Equivalent c (N s/m per support)", 1.0),
     "support_stiffness_N_per_m": ("Bilateral stiffness k per support (N/m)", 1.0),
     "frequency_Hz": ("Frequency (Hz)", 1.0),
-    "first_frequency_Hz": ("First frequency, out of plane (Hz)", 1.0),
+    "first_frequency_Hz": ("First frequency of the driven plane (Hz)", 1.0),
     "peak_frequency_Hz": ("Peak frequency (Hz)", 1.0),
     "damping_ratio": ("Damping ratio (%)", 1e2),
     "load_rms_N": ("Load (N RMS)", 1.0),
