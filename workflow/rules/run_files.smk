@@ -6,17 +6,24 @@ from vibroimpact.study.run_files import write_run_files
 from vibroimpact.study.run_report import failure_text, success_text
 
 
+def planned_jobs():
+    """The jobs of this run."""
+    return list(workflow.dag.needrun_jobs(exclude_finished=False))
+
+
 def result_folders():
     """The folders in results/ that the jobs of this run write to."""
-    jobs = workflow.dag.needrun_jobs(exclude_finished=False)
-    files = [Path(file) for job in jobs for file in job.output]
+    files = [Path(file) for job in planned_jobs() for file in job.output]
     return {Path(*file.parts[:2]) for file in files if file.parts[0] == "results"}
 
 
 def write_files_of_run():
-    """Write configuration and provenance into every folder that this run writes to."""
-    models = {} if OWN is not None else {Path(DISCREPANCY): MODEL}
-    configurations = models | {Path(RESULTS): STUDY, Path("results/validation"): STUDY}
+    """Write provenance into every folder that this run writes to, and the configuration of a study,
+    or of the model that a campaign is compared with.
+    """
+    configurations = {Path(RESULTS): STUDY, Path("results/validation"): STUDY}
+    if any(job.rule.name.startswith("_discrepancy") for job in planned_jobs()):
+        configurations[Path(DISCREPANCY)] = MODEL
     for folder in result_folders():
         values = configurations.get(folder)
         write_run_files(folder, values and values.model_dump(mode="json"), sys.argv)
