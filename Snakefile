@@ -14,6 +14,7 @@ report: "workflow/report/study.rst"
 
 include: "workflow/rules/configuration.smk"
 include: "workflow/rules/study_files.smk"
+include: "workflow/rules/run_files.smk"
 include: "workflow/rules/completed_campaigns.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/simulate.smk"
@@ -39,6 +40,18 @@ include: "workflow/rules/validation.smk"
 localrules:
     all,
     discrepancy,
+
+
+onstart:
+    write_files_of_run()
+
+
+onsuccess:
+    say_success()
+
+
+onerror:
+    say_failure(log)
 
 
 rule all:

@@ -12,15 +12,23 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+import yaml
+
+from vibroimpact import __version__
+
 PACKAGE = "vibroimpact"
-VERSIONED = ("numpy", "scipy", "numba", "xarray", "netCDF4", "matplotlib")
+VERSIONED = ("numpy", "scipy", "numba", "xarray", "netCDF4", "matplotlib", "snakemake")
 DIGEST_LENGTH = 16
 
 
 def config_digest(params: Mapping[str, Any]) -> str:
     """Return 16 hexadecimal digits that stand for the keys and values of one stage."""
-    text = json.dumps(params, sort_keys=True, default=dict)
-    return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
+    return hashlib.sha256(_text_of(params).encode()).hexdigest()[:DIGEST_LENGTH]
+
+
+def _text_of(params: Mapping[str, Any]) -> str:
+    """Return keys and values as JSON, in one order whatever the order given."""
+    return json.dumps(params, sort_keys=True, default=dict)
 
 
 def source_digest(files: Iterable[Path | str]) -> str:
@@ -51,16 +59,35 @@ def versions() -> dict[str, str]:
 
 
 def origin(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
-    """Return the attributes that every written file carries.
+    """Return {name: text} of what made a result.
 
-    They are the digests of a stage's keys and of its source files, and the versions.
+    They are the version of vibroimpact, the digests of a stage's keys and of its source files, and
+    the versions of the packages that it used.
     """
     library = [file for file in files if Path(file).suffix == ".py"]
     return {
+        "vibroimpact_version": __version__,
         "config_digest": config_digest(params),
         "source_digest": source_digest(library),
         "versions": " ".join(f"{name} {version}" for name, version in versions().items()),
     }
+
+
+def file_attributes(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
+    """Return the global attributes of a netCDF file of a stage: its origin and its configuration.
+
+    params: {dotted key: value} that the stage was given. As YAML they are the attribute
+    `configuration`; with `config_digest` they tell which settings the file depends on, and no
+    others: a key of a later stage changes neither.
+    """
+    study = {"study": str(params["study"])} if "study" in params else {}
+    text = yaml.safe_dump(json.loads(_text_of(params)), sort_keys=True, allow_unicode=True)
+    return {**study, **origin(params, files), "configuration": text}
+
+
+def package_digest() -> str:
+    """Return 16 hexadecimal digits that stand for all source files of the package."""
+    return source_digest(Path(__file__).parent.rglob("*.py"))
 
 
 def imported_files(script: Path | str, source: Path | str) -> list[Path]:

@@ -11,17 +11,26 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+# The end of a label's name in a file. By the CF conventions (1.11, sections 5 and 6.1) only numbers
+# may carry the name of their dimension, so the names of supports are support_name (support).
+LABEL = "_name"
+# Seconds from the start of a record are no date, which is what a dimension `time` stands for
+# (CF 4.4).
+TIME, TIME_IN_FILE = "time", "elapsed_time"
+
 
 class RecordError(Exception):
     """A file that cannot be read or written; the message names it."""
 
 
-def write_record(dataset: xr.Dataset, path: str | Path) -> None:
+def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False) -> None:
     """Write a dataset of numbers and texts as netCDF-4.
+
+    names_kept: as in RecordFile.
 
     The file appears complete or not at all. Raises TypeError for other contents.
     """
-    with RecordFile(path, dataset):
+    with RecordFile(path, dataset, names_kept=names_kept):
         pass
 
 
@@ -40,15 +49,19 @@ class RecordFile:
         dataset: xr.Dataset,
         parts: dict[str, tuple] | None = None,
         sizes: dict[str, int] | None = None,
+        names_kept: bool = False,
     ) -> None:
         """Create the file and write what is known from the start.
 
         dataset: variables of numbers and texts, written at once.
         parts: {name: (dimensions, type, attributes)} of the variables that `put` fills later.
         sizes: {dimension: length} of dimensions that only the parts have.
+        names_kept: write all names as they are. Otherwise labels of a dimension and the time get
+            the names that CF asks for, support_name and elapsed_time, which read_record undoes.
 
         Raises TypeError for a variable that holds neither numbers nor texts.
         """
+        self._names = {} if names_kept else _names_in_file(dataset)
         self._path = Path(path)
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._temporary = self._path.with_name(f".{self._path.name}.{os.getpid()}")
@@ -57,8 +70,8 @@ class RecordFile:
             self._file.set_fill_off()
             lengths: dict = {**dataset.sizes, **(sizes or {})}
             for name, size in lengths.items():
-                self._file.createDimension(name, size)
-            unnamed = _put_variables(self._file, dataset, parts or {})
+                self._file.createDimension(_dimension(str(name), self._names), size)
+            unnamed = _put_variables(self._file, dataset, parts or {}, self._names)
             self._file.setncatts(
                 {
                     "title": "vibroimpact record",
@@ -91,14 +104,35 @@ class RecordFile:
             self._temporary.unlink(missing_ok=True)
 
 
-def _put_variables(file: netCDF4.Dataset, dataset: xr.Dataset, parts: dict) -> list:
+def _names_in_file(dataset: xr.Dataset) -> dict[str, str]:
+    """Return {name of a variable: its name in the file} of those that CF wants called otherwise."""
+    labels = [str(name) for name in dataset.coords if name in dataset.sizes]
+    names = {name: name + LABEL for name in labels if dataset[name].dtype.kind in "UO"}
+    taken = set(names.values()) & {str(name) for name in dataset.variables}
+    if taken:
+        raise TypeError(f"{sorted(taken)}: this is the name of labels in the file, take another")
+    return names | ({TIME: TIME_IN_FILE} if TIME in dataset.sizes else {})
+
+
+def _dimension(name: str, names: dict[str, str]) -> str:
+    """Return the name of a dimension in the file: that of a label's dimension stays."""
+    return TIME_IN_FILE if name == TIME and TIME in names else name
+
+
+def _put_variables(
+    file: netCDF4.Dataset, dataset: xr.Dataset, parts: dict, names: dict[str, str]
+) -> list:
     """Create all variables and write those of the dataset.
+
+    names: {name of a variable: its name in the file} where they differ.
 
     Returns the auxiliary coordinates that no variable refers to. An auxiliary coordinate is one
     whose name is not that of a dimension.
     """
     auxiliary = {
-        name: set(dataset[name].dims) for name in dataset.coords if name not in dataset.sizes
+        names.get(str(name), name): set(dataset[name].dims)
+        for name in dataset.coords
+        if name not in dataset.sizes or (name in names and name != TIME)
     }
     named: set[str] = set()
     for name, variable in dataset.variables.items():
@@ -109,11 +143,14 @@ def _put_variables(file: netCDF4.Dataset, dataset: xr.Dataset, parts: dict) -> l
         attributes = dict(variable.attrs)
         if name not in dataset.coords:
             attributes |= _coordinates_attribute(variable.dims, auxiliary, named)
-        stored = _create(file, name, str if text else values.dtype, variable.dims, attributes)
+        dims = [_dimension(str(dim), names) for dim in variable.dims]
+        kind = str if text else values.dtype
+        stored = _create(file, names.get(str(name), name), kind, dims, attributes)
         if values.size:
             stored[...] = values.astype(object) if text else values
     for name, (dims, dtype, attributes) in parts.items():
         coordinates = _coordinates_attribute(dims, auxiliary, named)
+        dims = [_dimension(str(dim), names) for dim in dims]
         _create(file, name, dtype, dims, attributes | coordinates)
     return [name for name in auxiliary if name not in named]
 
@@ -159,10 +196,34 @@ def read_record(path: str | Path, names: Iterable[str] | None = None) -> xr.Data
             attributes = {
                 name: file.getncattr(name) for name in file.ncattrs() if name != "coordinates"
             }
+            labels = {name for name in auxiliary if _labels_of(file, name)}
     except OSError as error:
         raise RecordError(
             f"{path}: cannot be read as netCDF ({error}): delete it and run again"
         ) from error
+    return _with_own_names(data, auxiliary, labels, attributes)
+
+
+def _labels_of(file: netCDF4.Dataset, name: str) -> bool:
+    """Return whether an auxiliary coordinate holds the labels of its dimension, by its name."""
+    variable = file.variables.get(name)
+    return (
+        variable is not None
+        and variable.dtype is str
+        and variable.dimensions == (name.removesuffix(LABEL),)
+        and name.endswith(LABEL)
+    )
+
+
+def _with_own_names(data: dict, auxiliary: set, labels: set, attributes: dict) -> xr.Dataset:
+    """Return the Dataset of a file's variables, labels and time under the names they had."""
+    names = {name: name.removesuffix(LABEL) for name in labels} | {TIME_IN_FILE: TIME}
+    for name, variable in list(data.items()):
+        dims = [TIME if dim == TIME_IN_FILE else dim for dim in variable.dims]
+        if tuple(dims) != variable.dims:
+            variable = xr.Variable(dims, variable.values, variable.attrs, fastpath=True)
+        del data[name]
+        data[names.get(name, name)] = variable
     sizes = {dim for variable in data.values() for dim in variable.dims}
     coords = {name: data.pop(name) for name in list(data) if name in auxiliary | sizes}
     return xr.Dataset(data, coords, attributes)
@@ -187,10 +248,14 @@ def read_attributes(path: str | Path) -> dict[str, Any]:
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
-    """Return the dataset of any netCDF file, decoded by the CF conventions. Raises RecordError."""
+    """Return the dataset of any netCDF file, decoded by the CF conventions; the time of a record is
+    called `time`, as in read_record. Raises RecordError.
+    """
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+            own = {} if TIME in dataset.sizes else {TIME_IN_FILE: TIME}
+            names = {name: own[name] for name in (*dataset.variables, *dataset.dims) if name in own}
+            return dataset.load().rename(names)
     except OSError as error:
         raise RecordError(
             f"{path}: cannot be read as netCDF ({error}): delete it and run again"

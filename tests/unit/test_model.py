@@ -5,7 +5,10 @@ from dataclasses import MISSING, fields
 import numpy as np
 import pytest
 
+from vibroimpact.records import read_record
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.model_file import write_model
+from vibroimpact.reduction.model_variables import MODEL_VARIABLES
 
 
 def parts(**changes):
@@ -126,3 +129,11 @@ def test_a_wrong_model_is_refused_with_the_field_named(changes, message):
 def test_all_problems_are_reported_together():
     with pytest.raises(ValueError, match="damping has 4 .*; .*sensor_names has 1"):
         ModalModel(**parts(damping=np.ones(4), sensor_names=("apex.x",)))
+
+
+def test_every_variable_of_a_model_file_is_described(study_model, tmp_path):
+    write_model(study_model, tmp_path / "model.nc")
+    stored = read_record(tmp_path / "model.nc")
+    assert {str(name) for name in stored.variables} == set(MODEL_VARIABLES)
+    assert stored["omega"].attrs["units"] == "rad s-1"
+    assert stored["contact_laws_hertz"].attrs["comment"] == "in N/m^1.5"

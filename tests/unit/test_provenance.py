@@ -9,8 +9,19 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 
-from vibroimpact.provenance import config_digest, imported_files, origin, source_digest, versions
+import vibroimpact
+from vibroimpact import provenance
+from vibroimpact.provenance import (
+    config_digest,
+    file_attributes,
+    imported_files,
+    origin,
+    package_digest,
+    source_digest,
+    versions,
+)
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
@@ -146,6 +157,29 @@ def test_source_digest_depends_on_contents_not_location(tmp_path):
 
 def test_an_origin_names_digests_and_versions():
     found = origin({"seed": 1}, [ROOT / "src" / "vibroimpact" / "units.py"])
-    assert set(found) == {"config_digest", "source_digest", "versions"}
+    assert set(found) == {"vibroimpact_version", "config_digest", "source_digest", "versions"}
+    assert found["vibroimpact_version"] == vibroimpact.__version__
     assert f"python {sys.version.split()[0]}" in found["versions"]
     assert "not installed" not in versions().values()
+
+
+def test_a_file_carries_the_configuration_of_its_stage():
+    keys = {"study": "mine", "grid.gap_m": [2.5e-5, 1e-4], "seed": 7}
+    found = file_attributes(keys, [])
+    assert yaml.safe_load(found["configuration"]) == keys
+    assert found["study"] == "mine"
+    again = file_attributes(dict(reversed(keys.items())), [])
+    assert again == found and found["config_digest"] == config_digest(keys)
+    assert "study" not in file_attributes({"seed": 1}, [])
+
+
+def test_package_digest_is_that_of_all_its_files(monkeypatch, tmp_path):
+    package = tmp_path / "vibroimpact"
+    (package / "inner").mkdir(parents=True)
+    for name in ("provenance.py", "inner/deep.py"):
+        (package / name).write_text("1")
+    monkeypatch.setattr(provenance, "__file__", str(package / "provenance.py"))
+    before = package_digest()
+    assert before == source_digest([package / "provenance.py", package / "inner" / "deep.py"])
+    (package / "inner" / "deep.py").write_text("2")
+    assert package_digest() != before

@@ -1,5 +1,6 @@
 """Files come back as they were written, and a failed write leaves nothing behind."""
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -51,13 +52,39 @@ def test_file_written_in_pieces_equals_the_whole(tmp_path):
         for place in (slice(0, 4), slice(4, 6)):
             file.put("series", np.s_[:, place], values[:, place])
         assert not (tmp_path / "pieces.nc").exists()
-    for read in (records.read_record, records.read_dataset):
-        again = read(tmp_path / "pieces.nc")
-        assert (
-            again.equals(whole)
-            and again.attrs["case"] == "one"
-            and again["place"].attrs == {"units": "m"}
-        )
+    again = records.read_record(tmp_path / "pieces.nc")
+    assert again.equals(whole) and again.attrs["case"] == "one"
+    assert again["place"].attrs == {"units": "m"}
+
+
+def test_labels_and_time_have_the_names_that_cf_asks_for(tmp_path):
+    dataset = xr.Dataset(
+        {
+            "force": (("support", "time"), np.arange(6.0).reshape(2, 3)),
+            "k": ("support", [1.0, 2.0]),
+        },
+        {"support": ["left", "right"], "time": [0.0, 0.5, 1.0]},
+    )
+    records.write_record(dataset, tmp_path / "cf.nc")
+    with netCDF4.Dataset(tmp_path / "cf.nc") as stored:
+        assert stored["force"].dimensions == ("support", "elapsed_time")
+        assert stored["force"].coordinates == "support_name"
+        assert set(stored.variables) == {"force", "k", "elapsed_time", "support_name"}
+        assert list(stored["support_name"][:]) == ["left", "right"]
+    assert records.read_dataset(tmp_path / "cf.nc")["force"].dims == ("support", "time")
+    for names, expected in ((None, dataset), (["k"], dataset[["k"]])):
+        again = records.read_record(tmp_path / "cf.nc", names)
+        assert again.equals(expected)
+    assert float(again["k"].sel(support="right")) == 2.0
+    records.write_record(dataset, tmp_path / "kept.nc", names_kept=True)
+    assert records.read_dataset(tmp_path / "kept.nc").equals(dataset)
+
+
+def test_a_variable_with_the_name_of_labels_is_refused(tmp_path):
+    dataset = xr.Dataset({"x_name": ("x", [1.0])}, {"x": ["a"]})
+    with pytest.raises(TypeError, match="x_name.*take another"):
+        records.write_record(dataset, tmp_path / "twice.nc")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
@@ -68,9 +95,7 @@ def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
     records.write_record(dataset, tmp_path / "some.nc")
     some = records.read_record(tmp_path / "some.nc", ["a", "c"])
     assert some.equals(dataset[["a", "c"]]) and set(some.coords) == {"x", "beside"}
-    assert records.read_record(tmp_path / "some.nc").equals(
-        records.read_dataset(tmp_path / "some.nc")
-    )
+    assert records.read_record(tmp_path / "some.nc").equals(dataset)
     with pytest.raises(KeyError):
         records.read_record(tmp_path / "some.nc", ["none"])
 

@@ -6,16 +6,22 @@ study takes seconds.
 """
 
 import ast
+import json
 import os
+import pty
 import re
 import shutil
 import subprocess
 import sys
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 import yaml
+
+from vibroimpact.config.reading import check_config
+from vibroimpact.provenance import config_digest
 
 ROOT = Path(__file__).parents[2]
 STUB = """\
@@ -71,6 +77,28 @@ class Study:
         return subprocess.run(
             command, cwd=self.folder, env=clean | environment, capture_output=True, text=True
         )
+
+    def on_a_terminal(self, *arguments, **environment):
+        """Run snakemake with its output on a terminal; returns what the terminal got."""
+        ours, theirs = pty.openpty()
+        command = [sys.executable, "-m", "snakemake", *arguments, "--configfile", "mine.yaml"]
+        clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        started = subprocess.Popen(
+            command,
+            cwd=self.folder,
+            env=clean | {"TERM": "xterm", "COLUMNS": "120"} | environment,
+            stdin=subprocess.DEVNULL,
+            stdout=theirs,
+            stderr=theirs,
+        )
+        os.close(theirs)
+        told = b""
+        with suppress(OSError):  # Linux ends the stream of a closed terminal with an error
+            while piece := os.read(ours, 65536):
+                told += piece
+        os.close(ours)
+        assert started.wait() == 0, told
+        return told.decode()
 
     def plan(self, *arguments, values=None):
         """Return {rule: number of jobs} of a dry run, {} when nothing is to be done."""
@@ -172,6 +200,44 @@ def test_progress_shows_load_and_number_of_cases(study):
     told = study.stopped.stdout + study.stopped.stderr
     assert "Simulation at 0.5 N RMS: 2 of 4 cases" in told
     assert "Identification at 4 N RMS: 2 of 4 cases" in told
+
+
+def test_a_run_leaves_its_configuration_and_provenance(study):
+    written = yaml.safe_load((study.results / "config.yaml").read_text())
+    assert written == check_config(study.values, "mine").model_dump(mode="json")
+    provenance = json.loads((study.results / "provenance.json").read_text())
+    assert provenance["config_digest"] == config_digest(written)
+    assert provenance["command"].endswith("-j2 --configfile mine.yaml")
+    assert study.plan(values=written) == {}  # it runs again as it stands, and nothing is to be done
+
+
+def test_a_failed_run_names_case_log_and_remedy(study):
+    told = study.stopped.stderr
+    assert "2 jobs failed:" in told
+    assert "  Identification at 4 N RMS: 2 of 4 cases (rule identify_from_3.16)" in told
+    assert "results/smoke/logs/identify_from_3.16.log is empty" in told
+    assert "give the same command again" in told
+
+
+def test_a_complete_study_names_its_tables(study):
+    told = study.finished.stderr
+    assert "  results/smoke/consistency_summary.csv" in told
+    assert "  results/smoke/figures" in told
+
+
+def test_a_terminal_shows_a_bar_and_a_pipe_plain_lines(study):
+    again = ("-j1", "--forcerun", "all")
+    told = study.on_a_terminal(*again)
+    assert "1 of 1 jobs" in told and "━" in told
+    assert "✓ Study 'smoke' is complete" in told and "Finished jobid" not in told
+    assert "\x1b[3" not in study.on_a_terminal(*again, NO_COLOR="1")  # no colour
+    dumb = study.on_a_terminal(*again, TERM="dumb")
+    assert "✓" not in dumb and "1 of 1 steps (100%) done" in dumb
+    quiet = study.on_a_terminal(*again, "--quiet", "progress")
+    assert "━" not in quiet
+    piped = study.snakemake(*again)
+    assert piped.returncode == 0 and "1 of 1 steps (100%) done" in piped.stderr
+    assert "✓" not in piped.stderr and "\x1b" not in piped.stderr
 
 
 @pytest.mark.parametrize(

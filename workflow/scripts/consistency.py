@@ -3,7 +3,7 @@
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.linear.support_groups import unreached_supports
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import file_attributes
 from vibroimpact.records import read_table, write_record, write_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
@@ -28,7 +28,7 @@ unreached = unreached_supports(model, config.identification.groups)
 write_table(equivalent_rows(summary, unreached), snakemake.output.equivalent, EQUIVALENT_COLUMNS)
 dataset = consistency_dataset(rows, summary)
 write_record(
-    dataset.assign_attrs(origin(snakemake.params.config, snakemake.input.library)),
+    dataset.assign_attrs(file_attributes(snakemake.params.config, snakemake.input.library)),
     snakemake.output.dataset,
 )
 print(f"{len(rows)} estimates")

@@ -4,7 +4,7 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ, identify_case
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import file_attributes
 from vibroimpact.records import read_record, write_record, write_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
@@ -13,7 +13,7 @@ redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
 model = read_model(snakemake.input.model)
 stopwatch = Stopwatch()
-source = origin(snakemake.params.config, snakemake.input.library)
+source = file_attributes(snakemake.params.config, snakemake.input.library)
 for record_path, spectra_path, table_path, curves_path in zip(
     snakemake.input.records,
     snakemake.input.spectra,

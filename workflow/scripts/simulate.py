@@ -2,7 +2,7 @@
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import file_attributes
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.cases import cases_of_load
@@ -12,7 +12,7 @@ from vibroimpact.study.simulation import simulate_cases
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 cases = cases_of_load(config.grid, float(snakemake.wildcards.load))
-source = origin(snakemake.params.config, snakemake.input.library)
+source = file_attributes(snakemake.params.config, snakemake.input.library)
 stopwatch = Stopwatch()
 records = dict(zip(cases, snakemake.output.records, strict=False))
 series = dict(zip(cases, snakemake.output.series, strict=False))

@@ -2,7 +2,7 @@
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import file_attributes
 from vibroimpact.records import write_record
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
@@ -13,7 +13,7 @@ from vibroimpact.study.spectra_writer import spectra_writer
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 cases = cases_of_load(config.grid, float(snakemake.wildcards.load))
-source = origin(snakemake.params.config, snakemake.input.library)
+source = file_attributes(snakemake.params.config, snakemake.input.library)
 stopwatch = Stopwatch()
 records = dict(zip(cases, snakemake.output.records, strict=True))
 spectra = dict(zip(cases, snakemake.output.spectra, strict=True))

@@ -2,7 +2,7 @@
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import file_attributes
 from vibroimpact.records import read_record, write_record
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_spectra import case_spectra
@@ -13,7 +13,8 @@ for series, path in zip(snakemake.input.series, snakemake.output.spectra, strict
     record = read_record(series)
     spectra = stopwatch.time("spectra", case_spectra, config, record)
     write_record(
-        spectra.assign_attrs(origin(snakemake.params.config, snakemake.input.library)), path
+        spectra.assign_attrs(file_attributes(snakemake.params.config, snakemake.input.library)),
+        path,
     )
     print(f"{path} written")
 print(stopwatch.line())

@@ -3,7 +3,7 @@
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import file_attributes
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.synthetic_campaign import synthetic_campaign
@@ -14,7 +14,7 @@ campaign = synthetic_campaign(
     config, read_model(snakemake.input.model), snakemake.params.loads, stopwatch
 )
 write_campaign(
-    campaign.assign_attrs(origin(snakemake.params.config, snakemake.input.library)),
+    campaign.assign_attrs(file_attributes(snakemake.params.config, snakemake.input.library)),
     snakemake.output.campaign,
 )
 print(f"{snakemake.output.campaign} written, loads {snakemake.params.loads} N RMS")

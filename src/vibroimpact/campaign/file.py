@@ -71,6 +71,30 @@ OPTIONAL = {
     "valid_samples": ("record",),
     "force_channel_units": ("force_channel",),
 }
+# What is written to the attribute long_name, and to units where the file does not state them.
+ABOUT = {
+    "force": ("", "excitation force of the record"),
+    "response": ("", "response of the record, in the unit of its channel"),
+    "channel_units": ("", "unit of the channel"),
+    "channel_kind": ("", "quantity that the channel measures"),
+    "channel_name": ("", "name of the channel"),
+    "channel_point": ("m", "position of the channel"),
+    "channel_direction": ("1", "unit vector of the positive sense of the channel"),
+    "force_channel_name": ("", "name of the force channel"),
+    "force_channel_units": ("", "unit of the force channel"),
+    "force_channel_point": ("m", "position of the force"),
+    "force_channel_direction": ("1", "unit vector of the positive sense of the force"),
+    "gap": ("m", "radial gap of the record"),
+    "record_name": ("", "name of the record"),
+    "load_rms": ("N", "RMS of the force of channel 0 over the valid samples"),
+    "repeat": ("1", "number of the record among those of the same load and gap, from 0"),
+    "split": ("", "use of the record: fit or holdout"),
+    "support_gap": ("m", "radial gap of the support"),
+    "voltage": ("V", "voltage of the shaker"),
+    "noise_floor_rms": ("", "RMS of the channel's noise, in its unit"),
+    "valid_samples": ("1", "number of samples of the record that count, from its start"),
+    "time": ("s", "time since the start of the record"),
+}
 SPLITS = ("fit", "holdout")
 SAME_POINT_M = 5.0e-3  # largest distance of a channel from the point it stands for
 PARALLEL = 0.99  # least |cosine| between the direction of a channel and the one asked for
@@ -197,7 +221,16 @@ def campaign_dataset(
 def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
     _require(campaign, path)
-    write_record(campaign.assign_attrs(title="vibroimpact campaign"), path)
+    campaign = campaign.copy()
+    for name in set(ABOUT) & {str(name) for name in campaign.variables}:
+        units, long_name = ABOUT[name]
+        campaign[name].attrs = {
+            **({"units": units} if units else {}),
+            "long_name": long_name,
+            **campaign[name].attrs,
+        }
+    # The names of dimensions and variables are the contract: nothing is renamed.
+    write_record(campaign.assign_attrs(title="vibroimpact campaign"), path, names_kept=True)
 
 
 def read_campaign(path: str | Path) -> xr.Dataset:

@@ -1,70 +1,129 @@
-"""The outline of the space in which the centre of a tube moves freely inside its support."""
+"""The free space of the tube's centre in the hole of a support, and the hole itself, as outlines.
+
+The two axes are the support's transverse directions. A profile is circular, planes or lobes; those
+with other names are resolved by `profiles.plain_profile`.
+"""
+
+from __future__ import annotations
 
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
 
-from .profiles import land_normals, lobes
+from .profiles import plain_profile
 
-ROUND_POINTS = 361  # points of a round outline, once per degree
+POINTS = 361  # of a curved outline: one per degree, ends included
+OPEN = 3.0  # reach where stops leave a side open, as a multiple of the farthest stop
+
+
+def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarray:
+    """Return (angle,) m: how far the tube moves from the obstacle's centre until it touches.
+
+    profile: of a support.
+    gap_m: its gap, m; between flat stops it may be 0 or negative.
+    angle (angle,): direction of motion in rad from the first transverse direction to the second.
+
+    It is inf where no stop lies ahead. Source: the laws of config.supports, Circular, Planes and
+    Lobes.
+    """
+    turn = np.asarray(angle, dtype=float)
+    if profile.kind == "planes":
+        normals = np.deg2rad(np.asarray(profile.normals_deg, dtype=float))
+        ahead = np.cos(turn[..., None] - normals)
+        facing = ahead > 1e-12
+        reach = np.divide(gap_m, ahead, out=np.full(ahead.shape, np.inf), where=facing)
+        return reach.min(axis=-1)
+    if profile.kind == "lobes":
+        wave = 1.0 - np.cos(profile.count * (turn - np.deg2rad(profile.angle_deg)))
+        return gap_m + 0.5 * profile.depth_m * wave
+    return np.full(turn.shape, float(gap_m))
+
+
+def free_space_outline(
+    profile: ConfigPart, gap_m: float, reach_m: float | None = None
+) -> np.ndarray:
+    """Return (point, 2) m: the closed outline of where the tube's centre moves without contact.
+
+    profile, gap_m: as in radial_gap.
+    reach_m: where stops leave a side open, the outline ends on a square of this half side; 3 gaps
+        by default.
+
+    It runs counter-clockwise and ends where it begins; it has no points where stops leave no space.
+    """
+    if profile.kind == "planes":
+        return _between_stops(profile.normals_deg, gap_m, reach_m or OPEN * abs(gap_m) or 1e-3)
+    angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
+    return _polar(radial_gap(profile, gap_m, angle), angle)
+
+
+def hole_outline(
+    profile: ConfigPart,
+    gap_m: float,
+    radius_m: float,
+    scale: float = 1.0,
+    reach_m: float | None = None,
+) -> np.ndarray:
+    """Return (point, 2) m: the closed outline of the hole that a tube of a radius passes through.
+
+    profile, gap_m: as in radial_gap.
+    scale: factor of gap and lobes, to make them visible beside the tube.
+    reach_m: as in free_space_outline.
+
+    It is the free space, scaled, moved outward by the radius: a flat stop by its normal, a curved
+    hole along the direction from its centre.
+    """
+    wall = radius_m + scale * gap_m
+    if profile.kind == "planes":
+        return _between_stops(profile.normals_deg, wall, reach_m or OPEN * wall)
+    angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
+    return _polar(radius_m + scale * radial_gap(profile, gap_m, angle), angle)
+
+
+def facing_angle(profile: ConfigPart) -> float:
+    """Return the direction in rad of the first stop or land; 0 for a circular hole."""
+    if profile.kind == "planes":
+        return float(np.deg2rad(profile.normals_deg[0]))
+    return float(np.deg2rad(profile.angle_deg)) if profile.kind == "lobes" else 0.0
+
+
+def _polar(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return (point, 2) of the polar coordinates of a full turn, closed to the last bit."""
+    outline = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    outline[-1] = outline[0]
+    return outline
+
+
+def _between_stops(normals_deg: ConfigPart, distance: float, reach: float) -> np.ndarray:
+    """Return (point, 2): the part of a square of half side `reach` behind every stop.
+
+    A square clipped by one half plane after the other (Sutherland and Hodgman, 1974).
+    """
+    outline = reach * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    for normal in np.deg2rad(np.asarray(normals_deg, dtype=float)):
+        beyond = outline @ [np.cos(normal), np.sin(normal)] - distance
+        kept = []
+        for here, there, depth, next_depth in zip(
+            outline, np.roll(outline, -1, axis=0), beyond, np.roll(beyond, -1), strict=True
+        ):
+            if depth <= 0.0:
+                kept.append(here)
+            if (depth <= 0.0) != (next_depth <= 0.0):
+                kept.append(here + (there - here) * depth / (depth - next_depth))
+        outline = np.array(kept).reshape(-1, 2)
+    return np.concatenate([outline, outline[:1]])
 
 
 def support_outline(
     support: ConfigPart, gap_m: float, directions: np.ndarray, extent_m: float, pair: int = 0
 ) -> np.ndarray:
-    """Return (point, 2) m, the closed outline of the free space at a contact point of a support.
+    """Return (point, 2) m, the outline of the free space of a support, from the tube at rest.
 
-    Coordinates are along the two transverse directions, from the tube at rest: the tube is free
-    where its centre is inside. The first point is repeated at the end. Empty where bars on opposite
-    sides press, so that no place is free.
-
-    support: entry of the configuration. Its first centre_offset_m is used; a preload is drawn as
-        the gap given.
+    support: entry of the configuration, of any profile. Its first centre_offset_m is used.
     gap_m: gap at the point; that of the case, or gap_m of the support.
     directions: (2, 3) transverse directions at the contact point, see ContactPoints.
     extent_m: half the side of the square that an open profile, such as one bar, is cut to.
     pair: 1 for the second pair of bars of a lattice with spacing_m.
     """
     centre = np.reshape(support.centre_offset_m, (-1, 2))[0]
-    normals = land_normals(support.profile, directions, pair)
-    if len(normals):
-        return flat_outline(normals, gap_m, extent_m, centre)
-    return round_outline(gap_m, *lobes(support.profile, directions)) + centre
-
-
-def round_outline(gap_m: float, count: int, depth_m: float, angle: float) -> np.ndarray:
-    """Return (point, 2) m on r(theta) = gap + depth (1 - cos(count (theta - angle))) / 2.
-
-    angle: rad.
-    """
-    theta = np.linspace(0.0, 2.0 * np.pi, ROUND_POINTS)
-    radius = gap_m + 0.5 * depth_m * (1.0 - np.cos(count * (theta - angle)))
-    return radius[:, None] * np.column_stack([np.cos(theta), np.sin(theta)])
-
-
-def flat_outline(
-    normals: np.ndarray, gap_m: float, extent_m: float, centre: np.ndarray
-) -> np.ndarray:
-    """Return (point, 2) m, the corners of {d: n·(d - centre) <= gap for all n} in a square.
-
-    A polygon, the square, is cut with one half-plane after the other (Sutherland and Hodgman,
-    Reentrant polygon clipping, Communications of the ACM 17 (1974) 32-42).
-
-    normals: (land, 2) unit vectors.
-    extent_m: half the side of the square, whose middle is the tube at rest.
-    centre: (2,) m.
-    """
-    corners = extent_m * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
-    for normal in normals:
-        room = gap_m - (corners - centre) @ normal
-        kept = []
-        for number, (here, left) in enumerate(zip(corners, room, strict=True)):
-            before, left_before = corners[number - 1], room[number - 1]
-            if left * left_before < 0.0:  # the edge to this corner crosses the land
-                kept.append(before + (here - before) * left_before / (left_before - left))
-            if left >= 0.0:
-                kept.append(here)
-        if not kept:
-            return np.zeros((0, 2))
-        corners = np.array(kept)
-    return np.vstack([corners, corners[:1]])
+    profile = plain_profile(support.profile, directions, pair)
+    return free_space_outline(profile, gap_m, extent_m) + centre

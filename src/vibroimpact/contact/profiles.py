@@ -12,9 +12,12 @@ angle_deg or normal gives, the normals of the flat lands are at
               base and base + 180, the second the other two
 """
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 
-from vibroimpact.config.profiles import has_flat_lands
+from vibroimpact.config.profiles import Circular, Lobes, Planes, has_flat_lands
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.directions import unit_vector
 
@@ -48,6 +51,35 @@ def lobes(profile: ConfigPart, directions: np.ndarray) -> tuple[int, float, floa
     if profile.kind == "broached" and profile.depth_m is not None:
         return profile.lands, profile.depth_m, _base_angle(profile, directions)
     return 0, 0.0, 0.0
+
+
+def plain_profile(profile: ConfigPart, directions: np.ndarray, pair: int = 0) -> ConfigPart:
+    """Return the planes, lobes or circle that a profile of any name stands for.
+
+    profile, directions, pair: as in land_normals.
+    """
+    normals = land_normals(profile, directions, pair)
+    if len(normals):
+        angles = np.degrees(np.arctan2(normals[:, 1], normals[:, 0]))
+        return Planes(kind="planes", normals_deg=tuple(angles.tolist()))
+    count, depth, angle = lobes(profile, directions)
+    if count:
+        return Lobes(kind="lobes", count=count, depth_m=depth, angle_deg=float(np.degrees(angle)))
+    return Circular(kind="circular")
+
+
+def with_plain_profiles(config: ConfigPart, contact: Any) -> ConfigPart:
+    """Return a configuration whose supports have their plain profiles, for figures.
+
+    contact: ContactPoints of the tube, which know the transverse directions of each support. Of the
+        two pairs of bars of a lattice with spacing_m the first is taken.
+    """
+    supports = []
+    for number, support in enumerate(config.supports):
+        first = int(np.flatnonzero(contact.support == number)[0])
+        profile = plain_profile(support.profile, contact.directions[first])
+        supports.append(SimpleNamespace(**(dict(support) | {"profile": profile})))
+    return SimpleNamespace(**(dict(config) | {"supports": tuple(supports)}))
 
 
 def _land_angles(profile: ConfigPart, pair: int) -> np.ndarray:

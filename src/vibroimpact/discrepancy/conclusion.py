@@ -180,10 +180,9 @@ def conclude(run, screening, final_files, provenance, quick=False):
     }
     write_verdict(Verdict.from_values(content), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
-    write_record(
-        mapping.map_dataset(before_bench, before.features, before.shown), folder / "map.nc"
-    )
-    write_record(mapping.map_dataset(whole, after.features, after.shown), folder / "map_after.nc")
+    for name, bench, runs in (("map", before_bench, before), ("map_after", whole, after)):
+        mapped = mapping.map_dataset(bench, runs.features, runs.shown)
+        write_record(mapped.assign_attrs(provenance), folder / f"{name}.nc")
     levels = (
         {}
         if decision.chosen is None

@@ -114,6 +114,35 @@ def nearest(bench, low, high):
     ]
 
 
+def _about(long_name, units="", comment=""):
+    """Return the attributes of a variable; UDUNITS has no decibel, which stands in a comment."""
+    given = {"units": units, "long_name": long_name, "comment": comment}
+    return {name: text for name, text in given.items() if text}
+
+
+PSD_UNIT = "square of the unit of the channel per Hz"
+# Attributes of the variables of map_dataset.
+MAP_ABOUT = {
+    "measured_dB": _about("measured power of the band", comment="in dB"),
+    "simulated_dB": _about("simulated power of the band, mean over seeds", comment="in dB"),
+    "seed_sd_dB": _about("standard deviation over seeds of the simulated power", comment="in dB"),
+    "D": _about("measured over simulated power of the band", comment="in dB"),
+    "z": _about("difference of the powers in standard deviations", "1"),
+    "band_Hz": _about("edges of the band", "Hz"),
+    "counted": _about("1 where the cell counts in the misfit", "1"),
+    "record_name": _about("name of the record"),
+    "load_rms": _about("RMS of the force", "N"),
+    "gap": _about("radial gap of the record", "m"),
+    "split": _about("use of the record: fit or holdout"),
+    "channel_name": _about("name of the channel"),
+    "psd_frequency": _about("frequency", "Hz"),
+    "psd_measured": _about("measured power spectral density", comment=PSD_UNIT),
+    "psd_simulated_mean": _about("simulated PSD, mean over seeds", comment=PSD_UNIT),
+    "psd_simulated_low": _about("simulated PSD, smallest over seeds", comment=PSD_UNIT),
+    "psd_simulated_high": _about("simulated PSD, largest over seeds", comment=PSD_UNIT),
+}
+
+
 def map_dataset(bench, seeds, responses):
     """Return the map as a Dataset: seeds (record, seed, feature); responses (record, shown seed,
     channel, sample) of the same model with noise.
@@ -146,7 +175,8 @@ def map_dataset(bench, seeds, responses):
         "psd_simulated_low": (line, shown.min(axis=0)),
         "psd_simulated_high": (line, shown.max(axis=0)),
     }
-    return xr.Dataset(data)
+    described = {name: (*variable, MAP_ABOUT[name]) for name, variable in data.items()}
+    return xr.Dataset(described, attrs={"title": "vibroimpact map of the discrepancy"})
 
 
 def _spectra(signals, response):

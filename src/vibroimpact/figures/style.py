@@ -74,7 +74,8 @@ METHODS = {
     "secant": ("mean secant stiffness", BLACK, "+"),
 }
 OPEN_METHODS = ("peak_half", "peak_quarter", "peak_25th")
-GAP_COLOURS, GAP_MARKERS = (BLUE, ORANGE, GREEN, RED, PINK, BLACK), ("o", "s", "^", "D", "v", "P")
+GAP_COLOURS = (BLUE, ORANGE, GREEN, RED, PINK, BLACK, SKY, BROWN)
+GAP_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
 def label_of(column: str) -> str:

@@ -11,6 +11,7 @@ from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.records import read_record, write_record
 
 from .modal_model import ModalModel
+from .model_variables import model_attributes
 
 # Fields of the model that are tables themselves: field -> class.
 LAWS: dict[str, type] = {"contact_laws": ContactLaws, "local_laws": LocalLaws}
@@ -29,7 +30,8 @@ def write_model(
                 data[name] = _array_variable(name, getattr(value, column.name))
         elif item.name.endswith("_names"):
             names = np.array(value, dtype=object if value else str)
-            data[item.name] = ((item.name.removesuffix("_names"),), names)
+            dims = (item.name.removesuffix("_names"),)
+            data[item.name] = (dims, names, model_attributes(item.name))
         else:
             data[item.name] = _array_variable(item.name, value)
     attributes = {"title": "vibroimpact reduced model", **(attributes or {})}
@@ -37,9 +39,9 @@ def write_model(
 
 
 def _array_variable(name, values):
-    """Return (dimensions, values) of a variable whose dimensions are its own."""
+    """Return (dimensions, values, attributes) of a variable whose dimensions are its own."""
     array = np.asarray(values)
-    return tuple(f"{name}_{axis}" for axis in range(array.ndim)), array
+    return tuple(f"{name}_{axis}" for axis in range(array.ndim)), array, model_attributes(name)
 
 
 def read_model(path: str | Path) -> ModalModel:

@@ -28,6 +28,8 @@ from vibroimpact.spectra.welch import (
 )
 
 UNITS = {"displacement": "m2 Hz-1", "acceleration": "m2 s-4 Hz-1"}
+# No attribute `units`: UDUNITS has no fractional powers and reads "m Hz-1/2" as half a m s.
+ROOT_UNIT = "in m/sqrt(Hz)"
 PARTS = {"re": "real part", "im": "imaginary part"}
 
 
@@ -72,16 +74,26 @@ class CaseSpectra:
         self._filled = self._segment = 0
         self._power: dict[str, np.ndarray] = {}
         coords = {
-            "sensor": list(sensors),
-            "driven_sensor": [sensors[index] for index in self._driven],
-            **{
-                name: (name, values, _attributes("Hz", "frequency"))
-                for name, values in (
-                    ("frequency", frequency),
-                    ("low_frequency", frequency[: self._low]),
-                    ("line_frequency", line_frequency[self._band]),
-                )
-            },
+            name: (name, values, attributes)
+            for name, values, attributes in (
+                ("sensor", list(sensors), {"long_name": "sensor: point and axis"}),
+                (
+                    "driven_sensor",
+                    [sensors[index] for index in self._driven],
+                    {"long_name": "sensor in the direction of the force: point and axis"},
+                ),
+                ("frequency", frequency, _attributes("Hz", "frequency")),
+                (
+                    "low_frequency",
+                    frequency[: self._low],
+                    _attributes("Hz", "frequency of the segment spectra of the sensors"),
+                ),
+                (
+                    "line_frequency",
+                    line_frequency[self._band],
+                    _attributes("Hz", "frequency of the segment spectra along the shape line"),
+                ),
+            )
         }
         averages = effective_averages(samples / rate, rate, spectra)
         about_averages = _attributes("1", "degrees of freedom of a PSD bin")
@@ -186,7 +198,7 @@ def _declared_parts() -> dict[str, tuple]:
         ("line_spectra", ("line_point", "segment", "line_frequency")),
     ):
         for suffix, part in PARTS.items():
-            about = _attributes("m Hz-1/2", f"segment spectra of displacement, {part}")
+            about = {"long_name": f"segment spectra of displacement, {part}", "comment": ROOT_UNIT}
             parts[f"{name}_{suffix}"] = (dims, "f4", about)
     return parts
 

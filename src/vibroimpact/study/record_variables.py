@@ -1,5 +1,7 @@
 """The variables of a record: dimensions, type, unit and name of each."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -142,18 +144,30 @@ VARIABLES: dict[str, tuple[tuple, str, str, str]] = {
         "bound of the relative error of the implicit contact forces, worst step",
     ),
 }
-COORDINATES: dict[str, tuple[tuple, str | None]] = {
-    "time": (("time",), "s"),
-    "sensor": (("sensor",), None),
-    "line_arc_length": (("line_point",), "m"),
-    "support": (("support",), None),
-    "section": (("section",), None),
-    "element": (("element",), None),
-    "step_time": (("step",), "s"),
-    "run_term": (("run_term",), None),
-    "energy_term": (("energy_term",), None),
-    "energy_time": (("energy_time",), "s"),
+# name: (dimensions, units, None for texts, long name)
+COORDINATES: dict[str, tuple[tuple, str | None, str]] = {
+    "time": (("time",), "s", "time since the start of the record"),
+    "sensor": (("sensor",), None, "sensor: point and axis"),
+    "line_arc_length": (("line_point",), "m", "arc length along the shape line"),
+    "support": (("support",), None, "support"),
+    "section": (("section",), None, "section of the structure whose stress is recorded"),
+    "element": (("element",), None, "local element"),
+    "step_time": (("step",), "s", "time since the initial state"),
+    "run_term": (("run_term",), None, "term of the energy balance of the whole run"),
+    "energy_term": (("energy_term",), None, "term of the energy balance"),
+    "energy_time": (("energy_time",), "s", "time since the start of the simulation"),
 }
+
+
+def coordinate(name: str, values: Any) -> tuple:
+    """Return (dimensions, values, attributes) of a declared coordinate.
+
+    Raises KeyError for a coordinate that is not declared.
+    """
+    dims, units, long_name = COORDINATES[name]
+    if units is None:  # an empty list of names is still one of texts
+        return dims, np.array(values, dtype=str), {"long_name": long_name}
+    return dims, values, {"units": units, "long_name": long_name}
 
 
 def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
@@ -165,14 +179,7 @@ def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
     for name, value in values.items():
         dims, dtype, units, long_name = VARIABLES[name]
         data[name] = (dims, np.asarray(value, dtype), {"units": units, "long_name": long_name})
-    coords = {
-        name: (
-            COORDINATES[name][0],
-            value,
-            {"units": COORDINATES[name][1]} if COORDINATES[name][1] else {},
-        )
-        for name, value in coordinates.items()
-    }
+    coords = {name: coordinate(name, value) for name, value in coordinates.items()}
     return xr.Dataset(data, coords, attributes)
 
 

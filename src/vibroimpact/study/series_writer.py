@@ -18,7 +18,7 @@ from vibroimpact.records import RecordFile, write_record
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
-from .record_variables import VARIABLES, split_record
+from .record_variables import VARIABLES, coordinate, split_record
 from .simulation import case_attributes, sample_times
 
 PIECE = 8192  # samples written at a time: many small writes cost more than the samples
@@ -39,10 +39,13 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
             yield lambda first, series: None
             return
         coordinates = {
-            "time": ("time", sample_times(schedule), {"units": "s"}),
-            "sensor": list(model.sensor_names),
-            "line_arc_length": ("line_point", model.line_arc_length, {"units": "m"}),
-            "support": list(model.support_names),
+            name: coordinate(name, values)
+            for name, values in (
+                ("time", sample_times(schedule)),
+                ("sensor", list(model.sensor_names)),
+                ("line_arc_length", model.line_arc_length),
+                ("support", list(model.support_names)),
+            )
         }
         parts = {
             name: (dims, dtype, {"units": unit, "long_name": long_name})

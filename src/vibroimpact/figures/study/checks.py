@@ -199,7 +199,10 @@ def contact_statistics(config, records):
     )
     diameter = outer_width(config.structure.section)
     for index, gap in enumerate(sorted({case.gap_m for case in records}, reverse=True)):
-        colour, marker = GAP_COLOURS[index % 6], GAP_MARKERS[index % 6]
+        colour, marker = (
+            GAP_COLOURS[index % len(GAP_COLOURS)],
+            GAP_MARKERS[index % len(GAP_MARKERS)],
+        )
         style = {
             "color": colour,
             "marker": marker,
@@ -253,7 +256,7 @@ def contact_statistics(config, records):
     for panel in ("fraction", "rate", "velocity"):
         sheet.axes[panel].set_xlabel("")
     handles, labels = sheet.axes["stress"].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return [sheet]
 
 

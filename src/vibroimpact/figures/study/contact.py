@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.contact.outline import facing_angle, radial_gap
+from vibroimpact.contact.profiles import with_plain_profiles
+from vibroimpact.contact.static_law import static_force, support_gap
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -26,6 +29,12 @@ from .linear_limits import HELD, driven_frequencies
 
 POINTS = {1: PINK, 2: ORANGE, 3: GREEN, 5: BLUE, 9: BLACK}  # contact points per support -> colour
 LINES = {1: (0, (1, 1)), 2: (0, (4, 1)), 3: (0, (4, 1, 1, 1)), 5: "-", 9: (0, (6, 2))}
+# Kind of a profile -> the direction of the displacement in figure 3.
+WAYS = {
+    "circular": "in any radial direction",
+    "planes": "along the normal of the first stop",
+    "lobes": "along the direction of the first land",
+}
 STIFFNESS = np.logspace(0.0, 11.0, 89)  # N/m per support
 # A range belongs to a limit where the frequency is within this share of the distance to the next.
 NEAR = 0.05
@@ -36,17 +45,17 @@ def figure_03_contact_law(config, structure):
 
     The law is drawn with its tangent and secant stiffness.
     """
-    gap, support = max(config.grid.gap_m), config.supports[0]
+    support = with_plain_profiles(config, structure.contact).supports[0]
+    gap = support_gap(support, max(config.grid.gap_m))
     stiffness = float(np.sum(structure.contact.stiffness[structure.contact.support == 0]))
     caption = (
         f"Contact law of support '{support.name}'. Left: the layer of stiffness over the height of"
         f" the support (total {stiffness:.3g} N/m) and the contact points that stand for it; each"
-        " point carries the stiffness written beside it. Right: contact force against radial"
-        " displacement of the tube, all points together, gap"
+        " point carries the stiffness written beside it. Right: contact force against displacement"
+        f" of the tube {WAYS[support.profile.kind]}, all points together, gap"
         f" {gap_label(gap, outer_width(config.structure.section))}. The slope past the gap is"
-        " the tangent stiffness, always the same; force over displacement is the secant stiffness,"
-        " which rises with the amplitude: this is why an equivalent linear support stiffens with"
-        " the load."
+        " the tangent stiffness; force over displacement is the secant stiffness, which rises with"
+        " the amplitude: this is why an equivalent linear support stiffens with the load."
     )
     sheet = Sheet(
         "figure_03_contact_law",
@@ -57,7 +66,7 @@ def figure_03_contact_law(config, structure):
         width_ratios=(1, 1.35),
     )
     _layer(sheet, sheet.axes["layer"], support, structure)
-    _law(sheet, sheet.axes["law"], gap, stiffness)
+    _law(sheet, sheet.axes["law"], support, gap)
     return [sheet]
 
 
@@ -121,54 +130,69 @@ def _layer(sheet, axes, support, structure):
     sheet.legend(axes, loc="upper right", ncols=2)
 
 
-def _law(sheet, axes, gap, stiffness):
-    """Draw the force law, the tangent beyond the gap and secants to two displacements."""
+def _law(sheet, axes, support, gap):
+    """Draw the force law along the first stop or land, and secants to two displacements."""
     axes.set_title("force, tangent and secant stiffness")
-    displacement = np.linspace(-1.6 * gap, 1.6 * gap, 321)
-    penetration = np.maximum(np.abs(displacement) - gap, 0.0)
-    force = stiffness * penetration * np.sign(displacement)
+    angle = facing_angle(support.profile)
+    ahead, behind = radial_gap(support.profile, gap, np.array([angle, angle + np.pi]))
+    reach = 1.6 * max(abs(side) for side in (ahead, behind) if np.isfinite(side)) or 1e-5
+    displacement = np.linspace(-reach, reach, 321)
+    force = static_force(support, gap, angle, displacement)
+    slope = np.gradient(force, displacement)
+    law = {
+        "tangent_stiffness_N_per_m": slope,
+        "secant_stiffness_N_per_m": np.divide(
+            force, displacement, out=np.zeros_like(force), where=displacement != 0.0
+        ),
+    }
+    label = "contact force"
+    if support.hertz_N_per_m15 == 0.0:
+        label += f"; tangent {number(np.sum(support.stiffness_N_per_m))} N/m past the gap"
     sheet.line(
         axes,
         ("radial_displacement_m", displacement),
         ("contact_force_N", force),
         "contact force",
-        tags={
-            "tangent_stiffness_N_per_m": np.where(penetration > 0.0, stiffness, 0.0),
-            "secant_stiffness_N_per_m": np.divide(
-                force, displacement, out=np.zeros_like(force), where=displacement != 0.0
-            ),
-        },
+        tags=law,
         color=BLUE,
         linewidth=2.2,
-        label=f"contact force; tangent {number(stiffness)} N/m past the gap",
+        label=label,
     )
+    if ahead > 0.0:
+        _secants(sheet, axes, support, gap, angle, ahead)
+    for side in {side for side in (-behind, ahead) if np.isfinite(side)}:
+        sheet.mark(
+            axes, "radial_displacement_m", side, "gap", color=GREY, linewidth=0.9, linestyle=":"
+        )
+    axes.annotate(
+        "gap",
+        (shown("radial_displacement_m", ahead), 0.03),
+        xycoords=("data", "axes fraction"),
+        xytext=(3, 0),
+        textcoords="offset points",
+        color=GREY,
+        fontsize=8.5,
+    )
+    span = np.ptp(force)
+    axes.set_ylim(force.min() - 0.08 * span, force.max() + 0.5 * span)
+    sheet.legend(axes, loc="upper left")
+
+
+def _secants(sheet, axes, support, gap, angle, ahead):
+    """Draw secants to two displacements beyond the stop that lies ahead."""
     for reach, colour, dash in ((1.2, ORANGE, (0, (5, 2))), (1.5, RED, (0, (2, 1)))):
-        top = stiffness * (reach - 1.0) * gap
+        (top,) = static_force(support, gap, angle, np.array([reach * ahead]))
         sheet.line(
             axes,
-            ("radial_displacement_m", [0.0, reach * gap]),
+            ("radial_displacement_m", [0.0, reach * ahead]),
             ("contact_force_N", [0.0, top]),
             f"secant at {reach:g} gap",
             color=colour,
             linestyle=dash,
             marker="o",
             markevery=[1],
-            label=f"secant at {reach:g} gap: {number(top / (reach * gap))} N/m",
+            label=f"secant at {reach:g} gap: {number(top / (reach * ahead))} N/m",
         )
-    for side in (-gap, gap):
-        sheet.mark(
-            axes, "radial_displacement_m", side, "gap", color=GREY, linewidth=0.9, linestyle=":"
-        )
-    axes.annotate(
-        "gap",
-        (gap * 1e3, force[0] * 0.85),
-        xytext=(3, 0),
-        textcoords="offset points",
-        color=GREY,
-        fontsize=8.5,
-    )
-    axes.set_ylim(force[0] * 1.05, force[-1] * 1.75)
-    sheet.legend(axes, loc="upper left")
 
 
 def model_with_points(config, points):

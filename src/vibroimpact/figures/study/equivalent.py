@@ -21,6 +21,8 @@ from .seed_scatter import medians, over_seeds
 COMPARED = ("lscf", "ods", "broadband")
 PREDICTED = ("statistical_linearisation", "secant")
 
+MOST_COLUMNS = 4  # gaps side by side; more begin another block below
+
 
 def figure_13_equivalent_support(config, model, rows):
     """Return the Sheet of k and c against load, a column per gap, a colour and marker per method.
@@ -36,16 +38,17 @@ def figure_13_equivalent_support(config, model, rows):
         " simulated contact forces. Dashed: the contact stiffness, the upper limit."
     )
     gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
-    mosaic = [[f"{name}, gap {gap:.5g} m" for gap in gaps] for name in ("k", "c")]
+    panels = {gap: (f"k, gap {gap:.5g} m", f"c, gap {gap:.5g} m") for gap in gaps}
+    mosaic = _in_blocks(list(panels.values()))
     sheet = Sheet(
         "figure_13_equivalent_support",
         "Equivalent stiffness and damping by independent methods",
         caption,
         mosaic,
-        size=(2.6 + 2.6 * len(gaps), 6.4),
+        size=(max(2.6 + 2.6 * len(mosaic[0]), 6.4), 3.2 * len(mosaic)),
         sharex=True,
     )
-    for gap, (top, bottom) in zip(gaps, zip(*mosaic, strict=True), strict=True):
+    for gap, (top, bottom) in panels.items():
         chosen = [row for row in rows if row["gap_m"] == gap]
         _methods(sheet, sheet.axes[top], chosen, "k_N_per_m", (*METHODS,))
         _methods(
@@ -63,15 +66,15 @@ def figure_13_equivalent_support(config, model, rows):
             linewidth=1.0,
             label="contact stiffness",
         )
-    _alike(sheet, mosaic, rows, config)
+    _alike(sheet, mosaic, config)
     handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
-    for key in mosaic[0][1:]:  # a method may be resolved at one gap only
+    for key, _ in panels.values():  # a method may be resolved at one gap only
         for handle, label in zip(*sheet.axes[key].get_legend_handles_labels(), strict=True):
             if label not in labels:
                 handles.append(handle)
                 labels.append(label)
     sheet.figure.legend(
-        handles, labels, loc="outside lower center", ncols=(2, 4, 5)[min(len(gaps), 3) - 1]
+        handles, labels, loc="outside lower center", ncols=(2, 4, 5)[min(len(mosaic[0]), 3) - 1]
     )
     return [sheet]
 
@@ -120,19 +123,36 @@ def _methods(sheet, axes, rows, column, methods):
         sheet.note(axes, "nothing resolved", "load_rms_N", column)
 
 
-def _alike(sheet, mosaic, rows, config):
-    """Give all columns the same axes, labels at the outside only."""
+def _in_blocks(pairs):
+    """Return the mosaic of pairs of panels (top, bottom), side by side in blocks of two rows."""
+    count = len(pairs)
+    blocks = -(-count // MOST_COLUMNS)
+    columns = -(-count // blocks)
+    rows = []
+    for first in range(0, count, columns):
+        block = pairs[first : first + columns]
+        rows += [[pair[row] for pair in block] + ["."] * (columns - len(block)) for row in (0, 1)]
+    return rows
+
+
+def _alike(sheet, mosaic, config):
+    """Give all panels of a quantity the same axes, labels at the outside only."""
     lowest = config.identification.stiffness_range_N_per_m[0]
-    for top in mosaic[0]:
-        sheet.axes[top].set_xscale("log")
-        sheet.axes[top].set_yscale("log")
-        sheet.axes[top].set_ylim(0.5 * lowest, 2e7)
-        sheet.axes[top].set_xlabel("")
+    tops, bottoms = (
+        [sheet.axes[key] for row in mosaic[first::2] for key in row if key != "."]
+        for first in (0, 1)
+    )
+    for axes in tops:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_ylim(0.5 * lowest, 2e7)
+        axes.set_xlabel("")
+    for group in (tops, bottoms):
+        limits = [axes.get_ylim() for axes in group]
+        for axes in group:
+            axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
     for row in mosaic:
-        limits = [sheet.axes[key].get_ylim() for key in row]
-        for key in row:
-            sheet.axes[key].set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
-        for key in row[1:]:
+        for key in (key for key in row[1:] if key != "."):
             sheet.axes[key].set_ylabel("")
             sheet.axes[key].tick_params(labelleft=False)
     sheet.figure.align_ylabels([sheet.axes[row[0]] for row in mosaic])
@@ -163,8 +183,8 @@ def collapse(config, model, rows):
     table = [{**row, "load_over_gap_N_per_m": row["load_over_gap"]} for row in rows]
     for index, gap in enumerate(gaps):
         style = {
-            "color": GAP_COLOURS[index % 6],
-            "marker": GAP_MARKERS[index % 6],
+            "color": GAP_COLOURS[index % len(GAP_COLOURS)],
+            "marker": GAP_MARKERS[index % len(GAP_MARKERS)],
             "linestyle": "none",
             "label": f"gap {gap_label(gap, outer_width(config.structure.section))}",
         }

@@ -251,8 +251,8 @@ def in_plane_share(config, responses):
             "in_plane_share_dB",
             "in-plane share",
             tags=("gap_m", "load_rms_N"),
-            color=GAP_COLOURS[index % 6],
-            marker=GAP_MARKERS[index % 6],
+            color=GAP_COLOURS[index % len(GAP_COLOURS)],
+            marker=GAP_MARKERS[index % len(GAP_MARKERS)],
             label=f"gap {gap_label(gap, diameter)}",
         )
     if not rows:

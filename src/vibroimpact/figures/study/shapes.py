@@ -86,16 +86,21 @@ def _shapes(sheet, axes, model, found, loads):
     """Draw the shapes of some loads, the linear tube's limits and the supports."""
     axes.set_title("shape along the tube")
     place = model.line_arc_length
+    few = len(model.support_names) <= 3
     for number_of_support in np.unique(model.support_of_point):
         middle = model.contact_position[model.support_of_point == number_of_support].mean(axis=0)
         nearest = place[np.argmin(np.linalg.norm(model.line_positions - middle, axis=1))]
         axes.axvspan(nearest - 0.012, nearest + 0.012, color=PALE, linewidth=0, zorder=0)
         axes.annotate(
-            f"support {model.support_names[number_of_support]}",
+            f"support {model.support_names[number_of_support]}"
+            if few
+            else model.support_names[number_of_support],
             (nearest, 0.98),
             xycoords=("data", "axes fraction"),
-            xytext=(4, 0),
+            xytext=(4, 0) if few else (0, 0),
             textcoords="offset points",
+            rotation=0.0 if few else 90.0,
+            ha="left" if few else "center",
             fontsize=8,
             color=GREY,
             va="top",

@@ -2,30 +2,40 @@
 
 from __future__ import annotations
 
-import numpy as np
-from matplotlib.patches import Circle, Polygon, Rectangle
+import re
+import textwrap
 
+import numpy as np
+from matplotlib.patches import Polygon
+
+from vibroimpact.contact.profiles import with_plain_profiles
+from vibroimpact.figures.labels import spread_labels
 from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PALE,
-    RED,
-    gap_label,
-    number,
-    shown,
-)
+from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, RED, gap_label
 from vibroimpact.geometry.sections import outer_width, section_kind
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.structure.beam_elements import DOF_PER_NODE
 
-GAP_EXAGGERATION = 10.0  # a gap to scale would be thinner than the lines
+from .support_views import (
+    SHOWN_HOLES,
+    distinct_holes,
+    drawn_scale,
+    support_section,
+    support_side,
+    titled,
+)
+
 SHOWN_MODES = 6
+STILL = 1e-6  # a mode that moves less per radian of twist, over the length of the tube, only twists
 SHAPE_SIZE = 0.22  # largest drawn displacement, as a fraction of the tube's largest extent
-OBLIQUE = (0.75, 0.45)  # how a unit out of plane is seen: right and up
+# Labels of the front view: the longest line of a name, and lengths in inches of a character, of
+# the space beside the tube and of the width of the panel.
+LINE = 14
+CHARACTER_IN, LABEL_OFFSET_IN, FRONT_IN = 0.06, 0.2, 4.1
+# Where the line to its place leaves a label.
+RELATIVE = {"left": (0.0, 0.5), "right": (1.0, 0.5), "center": (0.5, 0.5)}
+FEW, FONT_PT, SMALL_FONT_PT = 6, 8.5, 7.0  # supports that are named in the usual size of letters
+OBLIQUE = (0.75, 0.45)  # how a unit away from the reader is seen: right and up
 
 
 def view_axes(positions):
@@ -39,31 +49,61 @@ def view_axes(positions):
     return horizontal, vertical, depth
 
 
+def towards_reader(view):
+    """Return 1 where the depth axis of a view points towards the reader, -1 where away.
+
+    The global axes are right-handed: with x to the right and z up, y points away.
+    """
+    return 1 if (view[1] - view[0]) % 3 == 1 else -1
+
+
+def seen_obliquely(points, view):
+    """Return (point, 2) m: points (point, 3) as the reader sees them, what is far to the right and
+    up.
+    """
+    away = -towards_reader(view) * np.asarray(points)[..., [view[2]]]
+    return np.asarray(points)[..., list(view[:2])] + away * OBLIQUE
+
+
 def figure_01_layout(config, structure):
     """Return the Sheet of the layout: front view, and a support from the side and from above."""
+    config = with_plain_profiles(config, structure.contact)
     section = config.structure.section
     gap = max(config.grid.gap_m)
+    scale, holes = drawn_scale(config, gap), distinct_holes(config)
     caption = (
         f"Layout of the tube ({_section_in_words(section)}). Left: front view to scale with its"
         " supports"
         " (grey plates), the contact points on the centreline, the named points, the sensors and"
-        " the drive; arrows are directions in the plane, a circle with a dot is the direction out"
-        " of the plane, towards the reader. Right: a support from the side and in section; the"
-        f" tube can move by the gap, {gap_label(gap, outer_width(section))} here, before it"
-        f" touches; the gap is drawn {GAP_EXAGGERATION:g} times too large. The tube is the one of"
-        " the configuration, not the drawing of a rig."
+        " the drive; arrows are directions in the plane, a circle with a dot is a direction out of"
+        " the plane, towards the reader, with a cross away from the reader. Right: a support from"
+        " the side, and in section with the profile of its hole; the tube can move by the gap,"
+        f" {gap_label(gap, outer_width(section))} here where a support has none of its own,"
+        f" before it touches; gaps are drawn {scale:g} times too large."
+        f"{_holes_left_out(holes)} The tube is the one of the configuration, not the drawing of a"
+        " rig."
     )
+    panels = ["section"] if len(holes) < 2 else [f"section {n + 1}" for n in range(len(holes))]
+    panels = panels[:SHOWN_HOLES]
+    pairs = [panels[n : n + 2] for n in range(0, len(panels), 2)]
+    beside = [["side"], panels] if len(panels) == 1 else [["side", "side"], *map(_filled, pairs)]
     sheet = Sheet(
         "figure_01_layout",
         "The tube, its supports, sensors and drive",
         caption,
-        [["front", "side"], ["front", "section"]],
-        size=(7.6, 5.2),
+        [["front", beside]],
+        size=(7.6, 5.2 if len(pairs) < 2 else 6.6),
         width_ratios=(1.45, 1.0),
     )
+    support_side(sheet, sheet.axes["side"], config, structure, gap, scale)
+    for panel, (names, support) in zip(panels, holes or [([], None)], strict=False):
+        axes = sheet.axes[panel]
+        axes.set_title("in section" if len(panels) == 1 else titled(names), wrap=True)
+        support_section(sheet, axes, config, support, gap, scale)
+        if len(panels) > 1:
+            axes.set_xlabel("(mm)")
+            axes.set_ylabel("")
     _front_view(sheet, sheet.axes["front"], config, structure)
-    _support_side(sheet, sheet.axes["side"], config, structure, gap)
-    _support_section(sheet, sheet.axes["section"], config, gap)
     return [sheet]
 
 
@@ -82,13 +122,26 @@ def _section_in_words(section):
     return f"{drawn}, {outer_width(section) * 1e3:g} mm"
 
 
+def _filled(pair):
+    """Return a row of two panels, the second one empty where there is none."""
+    return pair if len(pair) == 2 else [*pair, "."]
+
+
+def _holes_left_out(holes):
+    """Return a sentence on supports whose holes are not drawn."""
+    if len(holes) <= SHOWN_HOLES:
+        return ""
+    return f" {len(holes) - SHOWN_HOLES} more supports with other holes are not drawn in section."
+
+
 def _front_view(sheet, axes, config, structure):
     """Draw the tube seen along the depth axis, with supports, points and sensors."""
     places = np.linspace(0.0, structure.centreline.length, 300)
     line = np.array([structure.centreline.position(place) for place in places])
     view = view_axes(line)
     columns = ["xyz"[axis] + "_m" for axis in view[:2]]
-    axes.set_title(f"front view, to scale ({'xyz'[view[2]]} towards the reader)")
+    side = "towards" if towards_reader(view) > 0 else "away from"
+    axes.set_title(f"front view, to scale ({'xyz'[view[2]]} {side} the reader)")
     sheet.line(
         axes,
         (columns[0], line[:, view[0]]),
@@ -103,9 +156,11 @@ def _front_view(sheet, axes, config, structure):
     axes.plot(
         line[:, view[0]], line[:, view[1]], color=GREY, linewidth=0.8, dashes=(8, 2, 1, 2), zorder=2
     )
+    labels = []
+    fontsize = FONT_PT if len(config.supports) <= FEW else SMALL_FONT_PT
     for index, support in enumerate(config.supports):
         points = structure.contact.position[structure.contact.support == index]
-        _draw_plate(axes, structure, points, view, support.name)
+        labels.append(_draw_plate(axes, structure, points, view, support.name, fontsize))
         sheet.line(
             axes,
             (columns[0], points[:, view[0]]),
@@ -118,32 +173,71 @@ def _front_view(sheet, axes, config, structure):
             zorder=4,
             label="contact points" if index == 0 else None,
         )
-    for end in (0, -1):
-        axes.plot(
-            *line[end, view[:2]],
-            marker="s",
-            color=BLACK,
-            markersize=8,
-            zorder=5,
-            linestyle="none",
-            label="root" if end == 0 else None,
-        )
+    ends = line[held_ends(config.structure)]
+    axes.plot(
+        *ends[:, view[:2]].T,
+        marker="s",
+        color=BLACK,
+        markersize=8,
+        zorder=5,
+        linestyle="none",
+        label="held end",
+    )
     sheet.record(
         axes,
-        "roots",
-        **{column: line[[0, -1], axis] for column, axis in zip(columns, view[:2], strict=True)},
+        "held ends",
+        **{column: ends[:, axis] for column, axis in zip(columns, view[:2], strict=True)},
     )
-    _draw_points(sheet, axes, config, structure, view, columns)
-    axes.set_aspect("equal")
-    tall = np.ptp(line[:, view[1]]) >= np.ptp(line[:, view[0]])
-    axes.margins(
-        *((0.34, 0.08) if tall else (0.15, 0.35))
-    )  # room for the names beside, or above and below
+    labels += _draw_points(sheet, axes, config, structure, view, columns)
+    axes.set_aspect("equal", adjustable="datalim")
+    _leave_room_for_names(axes, line[:, list(view[:2])], labels)
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=5)
+    spread_labels(sheet.figure, labels)
 
 
-def _draw_plate(axes, structure, points, view, name):
-    """Draw a support as a plate through which the tube passes, and its name."""
+def _leave_room_for_names(axes, line, labels):
+    """Set the limits around a line (point, 2), with room for the labels beside it, or above and
+    below; a straight tube gets a width to stand in.
+    """
+    low, high = line.min(axis=0), line.max(axis=0)
+    extents = high - low
+    longest = max((len(row) for label in labels for row in label.get_text().split("\n")), default=0)
+    size = min((label.get_fontsize() for label in labels), default=FONT_PT) / FONT_PT
+    beside = CHARACTER_IN * size * longest + LABEL_OFFSET_IN
+    shares = beside / (FRONT_IN - 2.0 * beside), 0.08
+    half = (0.5 + np.array(shares)) * np.maximum(extents, 0.2 * extents.max())
+    if extents[1] < extents[0]:
+        half[1] = max(half[1], 0.85 * extents[1])
+    middle = 0.5 * (low + high)
+    # Not limits but data: equal scales widen one of the two to fill the panel.
+    axes.update_datalim([middle - half, middle + half])
+    axes.margins(0.0)
+    axes.autoscale_view()
+    for label in labels:
+        label.set_in_layout(False)  # the limits leave room: the axes need not shrink for them
+
+
+def wrapped(name):
+    """Return a name in lines of a length that finds room beside the tube, broken at underscores."""
+    lines = [""]
+    for part in re.split(r"(?<=[_. -])", name):
+        for piece in textwrap.wrap(part, LINE, drop_whitespace=False) or [""]:
+            if len(lines[-1]) + len(piece) > LINE:
+                lines.append("")
+            lines[-1] += piece
+    return "\n".join(lines)
+
+
+def held_ends(structure):
+    """Return the indices, of 0 and -1, of the ends of a tube that are held."""
+    if structure.kind == "path":
+        ends = {0: structure.start, -1: structure.end}
+        return [index for index, end in ends.items() if end.kind != "free"]
+    return [0, -1]
+
+
+def _draw_plate(axes, structure, points, view, name, fontsize):
+    """Draw a support as a plate through which the tube passes; return the label of its name."""
     middle = points.mean(axis=0)
     tangent = structure.centreline.direction(structure.centreline.locate(middle, name))[
         list(view[:2])
@@ -162,12 +256,20 @@ def _draw_plate(axes, structure, points, view, name):
     centre = structure.nodes[:, list(view[:2])].mean(axis=0)
     side = np.sign((middle - centre) @ across) or 1.0
     offset, alignment = _beside(side * across)
-    axes.annotate(
-        f"support\n{name}",
+    return axes.annotate(
+        wrapped(name),
         middle + side * reach * across,
         xytext=5 * offset,
         textcoords="offset points",
-        fontsize=8.5,
+        fontsize=fontsize,
+        arrowprops={
+            "arrowstyle": "-",
+            "color": GREY,
+            "linewidth": 0.5,
+            "relpos": RELATIVE[alignment["ha"]],
+            "shrinkA": 1.0,
+            "shrinkB": 0.0,
+        },
         **alignment,
     )
 
@@ -186,11 +288,11 @@ def _beside(direction):
 
 
 def _draw_points(sheet, axes, config, structure, view, columns):
-    """Draw the named points with the directions of their sensors, and the drive.
+    """Draw the named points with the directions of their sensors, and the drive; return the labels.
 
     Names at the same place share one label.
     """
-    places = {}
+    labels, places = [], {}
     for name, position in config.points.items():
         place = structure.centreline.position(structure.centreline.locate(position, name))
         key = next(
@@ -218,21 +320,22 @@ def _draw_points(sheet, axes, config, structure, view, columns):
         ]
         outward = spot - centre[list(view[:2])]
         outward = outward - (outward @ tangent) * tangent
-        outward = outward / (np.linalg.norm(outward) or 1.0)
-        lines = [", ".join(names)]
+        if np.linalg.norm(outward) < 1e-6:  # a straight tube has no outside: beside it
+            outward = np.array([tangent[1], -tangent[0]])
+        outward = outward / np.linalg.norm(outward)
+        lines = [wrapped(", ".join(names))]
         if set(names) & set(config.record.sensors.points):
             lines.append(f"sensors {', '.join(config.record.sensors.directions)}")
         if config.excitation.point in names:
-            lines[0] = (
-                ", ".join(name for name in names if name != config.excitation.point) or "drive"
-            )
-            lines.append(f"drive '{config.excitation.point}'")
+            others = ", ".join(name for name in names if name != config.excitation.point)
+            lines[0] = wrapped(others) if others else ""
+            lines.append(f"drive\n{wrapped(config.excitation.point)}")
             _direction(axes, spot, np.array(config.excitation.direction), view)
         offset, alignment = _beside(
             -outward if abs(outward[0]) <= 0.4 else outward
         )  # above and below a bend there is more room inside
-        axes.annotate(
-            "\n".join(lines),
+        label = axes.annotate(
+            "\n".join(filter(None, lines)),
             spot,
             xytext=13 * offset,
             textcoords="offset points",
@@ -240,12 +343,13 @@ def _draw_points(sheet, axes, config, structure, view, columns):
             zorder=7,
             **alignment,
         )
+        labels.append(label)
+    return labels
 
 
 def _direction(axes, spot, direction, view):
-    """Draw a force as an arrow; as a circle with a dot or cross along the line of sight.
-
-    The dot points towards the reader.
+    """Draw a force as an arrow; along the line of sight as a circle, with a dot where it points
+    towards the reader and a cross where away.
     """
     direction = direction / np.linalg.norm(direction)
     inside = direction[list(view[:2])]
@@ -269,125 +373,8 @@ def _direction(axes, spot, direction, view):
         linestyle="none",
         label="drive, out of plane",
     )
-    axes.plot(*spot, marker=".", markersize=4, color=GREEN, zorder=9)
-
-
-def _support_side(sheet, axes, config, structure, gap):
-    """Draw the first support from the side: the tube in the hole, and its contact points."""
-    radius = 0.5 * outer_width(config.structure.section)
-    support = config.supports[0] if config.supports else None
-    axes.set_title(f"a support from the side (gap × {GAP_EXAGGERATION:g})")
-    half = 0.5 * support.height_m if support else radius
-    wall = radius + GAP_EXAGGERATION * gap
-    for side in (-1, 1):
-        axes.add_patch(
-            Rectangle(
-                (min(side * wall, side * 2.0 * wall) * 1e3, -half * 1e3),
-                wall * 1e3,
-                2 * half * 1e3,
-                facecolor=GREY,
-                alpha=0.55,
-                edgecolor=BLACK,
-                linewidth=0.6,
-            )
-        )
-        sheet.line(
-            axes,
-            ("across_m", [side * radius] * 2),
-            ("along_m", [-2 * half, 2 * half]),
-            "edge of the tube",
-            color=BLACK,
-            linewidth=1.2,
-        )
-    axes.add_patch(
-        Rectangle(
-            (-radius * 1e3, -2 * half * 1e3),
-            2 * radius * 1e3,
-            4 * half * 1e3,
-            facecolor=PALE,
-            alpha=0.6,
-            edgecolor="none",
-            zorder=0,
-        )
-    )
-    axes.axvline(0.0, color=GREY, linewidth=0.8, dashes=(8, 2, 1, 2))
-    if support:
-        places = structure.contact.arc_length[structure.contact.support == 0]
-        along = places - places.mean()
-        sheet.line(
-            axes,
-            ("across_m", np.zeros(along.size)),
-            ("along_m", along),
-            "contact points",
-            color=RED,
-            linestyle="none",
-            marker="o",
-            zorder=5,
-        )
-        axes.text(
-            0,
-            shown("along_m", 2.05 * half),
-            f"{support.points} contact points, {number(np.sum(support.stiffness_N_per_m))} N/m"
-            " in all",
-            ha="center",
-            va="bottom",
-            fontsize=8.5,
-        )
-    axes.set_xlim(-2.2e3 * wall, 2.2e3 * wall)
-    axes.set_ylim(-1.8e3 * half, 2.4e3 * half)
-
-
-def _support_section(sheet, axes, config, gap):
-    """Draw the tube in its circular obstacle."""
-    section = config.structure.section
-    radius = 0.5 * outer_width(section)
-    inner = radius - section.wall_thickness_m if section_kind(section) == "tube" else 0.0
-    turn = np.linspace(0.0, 2.0 * np.pi, 121)
-    wall = radius + GAP_EXAGGERATION * gap
-    axes.set_title(f"in section (gap × {GAP_EXAGGERATION:g})")
-    axes.add_patch(
-        Rectangle(
-            (-1.5e3 * wall, -1.35e3 * wall),
-            3e3 * wall,
-            2.7e3 * wall,
-            facecolor=GREY,
-            alpha=0.55,
-            edgecolor="none",
-        )
-    )
-    axes.add_patch(Circle((0, 0), wall * 1e3, facecolor="white", edgecolor="none"))
-    axes.add_patch(Circle((0, 0), radius * 1e3, facecolor=PALE, edgecolor="none"))
-    axes.add_patch(Circle((0, 0), inner * 1e3, facecolor="white", edgecolor="none"))
-    curves = [("obstacle", wall, RED), ("tube, outside", radius, BLACK)]
-    if inner > 0.0:
-        curves.append(("tube, inside", inner, BLACK))
-    for curve, size, colour in curves:
-        sheet.line(
-            axes,
-            ("section_e1_m", size * np.cos(turn)),
-            ("section_e2_m", size * np.sin(turn)),
-            curve,
-            color=colour,
-            linewidth=1.2,
-        )
-    for start, end in ((wall * 1.3, wall), (radius * 0.75, radius)):
-        axes.annotate(
-            "",
-            (end * 1e3, 0),
-            (start * 1e3, 0),
-            arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 1.6},
-        )
-    axes.text(
-        0,
-        0,
-        f"gap\n{gap * 1e3:.3g} mm\n({gap / outer_width(section) * 100:.3g} % of D)",
-        ha="center",
-        va="center",
-        fontsize=7.5,
-    )
-    axes.set_aspect("equal")
-    axes.set_xlim(-1.5e3 * wall, 1.5e3 * wall)
-    axes.set_ylim(-1.35e3 * wall, 1.35e3 * wall)
+    towards = direction[view[2]] * towards_reader(view) > 0.0
+    axes.plot(*spot, marker="." if towards else "x", markersize=5, color=GREEN, zorder=9)
 
 
 def free_modes(structure, highest_Hz, count=SHOWN_MODES):
@@ -403,10 +390,12 @@ def free_modes(structure, highest_Hz, count=SHOWN_MODES):
         for index in range(min(count, len(omega))):
             dofs = np.zeros(structure.dofs)
             dofs[group.dofs] = vectors[:, index]
-            motion = (structure.transformation @ dofs).reshape(-1, DOF_PER_NODE)[:, :3]
-            found.append(
-                (omega[index] / (2.0 * np.pi), motion / motion.ravel()[np.argmax(np.abs(motion))])
-            )
+            moved = (structure.transformation @ dofs).reshape(-1, DOF_PER_NODE)
+            motion, largest = moved[:, :3], np.abs(moved[:, :3]).max()
+            # A straight tube that twists does not move: there is nothing to draw.
+            if largest > STILL * structure.centreline.length * np.abs(moved[:, 3:]).max():
+                motion = motion / motion.ravel()[np.argmax(np.abs(motion))]
+                found.append((omega[index] / (2.0 * np.pi), motion))
     found = sorted(found, key=lambda mode: mode[0])[:count]
     return np.array([mode[0] for mode in found]), np.array([mode[1] for mode in found])
 
@@ -416,8 +405,8 @@ def figure_02_free_modes(config, structure):
     caption = (
         "Mode shapes of the tube without contact, lowest first, with their frequencies. Grey: the"
         " tube at rest; colour: displaced in the mode, largest displacement drawn as"
-        f" {SHAPE_SIZE:g} of the tube's extent. The tube is seen obliquely: out-of-plane motion"
-        " appears towards the upper right."
+        f" {SHAPE_SIZE:g} of the tube's extent. The tube is seen obliquely: motion away from the"
+        " reader appears towards the upper right."
     )
     frequency, shapes = free_modes(structure, config.basis.free_modes_to_Hz)
     sheet = Sheet(
@@ -441,7 +430,7 @@ def figure_02_free_modes(config, structure):
         for index in ribs:
             pair = np.array([nodes[index], nodes[index] + scale * shape[index]])
             axes.plot(
-                *(pair[:, view[:2]] + pair[:, [view[2]]] * OBLIQUE).T,
+                *seen_obliquely(pair, view).T,
                 color=PALE,
                 linewidth=0.8,
                 zorder=1,
@@ -454,7 +443,7 @@ def figure_02_free_modes(config, structure):
                 {"color": BLUE if across else ORANGE, "linewidth": 2.2},
             ),
         ):
-            seen = points[:, view[:2]] + points[:, [view[2]]] * OBLIQUE
+            seen = seen_obliquely(points, view)
             tags = (
                 {
                     "frequency_Hz": value,
@@ -474,7 +463,7 @@ def figure_02_free_modes(config, structure):
                 **style,
             )
         axes.plot(
-            *(nodes[[0, -1]][:, view[:2]] + nodes[[0, -1]][:, [view[2]]] * OBLIQUE).T,
+            *seen_obliquely(nodes[held_ends(config.structure)], view).T,
             linestyle="none",
             marker="s",
             color=BLACK,
@@ -484,6 +473,8 @@ def figure_02_free_modes(config, structure):
         axes.set_aspect("equal")
         axes.margins(0.1)
         axes.label_outer()
+    for axes in list(sheet.axes.values())[len(frequency) :]:
+        axes.set_visible(False)
     return [sheet]
 
 
@@ -492,7 +483,7 @@ def _draw_supports_obliquely(axes, structure, view):
     for support in np.unique(structure.contact.support):
         middle = structure.contact.position[structure.contact.support == support].mean(axis=0)
         axes.plot(
-            *(middle[list(view[:2])] + middle[view[2]] * np.array(OBLIQUE)),
+            *seen_obliquely(middle, view),
             marker="P",
             color=RED,
             markersize=6,

@@ -1,0 +1,127 @@
+"""What a run says at its end: the headline of a study, or what failed and what to do about it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .method_agreement import COMPARED
+
+# A failed job in the log that Snakemake writes.
+FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
+STARTED = re.compile(r"^Job (?P<job>\d+): (?P<message>.*)$", flags=re.M)
+LAST_LINES = 6
+MENTIONED = ("report.html", "consistency_summary.csv", "consistency.csv", "statistics.csv")
+
+
+def headline(summary: Sequence[dict]) -> str:
+    """Return one sentence on a study: the equivalent stiffness of the largest gap from the lowest
+    to the highest load, and how often the methods agree.
+
+    summary: rows of consistency_summary.csv. The stiffness is the median of the three independent
+    methods at the loads where all three resolve it.
+    """
+    verdicts = {(row["gap_m"], row["load_rms_N"]): row["verdict"] for row in summary}
+    agreed = sum(verdict == "agree" for verdict in verdicts.values())
+    return (
+        f"{_stiffness_range(summary)}; methods agree in {agreed} of {len(verdicts)} pairs of load"
+        " and gap"
+    )
+
+
+def _stiffness_range(summary: Sequence[dict]) -> str:
+    """Return the first half of the headline."""
+    gap = max(row["gap_m"] for row in summary)
+    at_gap = f"(gap {1e3 * gap:.2g} mm)"
+    curve = _stiffness_of_gap(row for row in summary if row["gap_m"] == gap)
+    if not curve:
+        return f"no load at which all three methods resolve the support {at_gap}"
+    texts = [f"{_short(k)} N/m at {load:g} N" for load, k in (curve[0], curve[-1])]
+    return f"k {' to '.join(dict.fromkeys(texts))} {at_gap}".replace(
+        "k ", "k from " if len(curve) > 1 else "k = ", 1
+    )
+
+
+def _short(value: float) -> str:
+    """Return a value with two digits, as in 1.2e4."""
+    return f"{value:.2g}".replace("e+0", "e").replace("e+", "e")
+
+
+def _stiffness_of_gap(rows: Iterable[dict]) -> list[tuple[float, float]]:
+    """Return [(load N, k N/m)] by load, where all compared methods have a median stiffness."""
+    by_load: dict[float, list[float]] = {}
+    for row in rows:
+        if row["method"] in COMPARED:
+            # The column is k_median with or without its unit.
+            (column,) = (name for name in row if name.startswith("k_median"))
+            by_load.setdefault(row["load_rms_N"], []).append(float(row[column]))
+    return [
+        (load, float(np.median(values)))
+        for load, values in sorted(by_load.items())
+        if len(values) == len(COMPARED) and np.all(np.isfinite(values))
+    ]
+
+
+def success_text(folder: str | Path, summary: Sequence[dict]) -> str:
+    """Return what a complete study says: its headline, and where its page and tables are.
+
+    summary: rows of consistency_summary.csv, empty for a study without identification.
+    """
+    folder = Path(folder)
+    files = [folder / name for name in MENTIONED if (folder / name).is_file()]
+    figures = [folder / "figures"] if (folder / "figures").is_dir() else []
+    lines = [f"Study '{folder.name}': {headline(summary)}."] if summary else []
+    return "\n".join([*lines, *(f"  {path.as_posix()}" for path in [*files, *figures])])
+
+
+def failure_text(log: str) -> str:
+    """Return what a failed run says: each failed job, the end of its log, and what to do next.
+
+    log: text of the log that Snakemake wrote of the run.
+    """
+    messages = {match["job"]: match["message"] for match in STARTED.finditer(log)}
+    jobs = [_failed_job(match, messages) for match in FAILED.finditer(log)]
+    failed = {(job["rule"], job["log"]): job for job in jobs}
+    if not failed:
+        return ""
+    count = f"{len(failed)} jobs" if len(failed) > 1 else "1 job"
+    lines = [f"{count} failed:", *(line for job in failed.values() for line in _about(job))]
+    return "\n".join(
+        [
+            *lines,
+            "Mend what the last line says and give the same command again: complete files are kept"
+            " and only what is missing runs.",
+        ]
+    )
+
+
+def _failed_job(match: re.Match, messages: dict[str, str]) -> dict[str, str]:
+    """Return {rule, message, log} of a failed job; messages: of the started jobs by number."""
+    about = dict(re.findall(r"^    (\w+): (.*)$", match["about"], flags=re.M))
+    log = about.get("log", "").removesuffix(" (check log file(s) for error details)")
+    return {
+        "rule": match["rule"],
+        "message": messages.get(about.get("jobid", ""), ""),
+        "log": log.split(", ")[0],
+    }
+
+
+def _about(job: dict[str, str]) -> list[str]:
+    """Return the lines on one failed job."""
+    rule = job["rule"].removeprefix("_")
+    lines = [f"  {job['message']} (rule {rule})" if job["message"] else f"  rule {rule}"]
+    if not job["log"]:
+        return lines
+    path = Path(job["log"])
+    text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+    last = [line for line in text.splitlines() if line.strip()][-LAST_LINES:]
+    if not last:
+        return [
+            *lines,
+            f"    {job['log']} is empty: see the lines above. A job that is stopped from outside,"
+            " as for lack of memory, leaves no word: run fewer jobs at a time (-j1)",
+        ]
+    return [*lines, f"    {job['log']} ends with", *(f"      {line}" for line in last)]

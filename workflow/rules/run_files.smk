@@ -1,0 +1,47 @@
+# What a run writes beside its results and says at its end: its configuration, where it comes from,
+# the headline of the study, or what failed.
+from snakemake.logging import logger
+from vibroimpact.records import read_table, read_text
+from vibroimpact.study.run_files import write_run_files
+from vibroimpact.study.run_report import failure_text, success_text
+
+
+def planned_jobs():
+    """The jobs of this run."""
+    return list(workflow.dag.needrun_jobs(exclude_finished=False))
+
+
+def result_folders():
+    """The folders in results/ that the jobs of this run write to."""
+    files = [Path(file) for job in planned_jobs() for file in job.output]
+    return {Path(*file.parts[:2]) for file in files if file.parts[0] == "results"}
+
+
+def write_files_of_run():
+    """Write provenance into every folder that this run writes to, and the configuration of a study,
+    or of the model that a campaign is compared with.
+    """
+    configurations = {Path(RESULTS): STUDY, Path("results/validation"): STUDY}
+    if any(job.rule.name.startswith("_discrepancy") for job in planned_jobs()):
+        configurations[Path(DISCREPANCY)] = MODEL
+    for folder in result_folders():
+        values = configurations.get(folder)
+        write_run_files(folder, values and values.model_dump(mode="json"), sys.argv)
+
+
+def say_success():
+    """Say the headline of the study where this run has completed it."""
+    table = Path(RESULTS, "consistency_summary.csv")
+    if "all" in {job.rule.name for job in workflow.dag.finished_jobs}:
+        rows = read_table(table) if table.is_file() else []
+        logger.info(success_text(RESULTS, rows))
+
+
+def say_failure(logs):
+    """Say which jobs failed, the ends of their logs, and what to do next.
+
+    logs: the log files that Snakemake wrote of this run.
+    """
+    text = failure_text("".join(read_text(file) for file in logs if Path(file).is_file()))
+    if text:
+        logger.error(text)
