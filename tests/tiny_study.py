@@ -100,7 +100,8 @@ class TinyStudy:
         names = ("summary", "collapse")
         outputs = {name: self.path(f"consistency_{name}.csv") for name in names}
         outputs |= {"table": table, "dataset": self.path("consistency.nc")}
-        self.run("consistency", {"tables": tables}, outputs)
+        outputs["equivalent"] = self.path("equivalent.csv")
+        self.run("consistency", {"model": model, "tables": tables}, outputs)
         self.run(
             "synthetic_campaign",
             {"model": model},

@@ -16,8 +16,6 @@ CONVENTIONS = "cf:1.11"
 # In a campaign file `time` is the name that its contract gives to the time of a record, in seconds
 # from its start. The checker takes any dimension of that name for a date, which CF does not.
 NO_DATE = "Coordinate variable 'time' should have standard_name='time', found: 'None'"
-# Being rewritten: their coordinates have no long_name yet.
-REWRITTEN = pytest.mark.xfail(reason="coordinates without long_name", strict=False)
 
 
 @pytest.fixture(scope="module")
@@ -74,8 +72,8 @@ def found_in(checker, file, folder):
         "records",
         "timeseries",
         "spectra",
-        pytest.param("estimates", marks=REWRITTEN),
-        pytest.param("consistency", marks=REWRITTEN),
+        "estimates",
+        "consistency",
         "every step",
         "run energies",
     ],

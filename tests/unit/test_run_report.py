@@ -2,29 +2,29 @@
 
 import numpy as np
 
+from vibroimpact.study.equivalent_table import NOT_MOVED
 from vibroimpact.study.run_report import failure_text, headline, success_text
 
 
-def rows(gap_m, load_rms_N, stiffness, verdict):
-    """Rows of the summary of one load and gap: the three independent methods, and another."""
-    values = zip(("lscf", "ods", "broadband", "secant"), (*stiffness, 1.0), strict=True)
-    return [
-        {
-            "gap_m": gap_m,
-            "load_rms_N": load_rms_N,
-            "method": method,
-            "k_median": value,
-            "verdict": verdict,
-        }
-        for method, value in values
-    ]
+def row(gap_m, load_rms_N, k, agreement, group="all", direction="y", reason=""):
+    """A row of equivalent.csv, as far as the headline reads it."""
+    return {
+        "gap_m": gap_m,
+        "load_rms_N": load_rms_N,
+        "group": group,
+        "direction": direction,
+        "k_N_per_m": k,
+        "agreement_k": agreement,
+        "reason_k": reason,
+    }
 
 
-SUMMARY = [
-    *rows(2.9e-4, 0.1, (np.nan, 5.0e3, np.nan), "unresolved"),
-    *rows(2.9e-4, 20.0, (1.0e6, 1.1e6, 1.3e6), "agree"),
-    *rows(2.9e-4, 2.0, (1.2e4, 1.0e4, 3.0e4), "spread"),
-    *rows(5.0e-5, 20.0, (9.0e6, 9.0e6, 9.0e6), "agree"),
+ROWS = [
+    row(2.9e-4, 0.1, np.nan, "unresolved", reason="too soft"),
+    row(2.9e-4, 20.0, 1.1e6, "agree"),
+    row(2.9e-4, 2.0, 1.2e4, "spread"),
+    row(5.0e-5, 20.0, 9.0e6, "agree"),
+    row(2.9e-4, 20.0, np.nan, "unresolved", direction="x", reason=NOT_MOVED),
 ]
 LOG = """\
 [Tue Nov 24 06:47:40 2026]
@@ -41,21 +41,29 @@ Shutting down, this might take some time.
 """
 
 
-def test_headline_is_of_the_largest_gap_and_its_median():
-    assert headline(SUMMARY) == (
-        "k from 1.2e4 N/m at 2 N to 1.1e6 N/m at 20 N (gap 0.29 mm); methods agree in 2 of 4"
-        " pairs of load and gap"
+def test_headline_is_of_the_largest_gap():
+    assert headline(ROWS) == (
+        "k from 1.2e4 N/m at 2 N to 1.1e6 N/m at 20 N (gap 0.29 mm). The methods agree on k in 2 of"
+        " 4 pairs of load and gap"
     )
 
 
 def test_headline_of_one_resolved_load_names_it_once():
-    assert headline(SUMMARY[:8]).startswith("k = 1.1e6 N/m at 20 N (gap 0.29 mm); methods agree")
+    assert headline(ROWS[:2]).startswith("k = 1.1e6 N/m at 20 N (gap 0.29 mm). The methods agree")
 
 
 def test_headline_says_when_nothing_is_resolved():
-    assert headline(SUMMARY[:4]) == (
-        "no load at which all three methods resolve the support (gap 0.29 mm); methods agree in 0"
-        " of 1 pairs of load and gap"
+    assert headline(ROWS[:1]) == (
+        "no load at which k is resolved (gap 0.29 mm). The methods agree on k in 0 of 1 pairs of"
+        " load and gap"
+    )
+
+
+def test_headline_names_each_group_of_supports():
+    groups = [row(3e-4, 15.0, 4.3e3, "agree", "plate"), row(3e-4, 15.0, 5.2e5, "spread", "bars")]
+    assert headline(groups) == (
+        "plate in y: k = 4.3e3 N/m at 15 N; bars in y: k = 5.2e5 N/m at 15 N (gap 0.3 mm). The"
+        " methods agree on k in 1 of 2 cases"
     )
 
 
@@ -63,7 +71,7 @@ def test_success_names_the_files_that_are_there(tmp_path):
     folder = tmp_path / "mine"
     (folder / "figures").mkdir(parents=True)
     (folder / "consistency.csv").touch()
-    told = success_text(folder, SUMMARY).splitlines()
+    told = success_text(folder, ROWS).splitlines()
     assert told[0].startswith("Study 'mine': k from ")
     assert told[1:] == [f"  {folder}/consistency.csv", f"  {folder}/figures"]
     assert success_text(folder, []).splitlines()[0] == f"  {folder}/consistency.csv"

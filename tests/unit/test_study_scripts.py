@@ -21,7 +21,6 @@ STAGES = {
     "consistency": "consistency",
     "synthetic_campaign": "synthetic_campaign",
 }
-REWRITTEN = ("estimates", "consistency")  # their coordinates have no long_name yet
 
 
 @pytest.fixture(scope="module")
@@ -82,8 +81,7 @@ def test_every_variable_says_what_it_is_and_in_what_unit(study, kind):
         for name, variable in file.variables.items():
             given = set(variable.ncattrs())
             numbers = variable.dtype is not str
-            coordinate = name.removesuffix("_name") in variable.dimensions
-            if "long_name" not in given and not (kind in REWRITTEN and coordinate):
+            if "long_name" not in given:
                 silent.append(f"{name}: no long_name")
             if numbers and not given & {"units", "comment"} and name not in ("seed", "response"):
                 silent.append(f"{name}: no unit")

@@ -31,7 +31,7 @@ def write_files_of_run():
 
 def say_success():
     """Say the headline of the study where this run has completed it."""
-    table = Path(RESULTS, "consistency_summary.csv")
+    table = Path(RESULTS, "equivalent.csv")
     if "all" in {job.rule.name for job in workflow.dag.finished_jobs}:
         rows = read_table(table) if table.is_file() else []
         logger.info(success_text(RESULTS, rows))

@@ -58,16 +58,7 @@ def case_curves(
                 "broadband_frequency", broad.curve, "m2 Hz-1", "best PSD of the family"
             ),
         }
-    coords = {
-        "level": list(peaks),
-        "low_frequency": ("low_frequency", case.frequency, {"units": "Hz"}),
-        "broadband_frequency": (
-            "broadband_frequency",
-            case.frequency[tube.broadband],
-            {"units": "Hz"},
-        ),
-    }
-    return xr.Dataset(data, coords)
+    return xr.Dataset(data, _coordinates(list(peaks), case.frequency, tube.broadband))
 
 
 def supports_curves(case: SupportsCase, result: SupportsResult) -> xr.Dataset:
@@ -111,17 +102,20 @@ def supports_curves(case: SupportsCase, result: SupportsResult) -> xr.Dataset:
                 "covariance of the logarithms of the stiffnesses, broadband comparison",
             ),
         }
-    coords = {
-        "level": list(result.peaks),
-        "low_frequency": ("low_frequency", tube.frequency, {"units": "Hz"}),
-        "broadband_frequency": (
-            "broadband_frequency",
-            tube.frequency[tube.broadband],
-            {"units": "Hz"},
-        ),
-        "support_direction": [direction.name for direction in tube.directions],
+    coords = _coordinates(list(result.peaks), tube.frequency, tube.broadband)
+    names = [direction.name for direction in tube.directions]
+    about = {"long_name": "group of supports and direction"}
+    return xr.Dataset(data, coords | {"support_direction": ("support_direction", names, about)})
+
+
+def _coordinates(levels: list[str], frequency: np.ndarray, broadband: slice) -> dict[str, tuple]:
+    """Return the coordinates of the curves: levels of the peak, and frequencies in Hz."""
+    hertz = {"units": "Hz", "long_name": "frequency"}
+    return {
+        "level": ("level", levels, {"long_name": "method by the width of the peak"}),
+        "low_frequency": ("low_frequency", frequency, hertz),
+        "broadband_frequency": ("broadband_frequency", frequency[broadband], hertz),
     }
-    return xr.Dataset(data, coords)
 
 
 def _chart_variables(pole: OperationalPole) -> dict[str, tuple]:

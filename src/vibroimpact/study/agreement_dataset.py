@@ -47,10 +47,18 @@ def consistency_dataset(rows: list[dict], summary: list[dict]) -> xr.Dataset:
     coords = {
         "gap": ("gap", axes["gap"], {"units": "m", "long_name": "radial gap"}),
         "load": ("load", axes["load"], {"units": "N", "long_name": "RMS load"}),
-        "seed": axes["seed"],
-        "method": axes["method"],
-        "group": ("support_direction", [group for group, _ in axes["support_direction"]]),
-        "direction": ("support_direction", [name for _, name in axes["support_direction"]]),
+        "seed": ("seed", axes["seed"], {"units": "1", "long_name": "number of the realisation"}),
+        "method": ("method", axes["method"], {"long_name": "identification method"}),
+        "group": (
+            "support_direction",
+            [group for group, _ in axes["support_direction"]],
+            {"long_name": "group of supports that share stiffness and damping"},
+        ),
+        "direction": (
+            "support_direction",
+            [name for _, name in axes["support_direction"]],
+            {"long_name": "direction in which the supports act"},
+        ),
     }
     return xr.Dataset(data, coords, {"title": "vibroimpact consistency of the identifications"})
 

@@ -8,41 +8,45 @@ from pathlib import Path
 
 import numpy as np
 
-from .method_agreement import COMPARED
+from .equivalent_table import NOT_MOVED
 
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
 STARTED = re.compile(r"^Job (?P<job>\d+): (?P<message>.*)$", flags=re.M)
 LAST_LINES = 6
-MENTIONED = ("report.html", "consistency_summary.csv", "consistency.csv", "statistics.csv")
+MENTIONED = ("index.html", "summary.pdf", "equivalent.csv", "consistency.csv", "statistics.csv")
 
 
-def headline(summary: Sequence[dict]) -> str:
-    """Return one sentence on a study: the equivalent stiffness of the largest gap from the lowest
-    to the highest load, and how often the methods agree.
+def headline(rows: Sequence[dict]) -> str:
+    """Return one sentence on a study: the equivalent stiffness of each group of supports at the
+    largest gap, from the lowest to the highest load, and how often the methods agree on it.
 
-    summary: rows of consistency_summary.csv. The stiffness is the median of the three independent
-    methods at the loads where all three resolve it.
+    rows: of equivalent.csv. Directions that the force does not move are left out.
     """
-    verdicts = {(row["gap_m"], row["load_rms_N"]): row["verdict"] for row in summary}
-    agreed = sum(verdict == "agree" for verdict in verdicts.values())
+    moved = [row for row in rows if row["reason_k"] != NOT_MOVED]
+    places = list(dict.fromkeys((row["group"], row["direction"]) for row in moved))
+    gap = max(row["gap_m"] for row in moved)
+    parts = []
+    for group, direction in places:
+        own = [row for row in moved if (row["group"], row["direction"]) == (group, direction)]
+        name = "" if len(places) == 1 else f"{group} in {direction}: "
+        parts.append(name + _stiffness_range([row for row in own if row["gap_m"] == gap]))
+    agreed = sum(row["agreement_k"] == "agree" for row in moved)
     return (
-        f"{_stiffness_range(summary)}; methods agree in {agreed} of {len(verdicts)} pairs of load"
-        " and gap"
+        f"{'; '.join(parts)} (gap {1e3 * gap:.2g} mm). The methods agree on k in {agreed} of"
+        f" {len(moved)} {'cases' if len(places) > 1 else 'pairs of load and gap'}"
     )
 
 
-def _stiffness_range(summary: Sequence[dict]) -> str:
-    """Return the first half of the headline."""
-    gap = max(row["gap_m"] for row in summary)
-    at_gap = f"(gap {1e3 * gap:.2g} mm)"
-    curve = _stiffness_of_gap(row for row in summary if row["gap_m"] == gap)
+def _stiffness_range(rows: Iterable[dict]) -> str:
+    """Return the stiffness from the lowest to the highest load at which it is resolved."""
+    curve = sorted(
+        (row["load_rms_N"], row["k_N_per_m"]) for row in rows if np.isfinite(row["k_N_per_m"])
+    )
     if not curve:
-        return f"no load at which all three methods resolve the support {at_gap}"
+        return "no load at which k is resolved"
     texts = [f"{_short(k)} N/m at {load:g} N" for load, k in (curve[0], curve[-1])]
-    return f"k {' to '.join(dict.fromkeys(texts))} {at_gap}".replace(
-        "k ", "k from " if len(curve) > 1 else "k = ", 1
-    )
+    return ("k from " if len(curve) > 1 else "k = ") + " to ".join(dict.fromkeys(texts))
 
 
 def _short(value: float) -> str:
@@ -50,30 +54,15 @@ def _short(value: float) -> str:
     return f"{value:.2g}".replace("e+0", "e").replace("e+", "e")
 
 
-def _stiffness_of_gap(rows: Iterable[dict]) -> list[tuple[float, float]]:
-    """Return [(load N, k N/m)] by load, where all compared methods have a median stiffness."""
-    by_load: dict[float, list[float]] = {}
-    for row in rows:
-        if row["method"] in COMPARED:
-            # The column is k_median with or without its unit.
-            (column,) = (name for name in row if name.startswith("k_median"))
-            by_load.setdefault(row["load_rms_N"], []).append(float(row[column]))
-    return [
-        (load, float(np.median(values)))
-        for load, values in sorted(by_load.items())
-        if len(values) == len(COMPARED) and np.all(np.isfinite(values))
-    ]
-
-
-def success_text(folder: str | Path, summary: Sequence[dict]) -> str:
+def success_text(folder: str | Path, rows: Sequence[dict]) -> str:
     """Return what a complete study says: its headline, and where its page and tables are.
 
-    summary: rows of consistency_summary.csv, empty for a study without identification.
+    rows: of equivalent.csv, empty for a study without identification.
     """
     folder = Path(folder)
     files = [folder / name for name in MENTIONED if (folder / name).is_file()]
     figures = [folder / "figures"] if (folder / "figures").is_dir() else []
-    lines = [f"Study '{folder.name}': {headline(summary)}."] if summary else []
+    lines = [f"Study '{folder.name}': {headline(rows)}."] if rows else []
     return "\n".join([*lines, *(f"  {path.as_posix()}" for path in [*files, *figures])])
 
 
