@@ -42,6 +42,7 @@ PACKAGES = (
     "identify",
     "campaign",
     "study",
+    "equivalent_support",
     "effects",
     "discrepancy",
     "completion",

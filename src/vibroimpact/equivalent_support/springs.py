@@ -1,0 +1,172 @@
+"""The springs and dampers to ground that an answer means, at the contact points of the supports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .answer import Answer, EquivalentError, GroupAnswer, Span
+from .support_directions import direction_index
+
+Pair = tuple[float | None, float | None]
+
+
+@dataclass(frozen=True)
+class PointSpring:
+    """A spring and a damper to ground in each of the two transverse directions of a point.
+
+    name: such as "left_3": support and number of the contact point, from 1.
+    support: name of the support.
+    position: (3,) m.
+    axes: (2, 3) unit vectors of the two directions.
+    k, c: N/m and N s/m along the two directions; None for no spring or damper.
+    """
+
+    name: str
+    support: str
+    position: np.ndarray
+    axes: np.ndarray
+    k: Pair
+    c: Pair
+
+
+@dataclass(frozen=True)
+class SpringSet:
+    """All springs of an answer, and what was left out.
+
+    notes: sentences for the head of a file.
+    left_out: sentences for what is not resolved and therefore not among the springs.
+    """
+
+    springs: tuple[PointSpring, ...]
+    notes: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+
+def point_springs(
+    answer: Answer, model: ModalModel, points: str = "each", across: str = "same"
+) -> SpringSet:
+    """Return the SpringSet of an answer on the structure it belongs to.
+
+    The k and c of a support are shared by its contact points with their weights, in both
+    transverse directions, as in the linear tube that the methods compare with (linear.modes).
+    What is not resolved is left out.
+
+    points: "each" for every contact point, "one" for a single spring at the middle of a support.
+    across: "same" gives a transverse direction that was not identified the k and c of the one that
+        was; "none" leaves it free.
+
+    Raises EquivalentError where no k is resolved, or the structure has no positions in space.
+    """
+    _require_positions(model)
+    if not any(group.k.resolved for group in answer.groups):
+        raise EquivalentError(
+            "nothing to export: " + "; ".join(answer.unresolved or ["no support is resolved"])
+        )
+    by_support: dict[str, list[GroupAnswer]] = {name: [] for name in model.support_names}
+    for group in answer.groups:
+        for name in group.supports:
+            by_support[name].append(group)
+    springs = [
+        spring
+        for number, name in enumerate(model.support_names)
+        for spring in _springs_of_support(model, number, by_support[name], points, across)
+    ]
+    kept = [spring for spring in springs if spring.k != (None, None)]
+    return SpringSet(tuple(kept), _notes(answer, across), _left_out(answer, by_support))
+
+
+def _require_positions(model: ModalModel) -> None:
+    if not np.any(model.contact_position):
+        raise EquivalentError(
+            "the supports of this structure have no positions in space (a chain, matrices or"
+            " measured modes): put k and c at their named points by hand"
+        )
+
+
+def _springs_of_support(
+    model: ModalModel, number: int, groups: list[GroupAnswer], points: str, across: str
+) -> Iterator[PointSpring]:
+    """Yield the springs of one support."""
+    inside = np.flatnonzero(model.support_of_point == number)
+    weight = model.contact_weight[inside]
+    support = model.support_names[number]
+    if points == "one":
+        middle = int(inside[np.argmin(np.abs(np.cumsum(weight) - 0.5))])
+        k, c = _along(model, middle, groups, across)
+        position = weight @ model.contact_position[inside]
+        yield PointSpring(support, support, position, model.contact_directions[middle], k, c)
+        return
+    for order, (point, share) in enumerate(zip(inside, weight, strict=True), 1):
+        k, c = _along(model, int(point), groups, across)
+        yield PointSpring(
+            f"{support}_{order}",
+            support,
+            model.contact_position[point],
+            model.contact_directions[point],
+            _shared(k, share),
+            _shared(c, share),
+        )
+
+
+def _shared(pair: Pair, share: float) -> Pair:
+    """Return the share that one point has of the values of a support."""
+    first, second = (None if value is None else share * value for value in pair)
+    return first, second
+
+
+def _along(
+    model: ModalModel, point: int, groups: list[GroupAnswer], across: str
+) -> tuple[Pair, Pair]:
+    """Return (k, c) of the whole support along the two directions of a point."""
+    pairs: dict[int, tuple[float | None, float | None]] = {}
+    for group in groups:
+        index = direction_index(model, point, group.direction)
+        k = _value(group.k)
+        pairs[index] = (k, _value(group.c) if k is not None else None)
+    if len(pairs) == 1 and across == "same":
+        pairs[1 - next(iter(pairs))] = next(iter(pairs.values()))
+    first, second = (pairs.get(index, (None, None)) for index in (0, 1))
+    return (first[0], second[0]), (first[1], second[1])
+
+
+def _value(span: Span) -> float | None:
+    return span.value if span.resolved else None
+
+
+def _notes(answer: Answer, across: str) -> tuple[str, ...]:
+    """Return what the head of a file says."""
+    kind = "ESTIMATE from a law, without a simulation" if answer.kind == "estimate" else "study"
+    notes = [
+        f"Equivalent supports of {kind} '{answer.study}' at {answer.load_rms_N:g} N RMS and a gap"
+        f" of {1e3 * answer.gap_m:.6g} mm.",
+    ]
+    for group in answer.groups:
+        notes.append(
+            f"Group {group.group} ({', '.join(group.supports)}) along {group.direction}, per"
+            f" support: k {_span_text(group.k)} N/m; c {_span_text(group.c)} N s/m. {group.how}."
+        )
+    if across == "same":
+        notes.append(
+            "A transverse direction that was not identified has the k and c of the one that was."
+        )
+    return tuple(notes)
+
+
+def _span_text(span: Span) -> str:
+    if not span.resolved:
+        return "unresolved"
+    return f"{span.value:.6g} ({span.low:.4g} to {span.high:.4g})"
+
+
+def _left_out(answer: Answer, by_support: dict[str, list[GroupAnswer]]) -> tuple[str, ...]:
+    """Return what has no spring or no damper, and why."""
+    bare = [name for name, groups in by_support.items() if not groups]
+    return tuple(
+        answer.unresolved
+        + [f"support {name} belongs to no group of the study: it has no spring" for name in bare]
+    )
