@@ -7,6 +7,8 @@ uniaxialMaterial Elastic (force E u + eta du/dt).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ..springs import SpringSet
 from .frames import head, plain_name
 from .unit_system import UnitSystem
@@ -16,6 +18,7 @@ USE = (
     " place}."
 )
 PROGRAM = '''
+
 
 def add_supports(ops, nodes, first_tag={first}):
     """Tie your nodes to ground. Tags of nodes, materials and elements count from first_tag.
@@ -60,5 +63,6 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     return "\n".join([*lines, "}"]) + PROGRAM.format(first=first_number)
 
 
-def _tuple(values) -> str:
-    return f"({', '.join('None' if value is None else f'{value:.10g}' for value in values)})"
+def _tuple(values: Iterable[float | None]) -> str:
+    """Return a tuple of Python: every number with ten digits and as a float."""
+    return f"({', '.join('None' if value is None else f'{value:.9e}' for value in values)})"

@@ -1,0 +1,185 @@
+"""k and c at any load and gap of a study: read, interpolated, or refused."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tests.study_tables import FACTORS, GAPS, k_law, made_up_study, summary_rows
+from vibroimpact import EquivalentError, equivalent
+from vibroimpact.equivalent_support.answer_text import as_csv, as_plain, as_text
+from vibroimpact.equivalent_support.study_tables import recommended_rows_of, summary_rows_of
+from vibroimpact.records import write_table
+
+
+@pytest.fixture
+def study(tmp_path, study_model):
+    """The folder of a study whose k is a power of load over gap."""
+    return made_up_study(tmp_path, study_model)
+
+
+def test_a_case_of_the_grid_is_the_table_itself(study):
+    (group,) = equivalent(study, 4.0, 1.0e-4).groups
+    assert group.k.value == pytest.approx(k_law(4.0e4), rel=1e-12)  # lscf, the median of three
+    assert (group.k.low, group.k.high) == (
+        pytest.approx(0.9 * 0.96 * k_law(4.0e4)),
+        pytest.approx(1.2 * 1.02 * k_law(4.0e4)),
+    )
+    assert group.c.value == pytest.approx(1.0e-3 * 1.01 * k_law(4.0e4))  # the shape has none
+    assert (group.direction, group.supports) == ("y", ("left", "right"))
+    assert group.how == "a case of the study: 4 N RMS at 0.1 mm"
+    assert group.secant_k == pytest.approx(0.9 * k_law(4.0e4))
+    assert {item.method for item in group.methods} == set(FACTORS)
+
+
+def test_a_power_law_is_interpolated_exactly_at_any_gap(study):
+    for load, gap in ((3.1, 1.7e-4), (0.9, 0.5e-4), (20.0, 1.0e-3)):
+        (group,) = equivalent(study, load, gap).groups
+        assert group.k.value == pytest.approx(k_law(load / gap), rel=1e-9)
+        assert group.agreement_k == "agree"
+
+
+def test_the_answer_says_what_it_was_interpolated_from(study):
+    (group,) = equivalent(study, 3.0, 1.5e-4).groups  # 2e4 N/m: on a load of gap 0.1 mm
+    assert group.how == (
+        "interpolated between 2.00e+04 and 2.00e+04 N/m of load over gap, from gaps 0.3 and 0.1 mm;"
+        " collapse within 0 %"
+    )
+    assert group.holds == (pytest.approx(2.0 / 3.0e-4), pytest.approx(8.0e4))
+    (alone,) = equivalent(study, 5.0, 1.0e-4).groups  # beyond what the wide gap reaches
+    assert "from gap 0.1 mm; no other gap reaches there" in alone.how
+
+
+def test_a_gap_that_is_off_widens_the_interval(tmp_path, study_model):
+    rows = [
+        {**row, **{name: 1.3 * row[name] for name in ("k_median", "k_low", "k_high")}}
+        if row["gap_m"] == GAPS[1]
+        else row
+        for row in summary_rows()
+    ]
+    study = made_up_study(tmp_path, study_model, rows)
+    (group,) = equivalent(study, 2.2, 1.0e-4).groups
+    assert "collapse within 30 %" in group.how
+    assert group.k.high > 1.29 * 1.2 * k_law(2.2e4)
+
+
+@pytest.mark.parametrize("load, gap", [(9.0, 1.0e-4), (1.0, 3.1e-4), (1.0, 1.0)])
+def test_nothing_is_extrapolated(study, load, gap):
+    with pytest.raises(EquivalentError, match="nothing is extrapolated. The nearest case is") as no:
+        equivalent(study, load, gap)
+    assert "grid.gap_m" in str(no.value) or "grid.load_rms_N" in str(no.value)
+    assert "snakemake -j2 --configfile" in str(no.value)
+
+
+def test_the_sentence_names_the_file_of_the_study(tmp_path, monkeypatch, study_model):
+    folder = tmp_path / "results" / "mine"
+    folder.mkdir(parents=True)
+    made_up_study(folder, study_model)
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "a.yaml").write_text("study: mine\n")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(EquivalentError, match="8 N RMS at 0.0001 m.*add 9 to grid.load_rms_N") as no:
+        equivalent("mine", 9.0, 1.0e-4)
+    assert "in config/a.yaml and run" in str(no.value)
+    assert "--configfile config/a.yaml" in str(no.value)
+
+
+def test_what_is_not_resolved_has_a_reason_and_no_number(study):
+    (group,) = equivalent(study, 1.0, 3.0e-4).groups
+    assert not group.k.resolved and group.agreement_k == "unresolved"
+    assert "lscf, ods, broadband do not resolve k (1 N at 0.3 mm)" in group.reason_k
+    assert group.holds is None and group.secant_k > 0.0
+    answer = equivalent(study, 1.0, 3.0e-4)
+    assert len(answer.unresolved) == 2  # k and c
+    assert "k   unresolved: lscf" in as_text(answer)
+    assert as_plain(answer)["groups"][0]["k"]["value"] is None
+
+
+def test_a_fixed_gap_is_interpolated_in_load_alone(tmp_path, study_model):
+    laws = study_model.contact_laws.with_columns(gap=1.0e-4)
+    model = dataclasses.replace(study_model, contact_laws=laws)
+    study = made_up_study(tmp_path, model)
+    answer = equivalent(study, 3.0, 3.0e-4)
+    assert not answer.homogeneous and "a gap fixed in m of supports left, right" in answer.notes[0]
+    assert answer.groups[0].how == "interpolated between 2 and 4 N RMS at gap 0.3 mm"
+    assert answer.groups[0].k.value == pytest.approx(k_law(1.0e4), rel=1e-9)
+    with pytest.raises(EquivalentError, match="can not be interpolated, because the model has a"):
+        equivalent(study, 3.0, 2.0e-4)
+    with pytest.raises(EquivalentError, match="outside the loads of study"):
+        equivalent(study, 9.0, 3.0e-4)
+
+
+def test_both_schemas_of_the_summary_are_read(tmp_path):
+    write_table(summary_rows(), tmp_path / "consistency_summary.csv")
+    old = summary_rows_of(tmp_path, "y")
+    new_columns = {"group": "outer", "direction": "x", "verdict_k": "agree", "verdict_c": "spread"}
+    write_table(
+        summary_rows(**new_columns, reason="too short"), tmp_path / "consistency_summary.csv"
+    )
+    new = summary_rows_of(tmp_path, "y")
+    assert {(row["group"], row["direction"], row["verdict_c"]) for row in old} == {("all", "y", "")}
+    assert {(row["group"], row["direction"]) for row in new} == {("outer", "x")}
+    case = {"gap_m": 1.0e-4, "load_rms_N": 2.0}
+    pair = [
+        next(row for row in recommended_rows_of(tmp_path, rows, "y") if row.items() >= case.items())
+        for rows in (old, new)
+    ]
+    assert pair[0]["k"] == pair[1]["k"]
+    assert [row["agreement_c"] for row in pair] == ["agree", "spread"]
+    blind = next(row for row in recommended_rows_of(tmp_path, new, "y") if np.isnan(row["k"]))
+    assert blind["reason_k"].startswith("lscf (too short), ods (too short)")
+
+
+def test_the_recommended_table_of_the_study_is_used(study):
+    rows = [
+        {
+            "gap_m": gap,
+            "load_rms_N": load,
+            "group": "left",
+            "direction": "y",
+            "k_N_per_m": 7.0e4,
+            "k_low": 6.0e4,
+            "k_high": 8.0e4,
+            "c_N_s_per_m": np.nan,
+            "c_low": np.nan,
+            "c_high": np.nan,
+            "secant_k_N_per_m": 6.5e4,
+            "secant_c_N_s_per_m": 30.0,
+            "agreement_k": "spread",
+            "agreement_c": "unresolved",
+            "reason_k": "",
+            "reason_c": "the record is short",
+        }
+        for gap in GAPS
+        for load in (1.0, 8.0)
+    ]
+    write_table(rows, study / "equivalent.csv")
+    (group,) = equivalent(study, 3.0, 1.0e-4).groups
+    assert (group.group, group.supports) == ("left", ("left",))
+    assert (group.k.value, group.k.low, group.k.high) == pytest.approx((7.0e4, 6.0e4, 8.0e4))
+    assert (group.agreement_k, group.secant_c) == ("spread", pytest.approx(30.0))
+    assert group.reason_c.startswith("the record is short") and group.holds is None
+
+
+def test_members_of_a_group_come_from_the_configuration(tmp_path, study_model):
+    rows = summary_rows(group="pair", direction="y", verdict_k="agree", verdict_c="agree")
+    study = made_up_study(tmp_path, study_model, rows)
+    with pytest.raises(EquivalentError, match="group 'pair' is no support of the study"):
+        equivalent(study, 3.0, 1.0e-4)
+    (group,) = equivalent(study, 3.0, 1.0e-4, groups={"pair": ["right"]}).groups
+    assert group.supports == ("right",)
+
+
+def test_questions_without_sense_are_refused(study, tmp_path):
+    for load, gap in ((0.0, 1e-4), (1.0, -1e-4), (float("nan"), 1e-4)):
+        with pytest.raises(EquivalentError, match="give a positive number"):
+            equivalent(study, load, gap)
+    with pytest.raises(EquivalentError, match="is no finished study"):
+        equivalent(tmp_path / "nowhere", 1.0, 1e-4)
+
+
+def test_the_csv_has_one_row_per_group(study):
+    header, row = as_csv(equivalent(study, 4.0, 1.0e-4)).splitlines()
+    values = dict(zip(header.split(","), row.split(","), strict=True))
+    assert float(values["k_N_per_m"]) == pytest.approx(k_law(4.0e4))
+    assert values["supports"] == "left right"
