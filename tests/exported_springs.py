@@ -16,9 +16,7 @@ AXES = np.eye(3)
 def assembled(axes, k, c):
     """The matrices (K, C) of springs k (2,) and dampers c (2,) along axes (2, 3)."""
     K, C = (
-        sum(
-            (value or 0.0) * np.outer(axis, axis) for axis, value in zip(axes, values, strict=True)
-        )
+        sum((value or 0.0) * np.outer(axis, axis) for axis, value in zip(axes, values, strict=True))
         for values in (k, c)
     )
     return K, C
@@ -110,9 +108,7 @@ def code_aster(text):
 
     def factors(name):
         for item in given[name].elts if name in given else []:
-            yield {
-                entry.arg: ast.literal_eval(entry.value) for entry in item.keywords
-            }
+            yield {entry.arg: ast.literal_eval(entry.value) for entry in item.keywords}
 
     frames = {
         item["GROUP_MA"]: np.array(item["VALE"]).reshape(2, 3) for item in factors("ORIENTATION")

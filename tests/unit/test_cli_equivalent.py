@@ -71,9 +71,7 @@ def test_what_is_not_resolved_gives_code_1_and_no_file(run, study, tmp_path):
     code, output, errors = run(study, "--load", 1, "--gap", 3e-4)
     assert code == 1 and "k   unresolved" in output and "do not resolve k" in errors
     path = tmp_path / "out.bdf"
-    code, output, errors = run(
-        study, "--load", 1, "--gap", 3e-4, "--export", "nastran", path
-    )
+    code, output, errors = run(study, "--load", 1, "--gap", 3e-4, "--export", "nastran", path)
     assert (code, output) == (1, "") and errors.startswith("nothing to export")
     assert not path.exists()
 

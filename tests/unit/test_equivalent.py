@@ -78,7 +78,9 @@ def test_the_sentence_names_the_file_of_the_study(tmp_path, monkeypatch, study_m
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / "a.yaml").write_text("study: mine\n")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(EquivalentError, match="8 N RMS at 0.0001 m.*add 9 to grid.load_rms_N") as no:
+    with pytest.raises(
+        EquivalentError, match="8 N RMS at 0.0001 m.*add 9 to grid.load_rms_N"
+    ) as no:
         equivalent("mine", 9.0, 1.0e-4)
     assert "in config/a.yaml and run" in str(no.value)
     assert "--configfile config/a.yaml" in str(no.value)

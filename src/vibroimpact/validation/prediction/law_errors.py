@@ -28,6 +28,7 @@ GAP_OF_DIAMETER = 0.013
 RECORD, SPECTRA, INTEGRATION = {"duration_s": 24.0}, {"segment_s": 8.0}, {"start_up_s": 2.0}
 FEWEST_METHODS = 2  # that must resolve k or c, for c of those that give one
 QUANTILES = (0.1, 0.9)
+OBSERVED_K = ("k_identified", "k_secant")
 LOWEST_STIFFNESS = 1.0e2  # N/m
 
 
@@ -98,7 +99,11 @@ def tube_rows(config, name, keys, law, stiffness_law, levels=LEVELS, seeds=SEEDS
             "gap_m": gap,
             "k_law": k,
             "c_law": c,
-            "k_stiffness_law": stiffness_law.at(level)[0] * plate_stiffness(model)[0],
+            "k_stiffness_law": (
+                stiffness_law.at(level)[0] * plate_stiffness(model)[0]
+                if stiffness_law.inside(level)
+                else np.nan
+            ),
             "k_identified": _median(methods, "k_median", FEWEST_METHODS),
             "c_identified": _median(methods, "c_median", 1),
             "k_secant": methods["secant"]["k_median"],
@@ -117,32 +122,33 @@ def error_rows(rows: Iterable[dict]) -> list[dict]:
 
     Row keys: level_from, level_to, tubes, cases, and for k and c the median, the 10 % and 90 %
     quantiles (k_median, k_low, k_high, c_...), and k_factor_90: the factor, up or down, that 90 %
-    of the cases stay within. k is both the identified and the secant one, each a case of its own,
-    so that a level that no method resolves counts too.
+    of the cases stay within, also of the law over the static stiffness. k is both the identified
+    and the secant one, each a case of its own, so that a level that no method resolves counts too.
     """
     rows, table = list(rows), []
     for low, high in (*REGIONS, (REGIONS[0][0], REGIONS[-1][1])):
         inside = [row for row in rows if low <= row["level"] < high]
-        k = _ratios(inside, ("k_identified", "k_secant"), "k_law")
-        c = _ratios(inside, ("c_identified",), "c_law")
         values = {
             "level_from": low,
             "level_to": high,
             "tubes": len({row["tube"] for row in inside}),
             "cases": len(inside),
         }
-        for name, ratios in (("k", k), ("c", c)):
-            values[f"{name}_median"] = float(np.median(ratios))
-            values[f"{name}_low"], values[f"{name}_high"] = map(
-                float, np.quantile(ratios, QUANTILES)
-            )
-        values["k_factor_90"] = float(np.exp(np.quantile(np.abs(np.log(k)), QUANTILES[1])))
-        other = _ratios(inside, ("k_identified", "k_secant"), "k_stiffness_law")
-        values["k_factor_90_stiffness_law"] = float(
-            np.exp(np.quantile(np.abs(np.log(other)), QUANTILES[1]))
-        )
+        for name, observed in (("k", OBSERVED_K), ("c", ("c_identified",))):
+            ratios = _ratios(inside, observed, f"{name}_law")
+            values[f"{name}_median"] = _quantile(ratios, 0.5)
+            values[f"{name}_low"] = _quantile(ratios, QUANTILES[0])
+            values[f"{name}_high"] = _quantile(ratios, QUANTILES[1])
+        for name, law in (("", "k_law"), ("_stiffness_law", "k_stiffness_law")):
+            logarithms = np.abs(np.log(_ratios(inside, OBSERVED_K, law)))
+            values[f"k_factor_90{name}"] = float(np.exp(_quantile(logarithms, QUANTILES[1])))
         table.append(values)
     return table
+
+
+def _quantile(values, share):
+    """Return a quantile, NaN of nothing."""
+    return float(np.quantile(values, share)) if len(values) else np.nan
 
 
 def _ratios(rows, observed, law):
