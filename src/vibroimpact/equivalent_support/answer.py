@@ -47,8 +47,8 @@ class GroupAnswer:
     secant_k, secant_c: of the contact forces themselves, NaN where not known.
     methods: what each method says.
     how: where the values come from, a sentence.
-    holds: range of load (N) over gap (m), N/m, over which the methods agree on k; of the load in N
-        where the model is not homogeneous; None where they do not agree.
+    agreeing: the nearest range of load over gap, in N/m, over which the methods agree on k; of the
+        load in N where the model is not homogeneous; None where they agree nowhere.
     """
 
     group: str
@@ -64,7 +64,7 @@ class GroupAnswer:
     secant_c: float = np.nan
     methods: tuple[MethodAnswer, ...] = ()
     how: str = ""
-    holds: tuple[float, float] | None = None
+    agreeing: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

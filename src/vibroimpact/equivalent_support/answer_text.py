@@ -75,14 +75,20 @@ def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
         lines += ["  * compared: the recommended values come from these", ""]
     if group.how:
         lines.append(f"  {group.how[0].upper()}{group.how[1:]}.")
-    if group.holds:
-        unit = "N/m of load over gap" if homogeneous else "N RMS"
-        lines.append(
-            f"  The methods agree on k from {group.holds[0]:.3g} to {group.holds[1]:.3g} {unit}."
-        )
-    elif group.methods:
-        lines.append("  The methods do not agree on k here.")
+    if group.methods:
+        lines.append(f"  {_agreement_text(group, homogeneous)}")
     return "\n".join(lines)
+
+
+def _agreement_text(group: GroupAnswer, homogeneous: bool) -> str:
+    """Return where the methods agree on k."""
+    if group.agreeing is None:
+        return "The methods agree on k nowhere in the study."
+    unit = "N/m of load over gap" if homogeneous else "N RMS"
+    where = f"from {group.agreeing[0]:.3g} to {group.agreeing[1]:.3g} {unit}."
+    if group.agreement_k == "agree":
+        return f"The methods agree on k {where}"
+    return f"The methods do not agree on k here; nearest, they do {where}"
 
 
 def _marked(method: str) -> str:

@@ -11,8 +11,6 @@ import numpy as np
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.config.yaml_file import read_yaml
 
-from .interpolation import SAME
-
 
 def outside_sentence(
     study: str,
@@ -42,6 +40,7 @@ def outside_sentence(
             f" {loads[0]:g} to {loads[-1]:g} N"
         )
         nearest = min(rows, key=lambda row: abs(np.log(row["load_rms_N"] / load_rms_N)))
+        wanted = load_rms_N
     else:
         level = load_rms_N / gap_m
         levels = [row["load_rms_N"] / row["gap_m"] for row in rows]
@@ -50,18 +49,20 @@ def outside_sentence(
             f" '{study}', {min(levels):.3g} to {max(levels):.3g} N/m"
         )
         nearest = min(rows, key=lambda row: abs(np.log(row["load_rms_N"] / row["gap_m"] / level)))
-    keys = []
-    if not any(abs(load / load_rms_N - 1.0) < SAME for load in loads):
-        keys.append(
-            f"{load_rms_N:g} to grid.load_rms_N (written as a list of the loads there are and this"
-            " one)"
-        )
-    if not any(abs(row["gap_m"] / gap_m - 1.0) < SAME for row in rows):
-        keys.append(f"{gap_m:g} to grid.gap_m")
+        # Any case with this load over gap will do: one load more, at a gap that is there.
+        wanted = level * nearest["gap_m"]
     return (
         f"{place}: nothing is extrapolated. The nearest case is {nearest['load_rms_N']:g} N RMS at"
-        f" {nearest['gap_m']:g} m. To have this one, add {' and '.join(keys)} in {config} and {run}"
+        f" {nearest['gap_m']:g} m. Add the load {_rounded_away(wanted, nearest['load_rms_N']):g} to"
+        f" grid.load_rms_N in {config} (written as a list: the loads there are, and this one) and"
+        f" {run}"
     )
+
+
+def _rounded_away(value: float, other: float) -> float:
+    """Return a value with three digits, rounded away from another one."""
+    step = 10.0 ** (np.floor(np.log10(value)) - 2.0)
+    return float((np.ceil if value > other else np.floor)(value / step) * step)
 
 
 def configuration_of(study: str, folder: str | Path = "config") -> str | None:

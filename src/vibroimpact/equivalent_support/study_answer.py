@@ -210,7 +210,7 @@ def _group_answer(
             if any(row["method"] == method for row in summary)
         ),
         how=_how(asked, k if k.gaps else c, recommended),
-        holds=_holds(asked, recommended),
+        agreeing=_agreeing_range(asked, recommended),
     )
 
 
@@ -236,7 +236,7 @@ def _reason(reading: Reading, name: str) -> str:
     reasons: dict[str, list[str]] = {}
     for row in reading.rows:
         if not np.isfinite(row[name]):
-            place = f"{row['load_rms_N']:g} N at {1e3 * row['gap_m']:.4g} mm"
+            place = f"{row['load_rms_N']:.3g} N at {1e3 * row['gap_m']:.4g} mm"
             text = row[f"reason_{name}"] or "no value in the study"
             reasons.setdefault(text, []).append(place)
     return "; ".join(f"{text} ({', '.join(places)})" for text, places in reasons.items())
@@ -272,12 +272,16 @@ def _listed(words: Sequence[str]) -> str:
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
-def _holds(asked: _Asked, rows: Rows) -> tuple[float, float] | None:
-    """Return the range of level around the one asked for over which the methods agree on k."""
-    for low, high in ranges_of_agreement(rows, asked.level_of, "agreement_k"):
-        if low * (1.0 - SAME) <= asked.level <= high * (1.0 + SAME):
-            return low, high
-    return None
+def _agreeing_range(asked: _Asked, rows: Rows) -> tuple[float, float] | None:
+    """Return the range of level nearest to the one asked for where the methods agree on k."""
+    ranges = ranges_of_agreement(rows, asked.level_of, "agreement_k")
+    x = np.log(asked.level)
+
+    def distance(ends: tuple[float, float]) -> float:
+        low, high = np.log(ends)
+        return float(max(low - x, x - high, 0.0))
+
+    return min(ranges, key=distance) if ranges else None
 
 
 def _notes(effects: list[str]) -> tuple[str, ...]:
