@@ -112,7 +112,7 @@ def test_a_fixed_gap_is_interpolated_in_load_alone(tmp_path, study_model):
 def test_both_schemas_of_the_summary_are_read(tmp_path):
     write_table(summary_rows(), tmp_path / "consistency_summary.csv")
     old = summary_rows_of(tmp_path, "y")
-    new_columns = {"group": "outer", "direction": "x", "verdict_k": "agree", "verdict_c": "spread"}
+    new_columns = {"group": "outer", "direction": "x", "verdict_k": "spread", "verdict_c": "spread"}
     write_table(
         summary_rows(**new_columns, reason="too short"), tmp_path / "consistency_summary.csv"
     )
@@ -125,7 +125,8 @@ def test_both_schemas_of_the_summary_are_read(tmp_path):
         for rows in (old, new)
     ]
     assert pair[0]["k"] == pair[1]["k"]
-    assert [row["agreement_c"] for row in pair] == ["agree", "spread"]
+    for name in ("agreement_k", "agreement_c"):
+        assert [row[name] for row in pair] == ["agree", "spread"]
     blind = next(row for row in recommended_rows_of(tmp_path, new, "y") if np.isnan(row["k"]))
     assert blind["reason_k"].startswith("lscf (too short), ods (too short)")
 
