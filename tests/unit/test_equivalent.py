@@ -7,6 +7,7 @@ import pytest
 
 from tests.study_tables import FACTORS, GAPS, k_law, made_up_study, summary_rows
 from vibroimpact import EquivalentError, equivalent
+from vibroimpact.equivalent_support.answer import NOT_MOVED
 from vibroimpact.equivalent_support.answer_text import as_csv, as_plain, as_text
 from vibroimpact.equivalent_support.study_tables import recommended_rows_of, summary_rows_of
 from vibroimpact.records import write_table
@@ -162,13 +163,62 @@ def test_the_recommended_table_of_the_study_is_used(study):
     assert group.reason_c.startswith("the record is short") and group.agreeing is None
 
 
-def test_members_of_a_group_come_from_the_configuration(tmp_path, study_model):
-    rows = summary_rows(group="pair", direction="y", verdict_k="agree", verdict_c="agree")
+@pytest.mark.parametrize("group, supports", [("right", ("right",)), ("left+right", None)])
+def test_a_group_is_named_after_its_supports(tmp_path, study_model, group, supports):
+    rows = summary_rows(group=group, direction="y", verdict_k="agree", verdict_c="agree")
     study = made_up_study(tmp_path, study_model, rows)
-    with pytest.raises(EquivalentError, match="group 'pair' is no support of the study"):
+    (found,) = equivalent(study, 3.0, 1.0e-4).groups
+    assert found.supports == (supports or ("left", "right"))
+
+
+@pytest.mark.parametrize("group, direction", [("middle", "y"), ("left", "z"), ("left", "normal")])
+def test_tables_of_another_model_are_refused(tmp_path, study_model, group, direction):
+    rows = summary_rows(group=group, direction=direction, verdict_k="agree", verdict_c="agree")
+    study = made_up_study(tmp_path, study_model, rows)
+    with pytest.raises(EquivalentError, match="belong to different studies"):
         equivalent(study, 3.0, 1.0e-4)
-    (group,) = equivalent(study, 3.0, 1.0e-4, groups={"pair": ["right"]}).groups
-    assert group.supports == ("right",)
+
+
+def test_a_direction_that_is_not_driven_says_so(study):
+    rows = summary_rows_of(study, "y")
+    table = [
+        {
+            "gap_m": row["gap_m"],
+            "load_rms_N": row["load_rms_N"],
+            "group": "all",
+            "direction": direction,
+            **dict.fromkeys(("k_N_per_m", "k_low", "k_high"), value),
+            **dict.fromkeys(("c_N_s_per_m", "c_low", "c_high"), value),
+            "agreement_k": agreement,
+            "agreement_c": agreement,
+            "reason_k": reason,
+            "reason_c": reason,
+        }
+        for row in rows
+        if row["method"] == "lscf"
+        for direction, value, agreement, reason in (
+            ("y", 5.0e4, "agree", ""),
+            ("x", np.nan, "unresolved", NOT_MOVED),
+        )
+    ]
+    write_table(table, study / "equivalent.csv")
+    answer = equivalent(study, 3.0, 1.5e-4)
+    assert answer.groups[0].k.value == pytest.approx(5.0e4) and answer.unresolved == []
+    assert not answer.groups[1].moved
+    assert "along x\n  no values: the force does not move the supports in this" in as_text(answer)
+
+
+def test_two_methods_are_enough_for_k(tmp_path, study_model):
+    """Where the shape gives none, k is the mean of the other two, and not all resolve it."""
+    blind = {"k_median": np.nan, "k_low": np.nan, "k_high": np.nan, "verdict": ""}
+    rows = [row | blind if row["method"] == "ods" else row for row in summary_rows()]
+    study = made_up_study(tmp_path, study_model, rows)
+    answer = equivalent(study, 4.0, 1.0e-4)
+    assert answer.groups[0].k.value == pytest.approx(1.01 * k_law(4.0e4))
+    assert "methods: agree" in as_text(answer)  # the verdict of the table itself
+    rows = [row | {"verdict": ""} for row in rows]
+    answer = equivalent(made_up_study(tmp_path, study_model, rows), 4.0, 1.0e-4)
+    assert "methods: not all resolve it" in as_text(answer)
 
 
 def test_questions_without_sense_are_refused(study, tmp_path):

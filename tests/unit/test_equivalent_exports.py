@@ -10,7 +10,7 @@ import pytest
 from tests.exported_springs import READERS
 from vibroimpact import EquivalentError, build_model, check_config, point_springs, springs_text
 from vibroimpact.equivalent_support import command
-from vibroimpact.equivalent_support.answer import Answer, GroupAnswer, Span
+from vibroimpact.equivalent_support.answer import NOT_MOVED, Answer, GroupAnswer, Span
 from vibroimpact.equivalent_support.export_formats.registry import FORMATS
 
 K, C = 8.0e4, 210.0
@@ -146,6 +146,7 @@ def test_only_resolved_supports_are_written(study_model):
     springs = point_springs(both, study_model)
     assert {spring.support for spring in springs.springs} == {"left"}
     assert springs.left_out[0] == "k of 'all' along y is not resolved: too weak"
+    assert springs.left_out[-1] == "support right has no spring"
 
 
 def test_nothing_resolved_is_not_exported(study_model):
@@ -159,9 +160,39 @@ def test_a_structure_without_positions_is_refused(study_model):
         point_springs(answer(flat.support_names), flat)
 
 
-def test_a_direction_along_the_tube_is_refused(study_model):
-    with pytest.raises(EquivalentError, match="'z' is along the tube at support left"):
+def test_a_direction_along_the_tube_has_no_spring(study_model):
+    with pytest.raises(EquivalentError, match="nothing to export: support left has no spring"):
         point_springs(answer(study_model.support_names, "z"), study_model)
+
+
+@pytest.mark.parametrize("form", READERS)
+def test_oblique_parallel_stops_act_along_their_normal(form, study_model):
+    """Two stops at 30 degrees from x on every point: K n n^T, and nothing across them."""
+    normal = np.array([math.cos(math.pi / 6.0), math.sin(math.pi / 6.0)])
+    points = np.repeat(np.arange(10), 2)
+    laws = study_model.contact_laws.with_columns(
+        land_point=points, land_normal=np.tile([normal, -normal], (10, 1))
+    )
+    model = dataclasses.replace(study_model, contact_laws=laws)
+    springs = point_springs(answer(model.support_names, "normal"), model, "one")
+    along = np.array([*normal, 0.0])
+    for _, stiffness, damping in READERS[form](springs_text(springs, form)).values():
+        np.testing.assert_allclose(stiffness, K * np.outer(along, along), atol=1e-6 * K)
+        np.testing.assert_allclose(damping, C * np.outer(along, along), atol=1e-6 * C)
+
+
+def test_a_direction_that_is_not_driven_is_no_failure(study_model):
+    driven = answer(study_model.support_names).groups[0]
+    still = dataclasses.replace(
+        driven, direction="x", k=Span(), c=Span(), reason_k=NOT_MOVED, reason_c=NOT_MOVED
+    )
+    both = dataclasses.replace(answer(study_model.support_names), groups=(driven, still))
+    assert both.unresolved == []
+    springs = point_springs(both, study_model, "one")
+    assert springs.left_out == () and springs.springs[0].k == (K, K)
+    assert point_springs(both, study_model, "one", "none").springs[0].k == (None, K)
+    weak = dataclasses.replace(both, groups=(driven, dataclasses.replace(still, reason_k="weak")))
+    assert point_springs(weak, study_model, "one").springs[0].k == (None, K)
 
 
 def test_nastran_cards_fit_their_fields(slanted_model):

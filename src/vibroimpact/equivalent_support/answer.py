@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+# Reason of a direction in which a study says nothing because its force does not move it.
+NOT_MOVED = "the force does not move the supports in this direction"
+
 
 class EquivalentError(Exception):
     """A question that has no answer; the message says why and what to do."""
@@ -41,8 +44,8 @@ class GroupAnswer:
     group, supports: name of the group, and of the supports that each have this k and c.
     direction: transverse direction, such as "y".
     k, c: recommended values, N/m and N s/m per support.
-    agreement_k, agreement_c: of the compared methods: "agree", "spread" or "unresolved"; ""
-        for an estimate.
+    agreement_k, agreement_c: of the compared methods: "agree", "spread", or "unresolved" where not
+        all of them resolve the value; "" for an estimate.
     reason_k, reason_c: why there is no value, or "".
     secant_k, secant_c: of the contact forces themselves, NaN where not known.
     methods: what each method says.
@@ -66,6 +69,11 @@ class GroupAnswer:
     how: str = ""
     agreeing: tuple[float, float] | None = None
 
+    @property
+    def moved(self) -> bool:
+        """Whether the force of the study moves the supports in this direction."""
+        return self.reason_k != NOT_MOVED
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -88,7 +96,7 @@ class Answer:
 
     @property
     def unresolved(self) -> list[str]:
-        """Return a sentence for every k and c that is not resolved."""
+        """Return a sentence for every k and c that is not resolved where the force moves."""
         return [
             f"{name} of '{group.group}' along {group.direction} is not resolved: {reason}"
             for group in self.groups
@@ -96,5 +104,5 @@ class Answer:
                 ("k", group.k, group.reason_k),
                 ("c", group.c, group.reason_c),
             )
-            if not span.resolved
+            if group.moved and not span.resolved
         ]

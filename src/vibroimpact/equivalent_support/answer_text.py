@@ -35,6 +35,7 @@ COLUMNS = (
     "how",
 )
 ABSENT = "unresolved"
+AGREEMENTS = {"unresolved": "not all resolve it"}
 
 
 def as_text(answer: Answer) -> str:
@@ -51,15 +52,15 @@ def as_text(answer: Answer) -> str:
 
 def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
     """Return the block of one group."""
-    lines = [
-        f"Group '{group.group}' ({', '.join(group.supports)}), along {group.direction}; values per"
-        " support"
-    ]
+    place = f"Group '{group.group}' ({', '.join(group.supports)}), along {group.direction}"
+    if not group.moved:
+        return f"{place}\n  no values: {group.reason_k}"
+    lines = [f"{place}; values per support"]
     for name, unit, span, agreement, reason in (
         ("k", "N/m", group.k, group.agreement_k, group.reason_k),
         ("c", "N s/m", group.c, group.agreement_c, group.reason_c),
     ):
-        said = f"   methods: {agreement}" if agreement else ""
+        said = f"   methods: {AGREEMENTS.get(agreement, agreement)}" if agreement else ""
         if span.resolved:
             interval = f"{span.low:.3g} to {span.high:.3g}"
             value = f"{name} = {span.value:.4g} {unit}"

@@ -10,7 +10,6 @@ import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from vibroimpact.config.schema import Config
     from vibroimpact.reduction.modal_model import ModalModel
 
     from .answer import Answer
@@ -33,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--config",
         metavar="FILE",
-        help="configuration: of what is estimated, or of a study that names groups of supports",
+        help="configuration: of what is estimated, or of a study whose model.nc is not there",
     )
     parser.add_argument(
         "--estimate",
@@ -119,14 +118,7 @@ def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
         if config is None
         else build_model(config, motion_only=True)
     )
-    groups = _groups_of(config)
-    return equivalent(options.study, options.load, options.gap, model, groups), model
-
-
-def _groups_of(config: Config | None) -> dict[str, list[str]] | None:
-    """Return the groups of supports that a configuration names, None where it names none."""
-    named = getattr(getattr(config, "identification", None), "groups", None)
-    return {name: list(group) for name, group in named.items()} if isinstance(named, dict) else None
+    return equivalent(options.study, options.load, options.gap, model), model
 
 
 def _printed(options: argparse.Namespace, answer: Answer) -> str:

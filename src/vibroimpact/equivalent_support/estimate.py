@@ -12,7 +12,7 @@ from .answer import Answer, EquivalentError, GroupAnswer, Span
 from .displacement_law import held_tube
 from .homogeneity import effects_with_a_scale
 from .law_file import ShippedLaw, shipped_law
-from .support_directions import driven_axis_of
+from .support_directions import driven_word
 
 
 def estimate_equivalent(config: Config, load_rms_N: float, gap_m: float) -> Answer:
@@ -43,7 +43,7 @@ def estimate_equivalent(config: Config, load_rms_N: float, gap_m: float) -> Answ
     group = GroupAnswer(
         group="all",
         supports=model.support_names,
-        direction=driven_axis_of(model),
+        direction=driven_word(model),
         k=Span(*(k * error[name] for name in ("k_median", "k_low", "k_high"))),
         c=Span(*(c * error[name] for name in ("c_median", "c_low", "c_high"))),
         how=(

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .answer import Answer, EquivalentError, GroupAnswer, Span
-from .support_directions import direction_index
+from .support_directions import acting_directions
 
 Pair = tuple[float | None, float | None]
 
@@ -57,16 +57,12 @@ def point_springs(
     What is not resolved is left out.
 
     points: "each" for every contact point, "one" for a single spring at the middle of a support.
-    across: "same" gives a transverse direction that was not identified the k and c of the one that
-        was; "none" leaves it free.
+    across: "same" gives a transverse direction that the force of the study does not move the k and
+        c of the other one; "none" leaves it free. Parallel stops act along their normal alone.
 
     Raises EquivalentError where no k is resolved, or the structure has no positions in space.
     """
     _require_positions(model)
-    if not any(group.k.resolved for group in answer.groups):
-        raise EquivalentError(
-            "nothing to export: " + "; ".join(answer.unresolved or ["no support is resolved"])
-        )
     by_support: dict[str, list[GroupAnswer]] = {name: [] for name in model.support_names}
     for group in answer.groups:
         for name in group.supports:
@@ -76,8 +72,12 @@ def point_springs(
         for number, name in enumerate(model.support_names)
         for spring in _springs_of_support(model, number, by_support[name], points, across)
     ]
-    kept = [spring for spring in springs if spring.k != (None, None)]
-    return SpringSet(tuple(kept), _notes(answer, across), _left_out(answer, by_support))
+    kept = tuple(spring for spring in springs if spring.k != (None, None))
+    bare = [name for name in model.support_names if name not in {item.support for item in kept}]
+    left_out = [*answer.unresolved, *(f"support {name} has no spring" for name in bare)]
+    if not kept:
+        raise EquivalentError(f"nothing to export: {'; '.join(left_out)}")
+    return SpringSet(kept, _notes(answer, across), tuple(left_out))
 
 
 def _require_positions(model: ModalModel) -> None:
@@ -97,19 +97,15 @@ def _springs_of_support(
     support = model.support_names[number]
     if points == "one":
         middle = int(inside[np.argmin(np.abs(np.cumsum(weight) - 0.5))])
-        k, c = _along(model, middle, groups, across)
+        axes, k, c = _along(model, middle, groups, across)
         position = weight @ model.contact_position[inside]
-        yield PointSpring(support, support, position, model.contact_directions[middle], k, c)
+        yield PointSpring(support, support, position, axes, k, c)
         return
     for order, (point, share) in enumerate(zip(inside, weight, strict=True), 1):
-        k, c = _along(model, int(point), groups, across)
+        axes, k, c = _along(model, int(point), groups, across)
+        position = model.contact_position[point]
         yield PointSpring(
-            f"{support}_{order}",
-            support,
-            model.contact_position[point],
-            model.contact_directions[point],
-            _shared(k, share),
-            _shared(c, share),
+            f"{support}_{order}", support, position, axes, _shared(k, share), _shared(c, share)
         )
 
 
@@ -121,17 +117,24 @@ def _shared(pair: Pair, share: float) -> Pair:
 
 def _along(
     model: ModalModel, point: int, groups: list[GroupAnswer], across: str
-) -> tuple[Pair, Pair]:
-    """Return (k, c) of the whole support along the two directions of a point."""
-    pairs: dict[int, tuple[float | None, float | None]] = {}
-    for group in groups:
-        index = direction_index(model, point, group.direction)
-        k = _value(group.k)
-        pairs[index] = (k, _value(group.c) if k is not None else None)
-    if len(pairs) == 1 and across == "same":
-        pairs[1 - next(iter(pairs))] = next(iter(pairs.values()))
-    first, second = (pairs.get(index, (None, None)) for index in (0, 1))
-    return (first[0], second[0]), (first[1], second[1])
+) -> tuple[np.ndarray, Pair, Pair]:
+    """Return (axes (2, 3), k, c) of the whole support at a point."""
+    acting = acting_directions(model, point)
+    known = {group.direction: group for group in groups if group.moved}
+    found = [known.get(word) for word in acting]
+    there = [group for group in found if group is not None]
+    if across == "same" and len(there) == 1:
+        found = [there[0] for _ in acting]
+    axes = list(acting.values())
+    if len(axes) == 1:  # parallel stops: nothing across them
+        axes.append(np.cross(np.cross(*model.contact_directions[point]), axes[0]))
+        found.append(None)
+    k, c = (
+        tuple(None if group is None else _value(getattr(group, name)) for group in found)
+        for name in ("k", "c")
+    )
+    damped = (None if stiffness is None else value for stiffness, value in zip(k, c, strict=True))
+    return np.array(axes), (k[0], k[1]), (next(damped), next(damped))
 
 
 def _value(span: Span) -> float | None:
@@ -145,14 +148,14 @@ def _notes(answer: Answer, across: str) -> tuple[str, ...]:
         f"Equivalent supports of {kind} '{answer.study}' at {answer.load_rms_N:g} N RMS and a gap"
         f" of {1e3 * answer.gap_m:.6g} mm.",
     ]
-    for group in answer.groups:
+    for group in filter(lambda group: group.moved, answer.groups):
         notes.append(
             f"Group {group.group} ({', '.join(group.supports)}) along {group.direction}, per"
             f" support: k {_span_text(group.k)} N/m; c {_span_text(group.c)} N s/m. {group.how}."
         )
     if across == "same":
         notes.append(
-            "A transverse direction that was not identified has the k and c of the one that was."
+            "A transverse direction that the force did not move has the k and c of the other one."
         )
     return tuple(notes)
 
@@ -161,12 +164,3 @@ def _span_text(span: Span) -> str:
     if not span.resolved:
         return "unresolved"
     return f"{span.value:.6g} ({span.low:.4g} to {span.high:.4g})"
-
-
-def _left_out(answer: Answer, by_support: dict[str, list[GroupAnswer]]) -> tuple[str, ...]:
-    """Return what has no spring or no damper, and why."""
-    bare = [name for name, groups in by_support.items() if not groups]
-    return tuple(
-        answer.unresolved
-        + [f"support {name} belongs to no group of the study: it has no spring" for name in bare]
-    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +13,12 @@ from vibroimpact.records import RecordError
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
 
-from .answer import Answer, EquivalentError, GroupAnswer, MethodAnswer, Span
+from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswer, Span
 from .homogeneity import effects_with_a_scale
 from .interpolation import SAME, Reading, ranges_of_agreement, read_at
 from .missing_case import outside_sentence
 from .study_tables import SUMMARY, recommended_rows_of, summary_rows_of
-from .support_directions import driven_axis_of
+from .support_directions import acting_directions, driven_word
 
 Rows = list[dict[str, Any]]
 
@@ -28,7 +28,6 @@ def equivalent(
     load_rms_N: float,
     gap_m: float,
     model: ModalModel | None = None,
-    groups: Mapping[str, Sequence[str]] | None = None,
 ) -> Answer:
     """Return the Answer of a finished study at a load and a gap.
 
@@ -39,14 +38,13 @@ def equivalent(
     study: folder of its results, or its name under results/.
     load_rms_N: RMS of the force in N. gap_m: radial gap in m.
     model: reduced model of the study; that of its model.nc by default.
-    groups: {name: supports} of the groups of supports that the study's configuration names.
 
     Raises EquivalentError where there is no answer; the message says what to do.
     """
     folder = study_folder(study)
     _require_positive(load_rms_N, gap_m)
     model = model_of(folder) if model is None else model
-    direction = driven_axis_of(model)
+    direction = driven_word(model)
     summary = summary_rows_of(folder, direction)
     recommended = recommended_rows_of(folder, summary, direction)
     effects = effects_with_a_scale(model)
@@ -70,7 +68,7 @@ def equivalent(
             asked,
             group,
             direction,
-            members(group, model, groups),
+            members(group, direction, model),
             [
                 [row for row in rows if (row["group"], row["direction"]) == (group, direction)]
                 for rows in (recommended, summary)
@@ -135,23 +133,35 @@ def model_of(folder: Path) -> ModalModel:
         ) from error
 
 
-def members(
-    group: str, model: ModalModel, groups: Mapping[str, Sequence[str]] | None = None
-) -> tuple[str, ...]:
-    """Return the supports of a group: all, one by its name, or those that `groups` lists.
+def members(group: str, direction: str, model: ModalModel) -> tuple[str, ...]:
+    """Return the supports of a group that act in a direction.
 
-    Raises EquivalentError for a name that is none of these.
+    group: "all", the name of a support, or names joined by "+", as in plate_1+plate_2.
+
+    Raises EquivalentError for a name that is no support, and where none acts in the direction.
     """
-    if group == "all":
-        return model.support_names
-    if groups and group in groups:
-        return tuple(groups[group])
-    if group in model.support_names:
-        return (group,)
-    raise EquivalentError(
-        f"group '{group}' is no support of the study ({', '.join(model.support_names)}): give the"
-        " configuration that names its members with --config FILE"
-    )
+    wanted = model.support_names
+    if group != "all":
+        wanted = (group,) if group in wanted else tuple(group.split("+"))
+    unknown = [name for name in wanted if name not in model.support_names]
+    if unknown:
+        raise EquivalentError(
+            f"group '{group}' names no supports of the study's model"
+            f" ({', '.join(model.support_names)}): the tables and the model belong to different"
+            " studies"
+        )
+    acting = {
+        model.support_names[number]
+        for point, number in enumerate(model.support_of_point)
+        if direction in acting_directions(model, point)
+    }
+    found = tuple(name for name in wanted if name in acting)
+    if not found:
+        raise EquivalentError(
+            f"no support of group '{group}' acts in the direction '{direction}': the tables and the"
+            " model belong to different studies"
+        )
+    return found
 
 
 def _require_positive(load_rms_N: float, gap_m: float) -> None:
@@ -230,16 +240,17 @@ def _agreement(reading: Reading, name: str) -> str:
 
 
 def _reason(reading: Reading, name: str) -> str:
-    """Return why there is no value, with the cases of the study that lack it."""
-    if reading.span.resolved:
+    """Return why there is no value: the reason of the first case of the study that lacks it."""
+    lacking = [row for row in reading.rows if not np.isfinite(row[name])]
+    if reading.span.resolved or not lacking:
         return ""
-    reasons: dict[str, list[str]] = {}
-    for row in reading.rows:
-        if not np.isfinite(row[name]):
-            place = f"{row['load_rms_N']:.3g} N at {1e3 * row['gap_m']:.4g} mm"
-            text = row[f"reason_{name}"] or "no value in the study"
-            reasons.setdefault(text, []).append(place)
-    return "; ".join(f"{text} ({', '.join(places)})" for text, places in reasons.items())
+    text = lacking[0][f"reason_{name}"] or "no value in the study"
+    if text.startswith(NOT_MOVED):
+        return NOT_MOVED
+    place = f"{lacking[0]['load_rms_N']:.3g} N at {1e3 * lacking[0]['gap_m']:.4g} mm"
+    others = len(lacking) - 1
+    more = f", and likewise {others} more case{'s' if others > 1 else ''} beside it"
+    return f"{text} ({place}{more if others else ''})"
 
 
 def _how(asked: _Asked, reading: Reading, rows: Rows) -> str:

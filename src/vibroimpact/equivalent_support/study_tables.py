@@ -15,7 +15,7 @@ from .answer import EquivalentError
 
 SUMMARY, RECOMMENDED = "consistency_summary.csv", "equivalent.csv"
 NO_DAMPING = ("ods",)  # compared methods that say nothing about c
-QUANTITIES = ("k", "c")
+FEWEST_METHODS = {"k": 2, "c": 1}  # that must resolve a value
 
 
 def summary_rows_of(folder: Path, direction: str) -> list[dict[str, Any]]:
@@ -60,7 +60,8 @@ def recommended_rows_of(
     Columns: gap_m, load_rms_N, group, direction, and of k and of c: value (k, c), low and high
     (k_low, ...), secant (secant_k, secant_c), agreement and reason (agreement_k, reason_k, ...).
     They are those of equivalent.csv where the study has it. Otherwise the value is the median of
-    the medians of the compared methods and the interval their hull, where all of them are resolved.
+    the medians of the compared methods and the interval their hull, where enough of them resolve
+    it: two for k, one for c.
     """
     path = folder / RECOMMENDED
     if path.is_file():
@@ -101,35 +102,45 @@ def _recommended(key: tuple, methods: dict[str, dict[str, Any]]) -> dict[str, An
     values: dict[str, Any] = dict(
         zip(("gap_m", "load_rms_N", "group", "direction"), key, strict=True)
     )
-    for name in QUANTITIES:
+    for name, fewest in FEWEST_METHODS.items():
         wanted = [method for method in COMPARED if not (name == "c" and method in NO_DAMPING)]
-        lacking = [
+        found = [
             method
             for method in wanted
-            if method not in methods or not np.isfinite(methods[method][f"{name}_median"])
+            if method in methods and np.isfinite(methods[method][f"{name}_median"])
         ]
+        lacking = [method for method in wanted if method not in found]
         spans = np.array(
             [
                 [methods[method][f"{name}_{part}"] for part in ("median", "low", "high")]
-                for method in wanted
-                if method not in lacking
+                for method in found
             ]
         )
-        verdict = next(iter(methods.values()))[f"verdict_{name}"]
-        if lacking:
-            span, verdict = (np.nan, np.nan, np.nan), "unresolved"
-        else:
-            centre = float(np.median(spans[:, 0]))
-            span = (centre, float(spans[:, 1].min()), float(spans[:, 2].max()))
-            near = np.all(np.abs(spans[:, 0] - centre) <= AGREEMENT * abs(centre))
-            verdict = verdict or ("agree" if near else "spread")
+        enough = len(found) >= fewest
+        span = (
+            (float(np.median(spans[:, 0])), float(spans[:, 1].min()), float(spans[:, 2].max()))
+            if enough
+            else (np.nan, np.nan, np.nan)
+        )
+        stated = [methods[method][f"verdict_{name}"] for method in wanted if method in methods]
         values |= dict(zip((name, f"{name}_low", f"{name}_high"), span, strict=True))
         values[f"secant_{name}"] = (
             float(methods["secant"][f"{name}_median"]) if "secant" in methods else np.nan
         )
-        values[f"agreement_{name}"] = verdict
-        values[f"reason_{name}"] = _reason(name, lacking, methods) if lacking else ""
+        values[f"agreement_{name}"] = next(
+            filter(None, stated), _agreement(spans[:, 0] if enough else (), bool(lacking))
+        )
+        values[f"reason_{name}"] = "" if enough else _reason(name, lacking, methods)
     return values
+
+
+def _agreement(medians: Sequence[float] | np.ndarray, lacking: bool) -> str:
+    """Return the verdict on the methods' medians, as the study has it on k."""
+    if lacking or not len(medians):
+        return "unresolved"
+    centre = float(np.median(medians))
+    near = np.all(np.abs(np.asarray(medians) - centre) <= AGREEMENT * abs(centre))
+    return "agree" if near else "spread"
 
 
 def _reason(name: str, lacking: Iterable[str], methods: dict[str, dict[str, Any]]) -> str:

@@ -1,4 +1,4 @@
-"""Which of the two transverse directions of a contact point a word such as "y" means."""
+"""The directions that a contact point acts in, and the words for them: "y", "first", "normal"."""
 
 from __future__ import annotations
 
@@ -6,38 +6,43 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .answer import EquivalentError
 from .scaled_law import driven_direction
 
+ALIGNED = 0.999  # least cosine of the angle to a global axis that gives a direction its name
+PARALLEL = 1.0e-9  # largest sine of the angle between the normals of parallel stops
 AXES = "xyz"
-WORDS = {"first": 0, "second": 1, "0": 0, "1": 1}
 
 
-def driven_axis_of(model: ModalModel) -> str:
-    """Return "x", "y" or "z": the global axis nearest to the contacts' driven direction."""
-    along = np.abs(model.contact_directions[:, driven_direction(model)]).sum(axis=0)
-    return AXES[int(np.argmax(along))]
+def acting_directions(model: ModalModel, point: int) -> dict[str, np.ndarray]:
+    """Return {word: unit vector (3,)} of the directions that a contact point acts in.
 
-
-def direction_index(model: ModalModel, point: int, word: str) -> int:
-    """Return 0 or 1: the contact direction of a point that a word names.
-
-    word: "x", "y" or "z" for the direction nearest to that axis, or "first" or "second".
-
-    Raises EquivalentError for another word, and where the point moves along neither direction.
+    They are its two transverse directions, or the normal alone of parallel stops. A direction has
+    the name of the global axis that it lies along, "normal" for oblique parallel stops, else
+    "first" or "second".
     """
-    if word in WORDS:
-        return WORDS[word]
-    if word not in AXES or len(word) != 1:
-        raise EquivalentError(
-            f"direction '{word}' is none of x, y, z, first and second: it can not be placed on the"
-            " structure"
-        )
-    along = np.abs(model.contact_directions[point, :, AXES.index(word)])
-    if along.max() < 0.5:
-        name = model.support_names[model.support_of_point[point]]
-        raise EquivalentError(
-            f"direction '{word}' is along the tube at support {name}: its transverse directions"
-            " are others"
-        )
-    return int(np.argmax(along))
+    axes = model.contact_directions[point]
+    laws = model.contact_laws
+    normals = laws.land_normal[laws.land_point == point]
+    if len(normals):
+        first = normals[0]
+        across = normals @ np.array([-first[1], first[0]])
+        if np.all(np.abs(across) < PARALLEL):
+            vector = first @ axes
+            return {_word(vector, "normal"): vector}
+    return {
+        _word(vector, other): vector
+        for vector, other in zip(axes, ("first", "second"), strict=True)
+    }
+
+
+def driven_word(model: ModalModel) -> str:
+    """Return the word for the contacts' direction that the force moves most."""
+    index = driven_direction(model)
+    words = list(acting_directions(model, int(np.argmax(model.contact_weight))))
+    return words[min(index, len(words) - 1)]
+
+
+def _word(vector: np.ndarray, other: str) -> str:
+    """Return the global axis that a unit vector lies along, else another word."""
+    axis = int(np.argmax(np.abs(vector)))
+    return AXES[axis] if abs(vector[axis]) > ALIGNED else other
