@@ -241,3 +241,20 @@ def test_the_load_to_add_reaches_the_level_at_a_gap_of_the_study(study):
     for load, gap, wanted in ((13.0, 1.23e-4, "10.6"), (1.0, 1.0e-3, "0.3")):
         with pytest.raises(EquivalentError, match=f"Add the load {wanted} to grid.load_rms_N"):
             equivalent(study, load, gap)
+
+
+def test_one_resolved_gap_of_several_is_a_chance_selection(tmp_path, study_model):
+    """At 1e4 N/m the wide gap is blind below 2 N: alone it does not count against the other."""
+    lost = dict.fromkeys(("k_median", "k_low", "k_high"), np.nan)
+    rows = [
+        row | lost if row["gap_m"] == GAPS[1] and row["load_rms_N"] < 8.0 else row
+        for row in summary_rows()
+    ]
+    study = made_up_study(tmp_path, study_model, rows)
+    (group,) = equivalent(study, 1.2, 1.0e-4).groups  # one of two
+    assert group.how.endswith("from gap 0.1 mm; not resolved at 0.3 mm")
+    assert group.k.value == pytest.approx(k_law(1.2e4), rel=1e-9)
+    third = [row | {"gap_m": 2.9e-4, "load_rms_N": row["load_rms_N"] * 2.9 / 3.0} for row in rows]
+    rows += [row for row, old in zip(third, rows, strict=True) if old["gap_m"] == GAPS[1]]
+    (group,) = equivalent(made_up_study(tmp_path, study_model, rows), 1.2, 1.0e-4).groups
+    assert not group.k.resolved and group.agreement_k == "unresolved"  # one of three

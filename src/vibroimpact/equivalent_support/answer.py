@@ -97,12 +97,20 @@ class Answer:
     @property
     def unresolved(self) -> list[str]:
         """Return a sentence for every k and c that is not resolved where the force moves."""
-        return [
-            f"{name} of '{group.group}' along {group.direction} is not resolved: {reason}"
-            for group in self.groups
-            for name, span, reason in (
-                ("k", group.k, group.reason_k),
-                ("c", group.c, group.reason_c),
-            )
-            if group.moved and not span.resolved
-        ]
+        sentences = []
+        for group in self.groups:
+            missing = {
+                name: reason
+                for name, span, reason in (
+                    ("k", group.k, group.reason_k),
+                    ("c", group.c, group.reason_c),
+                )
+                if group.moved and not span.resolved
+            }
+            if len(missing) == 2 and missing["c"] == missing["k"]:
+                missing = {"k and c": missing["k"]}
+            sentences += [
+                f"{name} of '{group.group}' along {group.direction}: not resolved: {reason}"
+                for name, reason in missing.items()
+            ]
+        return sentences

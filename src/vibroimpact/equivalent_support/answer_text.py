@@ -66,7 +66,8 @@ def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
             value = f"{name} = {span.value:.4g} {unit}"
             lines.append(f"  {value:26} {interval:24}{said}".rstrip())
         else:
-            lines.append(f"  {name}   {ABSENT}: {reason}")
+            same = name == "c" and not group.k.resolved and reason == group.reason_k
+            lines.append(f"  {name}   {ABSENT}{', as k' if same else f': {reason}'}")
     if group.methods:
         lines += ["", f"  {'method':26} {'k [N/m]':34} c [N s/m]"]
         lines += [

@@ -19,7 +19,8 @@ class Reading:
 
     span: value with its interval.
     bracket: the neighbouring levels, the nearest of all gaps.
-    gaps: (gap,) m, those that the value comes from.
+    gaps: (gap,) m, those that the value comes from. blocked: those that reach the level, but are
+        not resolved there.
     ratio: largest over smallest value of these gaps.
     rows: the rows that were interpolated, or that stood in the way.
     """
@@ -27,6 +28,7 @@ class Reading:
     span: Span
     bracket: tuple[float, float]
     gaps: tuple[float, ...]
+    blocked: tuple[float, ...]
     ratio: float
     rows: tuple[dict[str, Any], ...]
 
@@ -41,34 +43,38 @@ def read_at(
     """Return the Reading of a level: linear in the logarithm of the level within each gap.
 
     A gap counts where the level lies between two of its loads that are both resolved. The value is
-    the median over the gaps that count, and the interval the hull of theirs.
+    the median over the gaps that count, and the interval the hull of theirs. It needs at least half
+    of the gaps that reach the level; fewer would be a chance selection.
 
     rows: with the columns gap_m and those of `columns`: value, low and high; one per load and gap.
     level_of: level of a row, such as its load over its gap.
     logarithmic: interpolate the logarithm of the values, which then are positive.
     """
-    found, brackets, gaps, used, blocked = [], [], [], [], []
+    found, brackets, gaps, used = [], [], [], []
+    blocked: dict[float, list[dict[str, Any]]] = {}
     for gap in sorted({row["gap_m"] for row in rows}, reverse=True):
         ends = _neighbours([row for row in rows if row["gap_m"] == gap], level, level_of)
         values = np.array([[row[column] for column in columns] for row in ends], dtype=float)
         if not ends:
             continue
         if not np.all(np.isfinite(values)) or (logarithmic and np.any(values <= 0.0)):
-            blocked += ends
+            blocked[float(gap)] = ends
             continue
         levels = [level_of(row) for row in ends]
         found.append(_between(level, levels, values, logarithmic))
         brackets.append((levels[0], levels[-1]))
         gaps.append(float(gap))
         used += ends
-    if not found:
-        return Reading(Span(), (np.nan, np.nan), (), np.nan, tuple(blocked))
+    if len(found) < max(len(blocked), 1):
+        rows_blocked = tuple(row for ends in blocked.values() for row in ends)
+        return Reading(Span(), (np.nan, np.nan), (), tuple(blocked), np.nan, rows_blocked)
     value, low, high = np.array(found).T
     middle = np.exp(np.median(np.log(value))) if logarithmic else np.median(value)
     return Reading(
         Span(float(middle), float(low.min()), float(high.max())),
         (max(low for low, _ in brackets), min(high for _, high in brackets)),
         tuple(gaps),
+        tuple(blocked),
         float(value.max() / value.min()) if logarithmic else np.nan,
         tuple(used),
     )

@@ -271,6 +271,10 @@ def _how(asked: _Asked, reading: Reading, rows: Rows) -> str:
         if len(reading.gaps) > 1
         else "no other gap reaches there"
     )
+    if reading.blocked:
+        unresolved = _listed([f"{1e3 * gap:.4g}" for gap in reading.blocked])
+        collapse = f"{collapse if len(reading.gaps) > 1 else ''}; not resolved at {unresolved} mm"
+        collapse = collapse.removeprefix("; ")
     several = "s" if len(reading.gaps) > 1 else ""
     return (
         f"interpolated between {low:.2e} and {high:.2e} N/m of load over gap, from gap{several}"
