@@ -1,9 +1,13 @@
 """A model without a scale of its own: twice the load at twice the gap is twice the motion."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from vibroimpact import Case, build_model, check_config, simulate_cases
+from vibroimpact.contact.laws import ContactLaws, LocalLaws
+from vibroimpact.equivalent_support import homogeneity
 from vibroimpact.equivalent_support.homogeneity import effects_with_a_scale
 
 SUPPORT = {"name": "stop", "point": "mass", "stiffness_N_per_m": 1.0e6}
@@ -82,3 +86,18 @@ def test_equal_load_over_gap_is_equal_motion_over_gap(name):
         assert ratio == pytest.approx(2.0, rel=1e-6)
     else:
         assert abs(ratio - 2.0) > 1e-3
+
+
+def test_every_term_of_a_force_law_has_been_judged():
+    """A new column of the laws must be tried above, and named here or in homogeneity.py."""
+    of_degree_one = {
+        "contact": {"damping", "friction", "stick_stiffness", "lobes", "lobe_angle"},
+        "local": {"stiffness", "damping", "stick_stiffness", "saturation_stiffness"},
+    }
+    no_force = {"land_point", "land_normal", "drag_partner"}
+    for law, name, judged in (
+        (ContactLaws, "contact", {"gap", *homogeneity.CONTACT_TERMS}),
+        (LocalLaws, "local", {*homogeneity.ELEMENT_TERMS}),
+    ):
+        columns = {field.name for field in dataclasses.fields(law)}
+        assert columns - no_force == judged | of_degree_one[name]

@@ -180,6 +180,9 @@ def test_what_the_law_does_not_know_is_refused():
         estimate_equivalent(changed(supports=[], identification=None), 5.0, 2.5e-4)
     rubbing = estimate_equivalent(changed(supports=[support | {"friction": 0.2}]), 5.0, 2.5e-4)
     assert "without friction, which this model has" in rubbing.notes[1]
+    damping = {"kind": "rayleigh", "mass_coefficient_per_s": 1.0e3, "stiffness_coefficient_s": 0.0}
+    with pytest.raises(EquivalentError, match="a mode of the structure is overdamped"):
+        estimate_equivalent(changed(damping=damping), 5.0, 2.5e-4)
     harmonic = load_config(ROOT / "config" / "four_supports.yaml")
     with pytest.raises(EquivalentError, match="excitation.kind is harmonic"):
         estimate_equivalent(harmonic, 5.0, 2.5e-4)

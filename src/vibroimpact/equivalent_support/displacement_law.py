@@ -72,7 +72,8 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
     """Return the HeldTube of a model under a force of flat PSD in a band.
 
     The displacement is the root mean square over the plates of that of the middle of each; the
-    damping is modal. Its integral over the band is in closed form (band_power).
+    damping is modal. Its integral over the band is in closed form (band_power). Values are NaN
+    where a mode is overdamped.
     """
     contact = max(np.bincount(model.support_of_point, model.contact_stiffness))
     decades = int(np.ceil(-np.log10(LOWEST_SHARE)))
@@ -85,6 +86,9 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
     for number, k in enumerate(stiffness):
         square, vectors = np.linalg.eigh(np.diag(model.omega[modes] ** 2) + k * support)
         decay = 0.5 * (vectors**2).T @ model.damping[modes]
+        if np.any(square <= decay**2):
+            motion[number], omega[number] = np.nan, np.nan
+            continue
         poles = -decay + 1j * np.sqrt(square - decay**2)
         gains = (places.T @ vectors) * (vectors.T @ drive)
         power = band_power(poles, gains, band_Hz) / (band_Hz[1] - band_Hz[0])

@@ -35,6 +35,10 @@ def estimate_equivalent(config: Config, load_rms_N: float, gap_m: float) -> Answ
         )
     _require_plain(model)
     tube = held_tube(model, config.excitation.band_Hz)
+    if not np.all(np.isfinite(tube.motion)):
+        raise EquivalentError(
+            "a mode of the structure is overdamped: the law knows vibration alone. Run the study"
+        )
     gap = gap_m * float(np.mean(model.gap_factor))
     level = tube.level(load_rms_N, gap)
     _require_inside(shipped, level, load_rms_N)
