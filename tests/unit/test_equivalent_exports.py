@@ -1,5 +1,6 @@
 """Springs and dampers to ground in the formats of other programs, read back by small readers."""
 
+import argparse
 import ast
 import dataclasses
 import math
@@ -11,7 +12,7 @@ from tests.exported_springs import READERS
 from vibroimpact import EquivalentError, build_model, check_config, point_springs, springs_text
 from vibroimpact.equivalent_support import command
 from vibroimpact.equivalent_support.answer import NOT_MOVED, Answer, GroupAnswer, Span
-from vibroimpact.equivalent_support.export_formats.registry import FORMATS
+from vibroimpact.equivalent_support.export_formats.registry import FIRST_NUMBER, FORMATS
 
 K, C = 8.0e4, 210.0
 TANGENT = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)
@@ -201,6 +202,28 @@ def test_nastran_cards_fit_their_fields(slanted_model):
     for line in text.splitlines():
         assert len(line) <= 72
     assert "." in text.split("PBUSH*")[1].splitlines()[0]
+
+
+def test_names_that_a_format_can_not_tell_apart_are_refused(study_model):
+    same = dataclasses.replace(study_model, support_names=("plate 1", "plate_1"))
+    springs = point_springs(answer(same.support_names), same)
+    for form in READERS:
+        with pytest.raises(EquivalentError, match="both called plate_1_1"):
+            springs_text(springs, form)
+    long = dataclasses.replace(study_model, support_names=("left", "a_plate_with_a_long_name"))
+    with pytest.raises(EquivalentError, match="more than the 24 characters"):
+        springs_text(point_springs(answer(long.support_names), long), "code_aster")
+
+
+def test_numbers_begin_where_asked(study_model):
+    springs = point_springs(answer(study_model.support_names), study_model)
+    assert "GRID*               5000" in springs_text(springs, "nastran", first_number=5000)
+    assert "\n5000, " in springs_text(springs, "abaqus", first_number=5000)
+    assert "first_tag=5000" in springs_text(springs, "opensees", first_number=5000)
+    parser = argparse.ArgumentParser()
+    command.add_arguments(parser)
+    asked = parser.parse_args(["mine", "--load", "1", "--gap", "1"])
+    assert asked.first_number == FIRST_NUMBER
 
 
 def test_python_formats_are_python(slanted_model):

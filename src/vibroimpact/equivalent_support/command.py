@@ -67,6 +67,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="m",
         help="export: m, N, kg, s (default) or mm, N, t, s",
     )
+    parser.add_argument(
+        "--first-number",
+        type=int,
+        default=900001,
+        metavar="ID",
+        help="export: first number of nodes and elements (default 900001)",
+    )
     parser.set_defaults(command=run)
 
 
@@ -144,7 +151,7 @@ def _write_export(
 
     form, path = options.export
     springs = point_springs(answer, model, options.points, options.across)
-    content = springs_text(springs, form, options.unit)
+    content = springs_text(springs, form, options.unit, options.first_number)
     try:
         write_text(content, path)
     except OSError as error:

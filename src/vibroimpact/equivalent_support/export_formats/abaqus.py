@@ -37,9 +37,9 @@ def _elements(spring: PointSpring, unit: UnitSystem, node: int, element: int) ->
     name, axes, lines = plain_name(spring.name).upper(), global_axes(spring), []
     oriented = ""
     if axes is None:
-        axes, oriented = (0, 1), f", ORIENTATION={name}"
+        axes, oriented = (0, 1), f", ORIENTATION=AXES_{name}"
         frame = ", ".join(f"{value + 0.0:.9E}" for value in spring.axes.ravel())
-        lines += [f"*ORIENTATION, NAME={name}", frame]
+        lines += [f"*ORIENTATION, NAME=AXES_{name}", frame]
     for kind, letter, values, factor in (
         ("SPRING", "K", spring.k, unit.stiffness),
         ("DASHPOT", "C", spring.c, unit.damping),

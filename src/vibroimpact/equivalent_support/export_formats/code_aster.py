@@ -7,10 +7,12 @@ of a damping; VECT_X_Y gives the local x and y axes.
 
 from __future__ import annotations
 
+from ..answer import EquivalentError
 from ..springs import PointSpring, SpringSet
 from .frames import global_axes, head, plain_name
 from .unit_system import UnitSystem
 
+LONGEST_NAME = 24
 USE = (
     "Each GROUP_MA is one POI1 element on the node of your mesh at the coordinates given"
     " (CREA_MAILLAGE, CREA_POI1), with the model DIS_TR (AFFE_MODELE). Put the terms into the"
@@ -19,10 +21,18 @@ USE = (
 
 
 def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
-    """Return the commands. first_number is not used: groups have names."""
+    """Return the commands. first_number is not used: groups have names.
+
+    Raises EquivalentError for a name that code_aster can not take.
+    """
     discrete, orientation, places = [], [], []
     for spring in springs.springs:
         name = plain_name(spring.name).upper()
+        if len(name) > LONGEST_NAME:
+            raise EquivalentError(
+                f"'{name}' has more than the {LONGEST_NAME} characters of a group of code_aster:"
+                " shorten the support's name"
+            )
         place = ", ".join(f"{unit.length * value + 0.0:.9g}" for value in spring.position)
         places.append(f"#   {name}: ({place})")
         discrete += _terms(spring, unit, name)

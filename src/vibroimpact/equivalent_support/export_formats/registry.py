@@ -7,6 +7,7 @@ from collections.abc import Callable
 from ..answer import EquivalentError
 from ..springs import SpringSet
 from . import abaqus, code_aster, nastran, opensees, tables
+from .frames import plain_name
 from .unit_system import UnitSystem, unit_system
 
 FORMATS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
@@ -28,8 +29,16 @@ def springs_text(
     form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
     first_number: first number or tag of nodes and elements, where the format has them.
 
-    Raises EquivalentError for another format or unit.
+    Raises EquivalentError for another format or unit, and where two supports have the same name but
+    for letters that a format does not know.
     """
     if form not in FORMATS:
         raise EquivalentError(f"format '{form}' is none of {', '.join(FORMATS)}")
+    names = [plain_name(spring.name).lower() for spring in springs.springs]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise EquivalentError(
+            f"two points are both called {twice[0]} in letters, digits and underscores: rename a"
+            " support"
+        )
     return FORMATS[form](springs, unit_system(unit), first_number)
