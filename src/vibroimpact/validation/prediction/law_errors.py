@@ -26,7 +26,8 @@ LEVELS = (0.6, 1.0, 1.7, 3.0, 5.0, 9.0, 16.0, 24.0)  # inside what the default s
 SEEDS = 2
 GAP_OF_DIAMETER = 0.013
 RECORD, SPECTRA, INTEGRATION = {"duration_s": 24.0}, {"segment_s": 8.0}, {"start_up_s": 2.0}
-FEWEST_METHODS = 2  # that must resolve k or c, for c of those that give one
+FEWEST_METHODS = 2  # that must resolve k
+FARTHEST = 2.0  # largest over smallest of the methods that make one observation
 QUANTILES = (0.1, 0.9)
 OBSERVED_K = ("k_identified", "k_secant")
 LOWEST_STIFFNESS = 1.0e2  # N/m
@@ -75,8 +76,8 @@ def tube_rows(config, name, keys, law, stiffness_law, levels=LEVELS, seeds=SEEDS
     law: DisplacementLaw. stiffness_law: EquivalentLaw over the static stiffness, for comparison.
 
     Row keys: tube, level, load_rms_N, gap_m, k_law, c_law, k_stiffness_law, k_identified,
-    c_identified (medians of the compared methods, NaN where fewer than two of them resolve k; c of
-    any), k_secant.
+    c_identified (medians of the compared methods; NaN where fewer than two of them resolve k, none
+    resolves c, or they are a factor 2 apart), k_secant.
     """
     changed, model = other_tube(config, name, keys)
     gap = GAP_OF_DIAMETER * changed.structure.section.outer_diameter_m
@@ -111,10 +112,15 @@ def tube_rows(config, name, keys, law, stiffness_law, levels=LEVELS, seeds=SEEDS
 
 
 def _median(methods, column, fewest):
-    """Return the median of the compared methods that resolve a value; NaN for too few."""
+    """Return the median of the compared methods that resolve a value.
+
+    NaN for too few, and where they are too far apart to be one observation.
+    """
     values = [methods[method][column] for method in COMPARED]
     resolved = [value for value in values if np.isfinite(value)]
-    return float(np.median(resolved)) if len(resolved) >= fewest else np.nan
+    if len(resolved) < fewest or max(resolved) > FARTHEST * min(resolved):
+        return np.nan
+    return float(np.median(resolved))
 
 
 def error_rows(rows: Iterable[dict]) -> list[dict]:
