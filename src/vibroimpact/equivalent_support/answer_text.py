@@ -87,7 +87,8 @@ def _agreement_text(group: GroupAnswer, homogeneous: bool) -> str:
     if group.agreeing is None:
         return "The methods agree on k nowhere in the study."
     unit = "N/m of load over gap" if homogeneous else "N RMS"
-    where = f"from {group.agreeing[0]:.3g} to {group.agreeing[1]:.3g} {unit}."
+    low, high = group.agreeing
+    where = f"{f'from {low:.3g} to' if low < high else 'at'} {high:.3g} {unit}."
     if group.agreement_k == "agree":
         return f"The methods agree on k {where}"
     return f"The methods do not agree on k here; nearest, they do {where}"

@@ -19,8 +19,8 @@ def estimate_equivalent(config: Config, load_rms_N: float, gap_m: float) -> Answ
     """Return the Answer that the law of the default study estimates, without a simulation.
 
     The law was compared with simulations of other tubes. The values are the law times the median
-    ratio found there; 80 % of the ratios are inside the interval. All supports have the same k and
-    c.
+    ratio found there; at least 80 % of the ratios are inside the interval. All supports have the
+    same k and c.
 
     load_rms_N: RMS of the force in N. gap_m: radial gap in m.
 
@@ -96,7 +96,7 @@ def _notes(model: ModalModel, shipped: ShippedLaw, error: dict[str, float]) -> t
         "This is an estimate from a law, not a result: run the study for one. The law was compared"
         f" with simulations of {every['tubes']:g} other tubes, {every['cases']:g} cases. At this"
         f" level simulation over law is {error['k_low']:.2g} to {error['k_high']:.2g} for k and"
-        f" {error['c_low']:.2g} to {error['c_high']:.2g} for c in 80 % of them: the intervals"
+        f" {error['c_low']:.2g} to {error['c_high']:.2g} for c in at least 80 % of them: the intervals"
         f" above. The values are the law times the medians, {error['k_median']:.2g} and"
         f" {error['c_median']:.2g}.",
     ]

@@ -42,16 +42,21 @@ class ShippedLaw:
         """Return the measured ratios of simulation to law at a level: k_median, k_low, k_high and
         those of c.
 
-        They are interpolated in logarithms between the middles of the regions.
+        They are interpolated in logarithms between the middles of the regions. The range from low
+        to high includes 1, the tube of the fit.
         """
         regions = self.errors[:-1]
         middles = [0.5 * np.log(row["level_from"] * row["level_to"]) for row in regions]
-        return {
+        error = {
             name: float(
                 np.exp(np.interp(np.log(level), middles, [np.log(row[name]) for row in regions]))
             )
             for name in RATIOS
         }
+        for name in ("k", "c"):
+            error[f"{name}_low"] = min(error[f"{name}_low"], 1.0)
+            error[f"{name}_high"] = max(error[f"{name}_high"], 1.0)
+        return error
 
 
 def law_text(law: DisplacementLaw, errors: Sequence[dict[str, Any]], origin: dict[str, Any]) -> str:

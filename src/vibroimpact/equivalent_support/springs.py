@@ -151,7 +151,8 @@ def _notes(answer: Answer, across: str) -> tuple[str, ...]:
     for group in filter(lambda group: group.moved, answer.groups):
         notes.append(
             f"Group {group.group} ({', '.join(group.supports)}) along {group.direction}, per"
-            f" support: k {_span_text(group.k)} N/m; c {_span_text(group.c)} N s/m. {group.how}."
+            f" support: k {_span_text(group.k, 'N/m')}; c {_span_text(group.c, 'N s/m')}."
+            f" {group.how[:1].upper()}{group.how[1:]}."
         )
     if across == "same":
         notes.append(
@@ -160,7 +161,7 @@ def _notes(answer: Answer, across: str) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _span_text(span: Span) -> str:
+def _span_text(span: Span, unit: str) -> str:
     if not span.resolved:
         return "unresolved"
-    return f"{span.value:.6g} ({span.low:.4g} to {span.high:.4g})"
+    return f"{span.value:.6g} {unit} ({span.low:.4g} to {span.high:.4g})"
