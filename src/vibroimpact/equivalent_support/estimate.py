@@ -96,8 +96,8 @@ def _notes(model: ModalModel, shipped: ShippedLaw, error: dict[str, float]) -> t
         "This is an estimate from a law, not a result: run the study for one. The law was compared"
         f" with simulations of {every['tubes']:g} other tubes, {every['cases']:g} cases. At this"
         f" level simulation over law is {error['k_low']:.2g} to {error['k_high']:.2g} for k and"
-        f" {error['c_low']:.2g} to {error['c_high']:.2g} for c in at least 80 % of them: the intervals"
-        f" above. The values are the law times the medians, {error['k_median']:.2g} and"
+        f" {error['c_low']:.2g} to {error['c_high']:.2g} for c in at least 80 % of them: the"
+        f" intervals above. The values are the law times the medians, {error['k_median']:.2g} and"
         f" {error['c_median']:.2g}.",
     ]
     laws = model.contact_laws
