@@ -27,10 +27,7 @@ def outside_sentence(
     """
     path = configuration_of(study)
     config = path or f"the configuration of study '{study}'"
-    run = (
-        f"run `.venv/bin/snakemake -j2 --configfile {path or 'FILE'}`: only the new cases are"
-        " simulated"
-    )
+    run = f"run `snakemake -j2 --configfile {path or 'FILE'}`: only the new cases are simulated"
     if load_rms_N is None:
         return f"Add {gap_m:g} to grid.gap_m in {config} and {run}"
     loads = sorted({float(row["load_rms_N"]) for row in rows})
@@ -65,9 +62,9 @@ def _rounded_away(value: float, other: float) -> float:
     return float((np.ceil if value > other else np.floor)(value / step) * step)
 
 
-def configuration_of(study: str, folder: str | Path = "config") -> str | None:
-    """Return the file of a folder whose `study` is this one, None where there is none."""
-    for path in sorted(Path(folder).glob("*.yaml")):
+def configuration_of(study: str) -> str | None:
+    """Return the file, here or in config/, whose `study` is this one; None where there is none."""
+    for path in (*sorted(Path("config").glob("*.yaml")), *sorted(Path().glob("*.yaml"))):
         try:
             if read_yaml(path).get("study") == study:
                 return str(path)
