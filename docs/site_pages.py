@@ -56,6 +56,7 @@ def write_generated_pages(app, config):
     _write(folder / "configuration_keys.md", MEANING_IS_WIDE + _meaning_second(keys))
     _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
     _write(folder / "command_line.md", _command_line())
+    _write(folder / "command_line_equivalent.md", _command_line("equivalent"))
     python = folder / "python"
     packages = python / "packages"
     packages.mkdir(parents=True, exist_ok=True)
@@ -177,13 +178,13 @@ def _links_as_html(text):
     return links.sub(html, text) if places else text
 
 
-def _command_line():
-    """Return the help texts of the command line as Markdown."""
+def _command_line(*command):
+    """Return the help text of the command line, or of one of its commands, as Markdown."""
     root = Path(vibroimpact.__file__).parents[1]
     if find_spec("vibroimpact.__main__") is None:
         return "*This version has no `python -m vibroimpact`.*\n"
     shown = subprocess.run(
-        [sys.executable, "-m", "vibroimpact", "--help"],
+        [sys.executable, "-m", "vibroimpact", *command, "--help"],
         capture_output=True,
         text=True,
         check=True,

@@ -43,6 +43,7 @@ PACKAGES = (
     "identify",
     "campaign",
     "study",
+    "equivalent_support",
     "effects",
     "discrepancy",
     "completion",

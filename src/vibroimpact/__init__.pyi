@@ -26,6 +26,11 @@ from .config.problems import ConfigError as ConfigError
 from .config.reading import check_config as check_config
 from .config.reading import load_config as load_config
 from .config.schema import Config as Config
+from .equivalent_support.answer import EquivalentError as EquivalentError
+from .equivalent_support.estimate import estimate_equivalent as estimate_equivalent
+from .equivalent_support.export_formats.registry import springs_text as springs_text
+from .equivalent_support.springs import point_springs as point_springs
+from .equivalent_support.study_answer import equivalent as equivalent
 from .identify.estimate import Estimate as Estimate
 from .identify.identify_case import identify_case as identify_case
 from .linear.modes import natural_frequencies as natural_frequencies

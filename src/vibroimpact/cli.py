@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vibroimpact import __version__
+from vibroimpact.equivalent_support.command import add_arguments
 
 NETCDF = (".nc", ".nc4", ".cdf")
 # How netCDF files begin, of the classic format and of HDF5.
@@ -93,6 +94,15 @@ def _parser() -> argparse.ArgumentParser:
         " study, the study of the paper)",
     )
     new.set_defaults(command=_new)
+    answer = commands.add_parser(
+        "equivalent",
+        help="print the equivalent k and c of a study at a load and gap, and export them",
+        description="Print the stiffness k and damping c that a linear model needs at the supports"
+        " at one load and gap: from a finished study, interpolated inside its grid, or as an"
+        " estimate without a simulation. The exit code is 1 where there is no answer, or where a k"
+        " or c is not resolved; what is not resolved is never exported.",
+    )
+    add_arguments(answer)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),

@@ -5,8 +5,8 @@ make the table.
 import numpy as np
 import pytest
 
+from vibroimpact.equivalent_support.scaled_law import fit_law, free_level, plate_stiffness
 from vibroimpact.linear.responses import frf, synthesise_records
-from vibroimpact.validation.prediction.equivalent_law import fit_law, free_level, plate_stiffness
 from vibroimpact.validation.prediction.table import (
     amplified,
     expected_peak_factor,

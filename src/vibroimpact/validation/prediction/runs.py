@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.structure import UTube
+from vibroimpact.equivalent_support.scaled_law import FREE, fit_law, free_level, plate_stiffness
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
@@ -14,7 +15,6 @@ from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case, load_values
 from vibroimpact.study.simulation import simulate_cases
 
-from .equivalent_law import FREE, fit_law, free_level, plate_stiffness
 from .table import amplified, linear_response, prediction_rows, recorded_response
 
 GAPS_OF_DIAMETER = (0.005, 0.020)

@@ -6,11 +6,14 @@ plates, against the RMS displacement that the FREE tube would have there over th
 from the linear model of any tube, so that the law applies to another one.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.linear.responses import frf
+from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.method_agreement import COMPARED
 
 NEIGHBOURS = 7  # points of the fit that a place of the law is the median of
@@ -31,29 +34,35 @@ class EquivalentLaw:
     k: np.ndarray
     c: np.ndarray
 
-    def at(self, level):
+    def at(self, level: float) -> tuple[float, float]:
         """Return (k, c) at a level, (0, 0) where the tube is free."""
         if level < self.level[0]:
             return 0.0, 0.0
         x = np.log(level)
-        return tuple(
+        k, c = (
             float(np.exp(_line(x, np.log(self.level), np.log(values))))
             for values in (self.k, self.c)
         )
+        return k, c
 
-    def inside(self, level):
+    def inside(self, level: float) -> bool:
         """Return True where the law interpolates or the tube is free."""
         return bool(level <= self.level[-1])
 
 
-def _line(x, places, values):
+def _line(x: float, places: np.ndarray, values: np.ndarray) -> float:
     if x <= places[-1]:
-        return np.interp(x, places, values)
+        return float(np.interp(x, places, values))
     slope = (values[-1] - values[-4]) / (places[-1] - places[-4])
-    return values[-1] + slope * (x - places[-1])
+    return float(values[-1] + slope * (x - places[-1]))
 
 
-def fit_law(summary, level_of, scale=(1.0, 1.0), without_load=None) -> EquivalentLaw:
+def fit_law(
+    summary: Sequence[dict[str, Any]],
+    level_of: Callable[[float, float], float],
+    scale: tuple[float, float] = (1.0, 1.0),
+    without_load: float | None = None,
+) -> EquivalentLaw:
     """Return the law of a study: running medians over loads, gaps and methods.
 
     summary: rows of consistency_summary.csv.
@@ -83,34 +92,31 @@ def fit_law(summary, level_of, scale=(1.0, 1.0), without_load=None) -> Equivalen
     )
 
 
-def free_level(model, band_Hz):
+def free_level(model: ModalModel, band_Hz: Sequence[float]) -> float:
     """Return the RMS displacement of the free tube at its plates per RMS force in the band, m/N.
 
     It is that of the middle of the plates, along the drive.
     """
     frequency = np.arange(band_Hz[0], band_Hz[1], 0.02)
-    response = frf(model, FREE, 0.0, frequency, _plate_shapes(model))
+    response = frf(model, FREE, 0.0, frequency, plate_shapes(model))
     return float(np.sqrt(np.mean(np.abs(response) ** 2)))
 
 
-def plate_stiffness(model):
+def plate_stiffness(model: ModalModel) -> tuple[float, float]:
     """Return (N/m, N s/m): static stiffness of the tube per plate, and it over the first omega.
 
     All plates move alike. The second is the scale of c.
     """
-    shapes = _plate_shapes(model)
+    shapes = plate_shapes(model)
     moved = shapes.sum(axis=1)
     kept = model.omega > 0.0
     flexibility = np.sum((moved[kept] / model.omega[kept]) ** 2) / shapes.shape[1]
     first = model.omega[kept][np.argmax((moved[kept] / model.omega[kept]) ** 2)]
-    return 1.0 / flexibility, 1.0 / (flexibility * first)
+    return float(1.0 / flexibility), float(1.0 / (flexibility * first))
 
 
-def _plate_shapes(model):
-    """Return (mode, support): mean displacement of each support's points.
-
-    The direction is the one that the drive moves most.
-    """
+def driven_direction(model: ModalModel) -> int:
+    """Return 0 or 1: the direction of the contacts that the drive moves most, statically."""
     driven = np.abs(
         np.einsum(
             "mcd,m->cd",
@@ -118,7 +124,12 @@ def _plate_shapes(model):
             model.drive_shapes[:, 0] / np.maximum(model.omega, 1.0) ** 2,
         )
     ).sum(axis=0)
-    along = model.contact_shapes[:, :, int(np.argmax(driven))]
+    return int(np.argmax(driven))
+
+
+def plate_shapes(model: ModalModel) -> np.ndarray:
+    """Return (mode, support): mean displacement of each support's points along driven_direction."""
+    along = model.contact_shapes[:, :, driven_direction(model)]
     return np.stack(
         [
             along[:, model.support_of_point == number]

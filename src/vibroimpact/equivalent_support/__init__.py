@@ -1,0 +1,3 @@
+"""The support of a linear model at one load and gap: read off a study, or estimated without one,
+and written for finite-element programs.
+"""

@@ -1,0 +1,152 @@
+"""An answer as a readable table, as rows of a CSV table, and as plain values for JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import asdict
+from typing import Any
+
+from vibroimpact.records import plain_values
+from vibroimpact.study.method_agreement import COMPARED
+
+from .answer import Answer, GroupAnswer, Span
+
+COLUMNS = (
+    "study",
+    "kind",
+    "gap_m",
+    "load_rms_N",
+    "group",
+    "supports",
+    "direction",
+    "k_N_per_m",
+    "k_low",
+    "k_high",
+    "c_N_s_per_m",
+    "c_low",
+    "c_high",
+    "secant_k_N_per_m",
+    "secant_c_N_s_per_m",
+    "agreement_k",
+    "agreement_c",
+    "reason_k",
+    "reason_c",
+    "how",
+)
+ABSENT = "unresolved"
+AGREEMENTS = {"unresolved": "not all resolve it"}
+
+
+def as_text(answer: Answer) -> str:
+    """Return an answer as text: per group the values, each method, and where they come from."""
+    what = "Estimate without a simulation for" if answer.kind == "estimate" else "Study"
+    level = f" (load over gap {answer.load_rms_N / answer.gap_m:.3g} N/m)"
+    head = (
+        f"{what} '{answer.study}': equivalent support at {answer.load_rms_N:g} N RMS and a gap of"
+        f" {1e3 * answer.gap_m:.4g} mm{level if answer.homogeneous else ''}"
+    )
+    blocks = [head, *(_group_text(group, answer.homogeneous) for group in answer.groups)]
+    return "\n\n".join([*blocks, *answer.notes])
+
+
+def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
+    """Return the block of one group."""
+    place = f"Group '{group.group}' ({', '.join(group.supports)}), along {group.direction}"
+    if not group.moved:
+        return f"{place}\n  no values: {group.reason_k}"
+    lines = [f"{place}; values per support"]
+    for name, unit, span, agreement, reason in (
+        ("k", "N/m", group.k, group.agreement_k, group.reason_k),
+        ("c", "N s/m", group.c, group.agreement_c, group.reason_c),
+    ):
+        said = f"   methods: {AGREEMENTS.get(agreement, agreement)}" if agreement else ""
+        if span.resolved:
+            interval = f"{span.low:.3g} to {span.high:.3g}"
+            value = f"{name} = {span.value:.4g} {unit}"
+            lines.append(f"  {value:26} {interval:24}{said}".rstrip())
+        else:
+            same = name == "c" and not group.k.resolved and reason == group.reason_k
+            lines.append(f"  {name}   {ABSENT}{', as k' if same else f': {reason}'}")
+    if group.methods:
+        lines += ["", f"  {'method':26} {'k [N/m]':34} c [N s/m]"]
+        lines += [
+            f"  {_marked(item.method):26} {_span_text(item.k):34} {_span_text(item.c)}".rstrip()
+            for item in group.methods
+        ]
+        lines += ["  * compared: the recommended values come from these", ""]
+    if group.how:
+        lines.append(f"  {group.how[0].upper()}{group.how[1:]}.")
+    if group.methods:
+        lines.append(f"  {_agreement_text(group, homogeneous)}")
+    return "\n".join(lines)
+
+
+def _agreement_text(group: GroupAnswer, homogeneous: bool) -> str:
+    """Return where the methods agree on k."""
+    if group.agreeing is None:
+        return "The methods agree on k nowhere in the study."
+    unit = "N/m of load over gap" if homogeneous else "N RMS"
+    low, high = group.agreeing
+    where = f"{f'from {low:.3g} to' if low < high else 'at'} {high:.3g} {unit}."
+    if group.agreement_k == "agree":
+        return f"The methods agree on k {where}"
+    return f"The methods do not agree on k here; nearest, they do {where}"
+
+
+def _marked(method: str) -> str:
+    return f"{method} *" if method in COMPARED else method
+
+
+def _span_text(span: Span) -> str:
+    return f"{span.value:.4g} ({span.low:.3g} to {span.high:.3g})" if span.resolved else "-"
+
+
+def table_rows(answer: Answer) -> list[dict[str, Any]]:
+    """Return one dict per group and direction with the keys COLUMNS."""
+    return [
+        dict(
+            zip(
+                COLUMNS,
+                (
+                    answer.study,
+                    answer.kind,
+                    answer.gap_m,
+                    answer.load_rms_N,
+                    group.group,
+                    " ".join(group.supports),
+                    group.direction,
+                    group.k.value,
+                    group.k.low,
+                    group.k.high,
+                    group.c.value,
+                    group.c.low,
+                    group.c.high,
+                    group.secant_k,
+                    group.secant_c,
+                    group.agreement_k,
+                    group.agreement_c,
+                    group.reason_k,
+                    group.reason_c,
+                    group.how,
+                ),
+                strict=True,
+            )
+        )
+        for group in answer.groups
+    ]
+
+
+def as_csv(answer: Answer) -> str:
+    """Return an answer as CSV: one row per group and direction, under COLUMNS."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(table_rows(answer))
+    return text.getvalue().rstrip("\n")
+
+
+def as_plain(answer: Answer) -> dict[str, Any]:
+    """Return an answer as JSON knows values; what is not resolved is null."""
+    plain: dict[str, Any] = plain_values(asdict(answer))
+    return plain

@@ -1,0 +1,159 @@
+"""The command `vibroimpact equivalent`: its arguments, and what it prints and writes.
+
+The library is imported when the command runs, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vibroimpact.reduction.modal_model import ModalModel
+
+    from .answer import Answer
+
+FORMATS = ("nastran", "code_aster", "abaqus", "opensees", "csv", "json")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument(
+        "study",
+        metavar="STUDY",
+        nargs="?",
+        help="a finished study: its name under results/, or the folder of its results",
+    )
+    parser.add_argument(
+        "--load", type=float, required=True, metavar="N", help="RMS of the force in N"
+    )
+    parser.add_argument("--gap", type=float, required=True, metavar="M", help="radial gap in m")
+    parser.add_argument(
+        "--config",
+        metavar="FILE",
+        help="configuration: of what is estimated, or of a study whose model.nc is not there",
+    )
+    parser.add_argument(
+        "--estimate",
+        action="store_true",
+        help="estimate from a law, without a simulation; needs --config and no study",
+    )
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print JSON in place of the text")
+    form.add_argument("--csv", action="store_true", help="print CSV in place of the text")
+    parser.add_argument(
+        "--export",
+        nargs=2,
+        metavar=("FORMAT", "FILE"),
+        help=f"write springs and dampers to ground; FORMAT: {', '.join(FORMATS)}",
+    )
+    parser.add_argument(
+        "--points",
+        choices=("each", "one"),
+        default="each",
+        help="export: springs at each contact point (default), or one at each support",
+    )
+    parser.add_argument(
+        "--across",
+        choices=("same", "none"),
+        default="same",
+        help="export: a transverse direction that was not identified gets the k and c of the other"
+        " one (default), or no spring",
+    )
+    parser.add_argument(
+        "--unit",
+        choices=("m", "mm"),
+        default="m",
+        help="export: m, N, kg, s (default) or mm, N, t, s",
+    )
+    parser.add_argument(
+        "--first-number",
+        type=int,
+        default=900001,
+        metavar="ID",
+        help="export: first number of nodes and elements (default 900001)",
+    )
+    parser.set_defaults(command=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command. Return 1 where there is no answer, or a k or c is not resolved."""
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.records import RecordError
+
+    from .answer import EquivalentError
+
+    try:
+        answer, model = _answer(options)
+        left_out = _write_export(options, answer, model) if options.export else ()
+    except (EquivalentError, ConfigError, RecordError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print(_printed(options, answer))
+    missing = [*answer.unresolved, *(line for line in left_out if line not in answer.unresolved)]
+    for sentence in missing:
+        print(sentence, file=sys.stderr)
+    return 1 if missing else 0
+
+
+def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
+    """Return the Answer and the model that it belongs to. Raises EquivalentError, ConfigError."""
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.reduction.reduced_model import build_model
+
+    from .answer import EquivalentError
+    from .estimate import estimate_equivalent
+    from .study_answer import equivalent, model_of, study_folder
+
+    config = load_config(options.config) if options.config else None
+    if options.estimate:
+        if config is None or options.study:
+            raise EquivalentError(
+                "--estimate needs no study and a configuration: `vibroimpact equivalent --estimate"
+                " --config FILE --load N --gap M`"
+            )
+        answer = estimate_equivalent(config, options.load, options.gap)
+        return answer, build_model(config, motion_only=True)
+    if not options.study:
+        raise EquivalentError(
+            "name a study, as in `vibroimpact equivalent gv_local --load 5 --gap 0.25e-3`, or ask"
+            " for an estimate with --estimate --config FILE"
+        )
+    model = (
+        model_of(study_folder(options.study))
+        if config is None
+        else build_model(config, motion_only=True)
+    )
+    return equivalent(options.study, options.load, options.gap, model), model
+
+
+def _printed(options: argparse.Namespace, answer: Answer) -> str:
+    """Return what the command prints."""
+    import json
+
+    from .answer_text import as_csv, as_plain, as_text
+
+    if options.json:
+        return json.dumps(as_plain(answer), indent=2, ensure_ascii=False)
+    return as_csv(answer) if options.csv else as_text(answer)
+
+
+def _write_export(
+    options: argparse.Namespace, answer: Answer, model: ModalModel
+) -> tuple[str, ...]:
+    """Write the export. Return what was left out of it. Raises EquivalentError."""
+    from vibroimpact.records import write_text
+
+    from .answer import EquivalentError
+    from .export_formats.registry import springs_text
+    from .springs import point_springs
+
+    form, path = options.export
+    springs = point_springs(answer, model, options.points, options.across)
+    content = springs_text(springs, form, options.unit, options.first_number)
+    try:
+        write_text(content, path)
+    except OSError as error:
+        raise EquivalentError(f"{path}: cannot be written ({error.strerror})") from error
+    return springs.left_out

@@ -1,0 +1,142 @@
+"""The equivalent support of any tube as a law of its free motion over the gap.
+
+The equivalent support of a rattling tube is about the one that holds a linear tube to a motion of
+the gap. The law makes this a number: on the support k, the linear tube with its modal damping alone
+would move `held` gaps RMS at its plates, where the tube without supports would move `level` gaps.
+`held` against `level` is taken from one study, and k of another tube then follows from its own
+linear response. It approaches `level` where the tube hardly touches (k = 0), and about 1.5 where it
+rattles. The damping is given as a loss factor, c omega / k with omega the first frequency on k.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.identify.statistical_linearisation import band_power
+from vibroimpact.linear.modes import contact_matrix, driven_block
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.study.method_agreement import COMPARED
+
+from .scaled_law import NEIGHBOURS, plate_shapes
+
+STEPS_PER_DECADE = 24  # of the stiffnesses at which the linear tube is computed
+LOWEST_SHARE = 1.0e-6  # of the contact stiffness; a softer support is none
+
+
+@dataclass(frozen=True)
+class HeldTube:
+    """The linear tube on its plates, against the support's stiffness.
+
+    stiffness: (k,) N/m per support, ascending; the first stands for no support.
+    motion: (k,) RMS displacement at the plates along the drive, in m per N RMS of the force.
+    omega: (k,) rad/s, first frequency of the driven motion.
+    """
+
+    stiffness: np.ndarray
+    motion: np.ndarray
+    omega: np.ndarray
+
+    def level(self, load_rms_N: float, gap_m: float) -> float:
+        """Return the RMS displacement of the free tube at its plates, over the gap."""
+        return float(self.motion[0] * load_rms_N / gap_m)
+
+    def held(self, k: float, load_rms_N: float, gap_m: float) -> float:
+        """Return the RMS displacement at the plates on a support k in N/m, over the gap."""
+        x = np.log(self.stiffness)
+        motion = np.exp(np.interp(np.log(max(k, self.stiffness[0])), x, np.log(self.motion)))
+        return float(motion * load_rms_N / gap_m)
+
+    def stiffness_at(self, held: float, load_rms_N: float, gap_m: float) -> float:
+        """Return the softest support in N/m on which the tube moves no more than `held` gaps.
+
+        It is at most the contact stiffness.
+        """
+        y = np.log(self.motion * load_rms_N / (gap_m * held))
+        first = int(np.argmax(y <= 0.0)) if (y <= 0.0).any() else len(y) - 1
+        if first == 0 or y[first] > 0.0:
+            return float(self.stiffness[first])
+        share = y[first - 1] / (y[first - 1] - y[first])
+        x = np.log(self.stiffness)
+        return float(np.exp(x[first - 1] + share * (x[first] - x[first - 1])))
+
+    def first_omega(self, k: float) -> float:
+        """Return the first frequency in rad/s on a support k in N/m."""
+        return float(np.interp(np.log(k), np.log(self.stiffness), self.omega))
+
+
+def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
+    """Return the HeldTube of a model under a force of flat PSD in a band.
+
+    The displacement is the root mean square over the plates of that of the middle of each; the
+    damping is modal. Its integral over the band is in closed form (band_power). Values are NaN
+    where a mode is overdamped.
+    """
+    contact = max(np.bincount(model.support_of_point, model.contact_stiffness))
+    decades = int(np.ceil(-np.log10(LOWEST_SHARE)))
+    stiffness = np.geomspace(LOWEST_SHARE * contact, contact, decades * STEPS_PER_DECADE + 1)
+    modes = driven_block(model)
+    support = contact_matrix(model)[modes]
+    support = support @ support.T
+    places, drive = plate_shapes(model)[modes], model.drive_shapes[modes, 0]
+    motion, omega = np.zeros(stiffness.size), np.zeros(stiffness.size)
+    for number, k in enumerate(stiffness):
+        square, vectors = np.linalg.eigh(np.diag(model.omega[modes] ** 2) + k * support)
+        decay = 0.5 * (vectors**2).T @ model.damping[modes]
+        if np.any(square <= decay**2):
+            motion[number], omega[number] = np.nan, np.nan
+            continue
+        poles = -decay + 1j * np.sqrt(square - decay**2)
+        gains = (places.T @ vectors) * (vectors.T @ drive)
+        power = band_power(poles, gains, band_Hz) / (band_Hz[1] - band_Hz[0])
+        motion[number], omega[number] = np.sqrt(power.mean()), np.sqrt(square[0])
+    return HeldTube(stiffness, motion, omega)
+
+
+@dataclass(frozen=True)
+class DisplacementLaw:
+    """RMS displacement of the held tube over the gap, and loss factor, against the free tube's.
+
+    level, held, loss: (point,), level ascending.
+    """
+
+    level: np.ndarray
+    held: np.ndarray
+    loss: np.ndarray
+
+    def inside(self, level: float) -> bool:
+        """Return whether the law was fitted at this level."""
+        return bool(self.level[0] <= level <= self.level[-1])
+
+    def at(self, tube: HeldTube, load_rms_N: float, gap_m: float) -> tuple[float, float]:
+        """Return (k in N/m, c in N s/m) per support of a tube at a load and gap."""
+        x, places = np.log(tube.level(load_rms_N, gap_m)), np.log(self.level)
+        held = float(np.exp(np.interp(x, places, np.log(self.held))))
+        k = tube.stiffness_at(held, load_rms_N, gap_m)
+        return k, float(np.interp(x, places, self.loss)) * k / tube.first_omega(k)
+
+
+def fit_displacement_law(summary: Sequence[dict[str, Any]], tube: HeldTube) -> DisplacementLaw:
+    """Return the law of a study: running medians over loads, gaps and the compared methods.
+
+    summary: rows of consistency_summary.csv. tube: of the study.
+    """
+    points = []
+    for row in summary:
+        k, c = row["k_median"], row["c_median"]
+        if row["method"] in COMPARED and np.isfinite(k):
+            case = row["load_rms_N"], row["gap_m"]
+            loss = c * tube.first_omega(k) / k
+            points.append((tube.level(*case), tube.held(k, *case), loss))
+    level, held, loss = np.array(sorted(points), dtype=float).T
+    parts = [slice(first, first + NEIGHBOURS) for first in range(0, level.size - NEIGHBOURS + 1, 2)]
+    levels = np.array([np.exp(np.median(np.log(level[part]))) for part in parts])
+    kept = np.concatenate([[True], np.diff(levels) > 0.0])
+    return DisplacementLaw(
+        levels[kept],
+        np.array([np.exp(np.median(np.log(held[part]))) for part in parts])[kept],
+        np.array([np.nanmedian(loss[part]) for part in parts])[kept],  # the shape gives no c
+    )

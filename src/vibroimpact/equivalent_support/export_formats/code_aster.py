@@ -1,0 +1,69 @@
+"""code_aster commands: AFFE_CARA_ELEM of discrete elements K_TR_D_N and A_TR_D_N at nodes.
+
+Source: code_aster documentation U4.42.01 (AFFE_CARA_ELEM, keywords DISCRET and ORIENTATION):
+K_TR_D_N takes the six diagonal terms of a stiffness to ground in the axes of REPERE, A_TR_D_N those
+of a damping; VECT_X_Y gives the local x and y axes.
+"""
+
+from __future__ import annotations
+
+from ..answer import EquivalentError
+from ..springs import PointSpring, SpringSet
+from .frames import global_axes, head, plain_name
+from .unit_system import UnitSystem
+
+LONGEST_NAME = 24
+USE = (
+    "Each GROUP_MA is one POI1 element on the node of your mesh at the coordinates given"
+    " (CREA_MAILLAGE, CREA_POI1), with the model DIS_TR (AFFE_MODELE). Put the terms into the"
+    " AFFE_CARA_ELEM of your model, or use this one."
+)
+
+
+def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
+    """Return the commands. first_number is not used: groups have names.
+
+    Raises EquivalentError for a name that code_aster can not take.
+    """
+    discrete, orientation, places = [], [], []
+    for spring in springs.springs:
+        name = plain_name(spring.name).upper()
+        if len(name) > LONGEST_NAME:
+            raise EquivalentError(
+                f"'{name}' has more than the {LONGEST_NAME} characters of a group of code_aster:"
+                " shorten the support's name"
+            )
+        place = ", ".join(f"{unit.length * value + 0.0:.9g}" for value in spring.position)
+        places.append(f"#   {name}: ({place})")
+        discrete += _terms(spring, unit, name)
+        if global_axes(spring) is None:
+            values = ", ".join(f"{value + 0.0:.12g}" for value in spring.axes.ravel())
+            orientation.append(f"        _F(GROUP_MA='{name}', CARA='VECT_X_Y', VALE=({values})),")
+    lines = [*head(springs, unit, "#", USE), *places, "SUPPORTS = AFFE_CARA_ELEM("]
+    lines += ["    MODELE=MODELE,", "    DISCRET=(", *discrete, "    ),"]
+    if orientation:
+        lines += ["    ORIENTATION=(", *orientation, "    ),"]
+    return "\n".join([*lines, ")"]) + "\n"
+
+
+def _terms(spring: PointSpring, unit: UnitSystem, name: str) -> list[str]:
+    """Return the _F terms of one point: the stiffness, and the damping where there is one."""
+    axes, frame = global_axes(spring), "GLOBAL"
+    if axes is None:
+        axes, frame = (0, 1), "LOCAL"
+    lines = []
+    for kind, values, factor in (
+        ("K_TR_D_N", spring.k, unit.stiffness),
+        ("A_TR_D_N", spring.c, unit.damping),
+    ):
+        if all(value is None for value in values):
+            continue
+        terms = [0.0] * 6
+        for axis, value in zip(axes, values, strict=True):
+            terms[axis] = factor * (value or 0.0)
+        diagonal = ", ".join(f"{term:.9g}" for term in terms)
+        lines += [
+            f"        _F(GROUP_MA='{name}', REPERE='{frame}', CARA='{kind}',",
+            f"           VALE=({diagonal})),",
+        ]
+    return lines

@@ -1,0 +1,44 @@
+"""The head of an exported file, and the frames that springs act in."""
+
+from __future__ import annotations
+
+import textwrap
+
+import numpy as np
+
+from ..springs import PointSpring, SpringSet
+from .unit_system import UnitSystem
+
+WIDTH = 66  # of comment lines: an input line of Nastran holds 72 characters of a comment
+AXIS_TOLERANCE = 1.0e-9  # of a unit vector's component
+
+
+def head(springs: SpringSet, unit: UnitSystem, mark: str, extra: str = "") -> list[str]:
+    """Return the comment lines that begin a file.
+
+    mark: what begins a comment. extra: a sentence on how to use the file.
+    """
+    sentences = [
+        f"Springs and dampers to ground, written by vibroimpact. Units: {unit.name}.",
+        *springs.notes,
+        *(f"LEFT OUT: {sentence}." for sentence in springs.left_out),
+        *filter(None, [extra]),
+    ]
+    lines = [line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH)]
+    return [f"{mark} {line}" for line in lines]
+
+
+def global_axes(spring: PointSpring) -> tuple[int, int] | None:
+    """Return the global axes (0 to 2) that the two directions of a spring are, up to the sign.
+
+    None where they are not along the axes.
+    """
+    axes = np.abs(spring.axes)
+    first, second = (int(np.argmax(axis)) for axis in axes)
+    along = axes[0, first] > 1.0 - AXIS_TOLERANCE and axes[1, second] > 1.0 - AXIS_TOLERANCE
+    return (first, second) if along else None
+
+
+def plain_name(text: str) -> str:
+    """Return a name of letters, digits and underscores, as every format reads it."""
+    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in text)

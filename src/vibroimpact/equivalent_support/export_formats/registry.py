@@ -1,0 +1,44 @@
+"""The formats that springs can be written in, by the name that the command line takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..answer import EquivalentError
+from ..springs import SpringSet
+from . import abaqus, code_aster, nastran, opensees, tables
+from .frames import plain_name
+from .unit_system import UnitSystem, unit_system
+
+FORMATS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
+    "nastran": nastran.text,
+    "code_aster": code_aster.text,
+    "abaqus": abaqus.text,
+    "opensees": opensees.text,
+    "csv": tables.csv_text,
+    "json": tables.json_text,
+}
+FIRST_NUMBER = 900001  # above the numbers of most models
+
+
+def springs_text(
+    springs: SpringSet, form: str, unit: str = "m", first_number: int = FIRST_NUMBER
+) -> str:
+    """Return the text of a file with springs and dampers to ground.
+
+    form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
+    first_number: first number or tag of nodes and elements, where the format has them.
+
+    Raises EquivalentError for another format or unit, and where two supports have the same name but
+    for letters that a format does not know.
+    """
+    if form not in FORMATS:
+        raise EquivalentError(f"format '{form}' is none of {', '.join(FORMATS)}")
+    names = [plain_name(spring.name).lower() for spring in springs.springs]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise EquivalentError(
+            f"two points are both called {twice[0]} in letters, digits and underscores: rename a"
+            " support"
+        )
+    return FORMATS[form](springs, unit_system(unit), first_number)

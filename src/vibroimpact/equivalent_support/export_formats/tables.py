@@ -1,0 +1,68 @@
+"""Springs and dampers as CSV and JSON: one row per point and direction."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from typing import Any
+
+from vibroimpact.records import plain_values
+
+from ..springs import SpringSet
+from .unit_system import UnitSystem
+
+COLUMNS = (
+    "point",
+    "support",
+    "x",
+    "y",
+    "z",
+    "direction_x",
+    "direction_y",
+    "direction_z",
+    "k",
+    "c",
+)
+
+
+def rows(springs: SpringSet, unit: UnitSystem) -> list[dict[str, Any]]:
+    """Return one dict per point and direction that has a spring, with the keys COLUMNS.
+
+    c is None where it is not resolved.
+    """
+    table = []
+    for spring in springs.springs:
+        for axis, k, c in zip(spring.axes, spring.k, spring.c, strict=True):
+            if k is None:
+                continue
+            values = (
+                spring.name,
+                spring.support,
+                *(unit.length * float(value) for value in spring.position),
+                *(float(value) for value in axis),
+                unit.stiffness * k,
+                None if c is None else unit.damping * c,
+            )
+            table.append(dict(zip(COLUMNS, values, strict=True)))
+    return table
+
+
+def csv_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
+    """Return the CSV text: a header and the rows; c is empty where it is not resolved."""
+    file = io.StringIO()
+    writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows(springs, unit))
+    return file.getvalue()
+
+
+def json_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
+    """Return the JSON text: units, notes, what was left out, and the rows."""
+    content = {
+        "units": unit.name,
+        "notes": springs.notes,
+        "left_out": springs.left_out,
+        "springs": rows(springs, unit),
+    }
+    return json.dumps(plain_values(content), indent=1) + "\n"

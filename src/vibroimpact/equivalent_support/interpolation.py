@@ -1,0 +1,121 @@
+"""Values of a study between its loads, from one gap or from all gaps at equal load over gap."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .answer import Span
+
+SAME = 1.0e-6  # relative difference below which two levels are the same
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A value read off a study at one level.
+
+    span: value with its interval.
+    bracket: the neighbouring levels, the nearest of all gaps.
+    gaps: (gap,) m, those that the value comes from. blocked: those that reach the level, but are
+        not resolved there.
+    ratio: largest over smallest value of these gaps.
+    rows: the rows that were interpolated, or that stood in the way.
+    """
+
+    span: Span
+    bracket: tuple[float, float]
+    gaps: tuple[float, ...]
+    blocked: tuple[float, ...]
+    ratio: float
+    rows: tuple[dict[str, Any], ...]
+
+
+def read_at(
+    rows: Sequence[dict[str, Any]],
+    level: float,
+    level_of: Callable[[dict[str, Any]], float],
+    columns: tuple[str, str, str],
+    logarithmic: bool,
+) -> Reading:
+    """Return the Reading of a level: linear in the logarithm of the level within each gap.
+
+    A gap counts where the level lies between two of its loads that are both resolved. The value is
+    the median over the gaps that count, and the interval the hull of theirs. It needs at least half
+    of the gaps that reach the level; fewer would be a chance selection.
+
+    rows: with the columns gap_m and those of `columns`: value, low and high; one per load and gap.
+    level_of: level of a row, such as its load over its gap.
+    logarithmic: interpolate the logarithm of the values, which then are positive.
+    """
+    found, brackets, gaps, used = [], [], [], []
+    blocked: dict[float, list[dict[str, Any]]] = {}
+    for gap in sorted({row["gap_m"] for row in rows}, reverse=True):
+        ends = _neighbours([row for row in rows if row["gap_m"] == gap], level, level_of)
+        values = np.array([[row[column] for column in columns] for row in ends], dtype=float)
+        if not ends:
+            continue
+        if not np.all(np.isfinite(values)) or (logarithmic and np.any(values <= 0.0)):
+            blocked[float(gap)] = ends
+            continue
+        levels = [level_of(row) for row in ends]
+        found.append(_between(level, levels, values, logarithmic))
+        brackets.append((levels[0], levels[-1]))
+        gaps.append(float(gap))
+        used += ends
+    if len(found) < max(len(blocked), 1):
+        rows_blocked = tuple(row for ends in blocked.values() for row in ends)
+        return Reading(Span(), (np.nan, np.nan), (), tuple(blocked), np.nan, rows_blocked)
+    value, low, high = np.array(found).T
+    middle = np.exp(np.median(np.log(value))) if logarithmic else np.median(value)
+    return Reading(
+        Span(float(middle), float(low.min()), float(high.max())),
+        (max(low for low, _ in brackets), min(high for _, high in brackets)),
+        tuple(gaps),
+        tuple(blocked),
+        float(value.max() / value.min()) if logarithmic else np.nan,
+        tuple(used),
+    )
+
+
+def _neighbours(
+    rows: Sequence[dict[str, Any]], level: float, level_of: Callable[[dict[str, Any]], float]
+) -> list[dict[str, Any]]:
+    """Return the row at a level, or the two that enclose it; none where it is outside."""
+    ordered = sorted(rows, key=level_of)
+    same = [row for row in ordered if abs(level_of(row) / level - 1.0) <= SAME]
+    below = [row for row in ordered if level_of(row) < level]
+    above = [row for row in ordered if level_of(row) > level]
+    if same:
+        return same[:1]
+    return [below[-1], above[0]] if below and above else []
+
+
+def _between(
+    level: float, levels: Sequence[float], values: np.ndarray, logarithmic: bool
+) -> np.ndarray:
+    """Return (column,) values at a level, from one row or between two."""
+    if len(levels) == 1:
+        return values[0]
+    share = np.log(level / levels[0]) / np.log(levels[1] / levels[0])
+    if logarithmic:
+        return np.exp((1.0 - share) * np.log(values[0]) + share * np.log(values[1]))
+    return (1.0 - share) * values[0] + share * values[1]
+
+
+def ranges_of_agreement(
+    rows: Sequence[dict[str, Any]], level_of: Callable[[dict[str, Any]], float], column: str
+) -> list[tuple[float, float]]:
+    """Return the ranges of level over which every row says "agree", lowest first."""
+    ranges: list[list[float]] = []
+    open_ = False
+    for row in sorted(rows, key=level_of):
+        agrees = row[column] == "agree"
+        if agrees and open_:
+            ranges[-1][1] = level_of(row)
+        elif agrees:
+            ranges.append([level_of(row), level_of(row)])
+        open_ = agrees
+    return [(low, high) for low, high in ranges]

@@ -1,0 +1,73 @@
+"""What to say where a study does not reach: the nearest case, and how to add the one wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.config.problems import ConfigError
+from vibroimpact.config.yaml_file import read_yaml
+
+
+def outside_sentence(
+    study: str,
+    rows: Sequence[dict[str, Any]],
+    load_rms_N: float | None,
+    gap_m: float,
+    fixed_gap: bool,
+) -> str:
+    """Return the sentence for a case outside a study: the nearest case, and how to add this one.
+
+    rows: of the study, with gap_m and load_rms_N.
+    load_rms_N: N RMS; None where the gap alone is missing.
+    fixed_gap: whether the load counts at fixed gap, not load over gap.
+    """
+    path = configuration_of(study)
+    config = path or f"the configuration of study '{study}'"
+    run = f"run `snakemake -j2 --configfile {path or 'FILE'}`: only the new cases are simulated"
+    if load_rms_N is None:
+        return f"Add {gap_m:g} to grid.gap_m in {config} and {run}"
+    loads = sorted({float(row["load_rms_N"]) for row in rows})
+    if fixed_gap:
+        place = (
+            f"load {load_rms_N:g} N RMS is outside the loads of study '{study}' at this gap,"
+            f" {loads[0]:g} to {loads[-1]:g} N"
+        )
+        nearest = min(rows, key=lambda row: abs(np.log(row["load_rms_N"] / load_rms_N)))
+        wanted = load_rms_N
+    else:
+        level = load_rms_N / gap_m
+        levels = [row["load_rms_N"] / row["gap_m"] for row in rows]
+        place = (
+            f"load over gap, {load_rms_N:g} N / {gap_m:g} m = {level:.3g} N/m, is outside study"
+            f" '{study}', {min(levels):.3g} to {max(levels):.3g} N/m"
+        )
+        nearest = min(rows, key=lambda row: abs(np.log(row["load_rms_N"] / row["gap_m"] / level)))
+        # Any case with this load over gap will do: one load more, at a gap that is there.
+        wanted = level * nearest["gap_m"]
+    return (
+        f"{place}: nothing is extrapolated. The nearest case is {nearest['load_rms_N']:g} N RMS at"
+        f" {nearest['gap_m']:g} m. Add the load {_rounded_away(wanted, nearest['load_rms_N']):g} to"
+        f" grid.load_rms_N in {config} (written as a list: the loads there are, and this one) and"
+        f" {run}"
+    )
+
+
+def _rounded_away(value: float, other: float) -> float:
+    """Return a value with three digits, rounded away from another one."""
+    step = 10.0 ** (np.floor(np.log10(value)) - 2.0)
+    return float((np.ceil if value > other else np.floor)(value / step) * step)
+
+
+def configuration_of(study: str) -> str | None:
+    """Return the file, here or in config/, whose `study` is this one; None where there is none."""
+    for path in (*sorted(Path("config").glob("*.yaml")), *sorted(Path().glob("*.yaml"))):
+        try:
+            if read_yaml(path).get("study") == study:
+                return str(path)
+        except ConfigError:
+            continue  # another file's problem
+    return None

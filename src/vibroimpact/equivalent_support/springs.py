@@ -1,0 +1,167 @@
+"""The springs and dampers to ground that an answer means, at the contact points of the supports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .answer import Answer, EquivalentError, GroupAnswer, Span
+from .support_directions import acting_directions
+
+Pair = tuple[float | None, float | None]
+
+
+@dataclass(frozen=True)
+class PointSpring:
+    """A spring and a damper to ground in each of the two transverse directions of a point.
+
+    name: such as "left_3": support and number of the contact point, from 1.
+    support: name of the support.
+    position: (3,) m.
+    axes: (2, 3) unit vectors of the two directions.
+    k, c: N/m and N s/m along the two directions; None for no spring or damper.
+    """
+
+    name: str
+    support: str
+    position: np.ndarray
+    axes: np.ndarray
+    k: Pair
+    c: Pair
+
+
+@dataclass(frozen=True)
+class SpringSet:
+    """All springs of an answer, and what was left out.
+
+    notes: sentences for the head of a file.
+    left_out: sentences for what is not resolved and therefore not among the springs.
+    """
+
+    springs: tuple[PointSpring, ...]
+    notes: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+
+def point_springs(
+    answer: Answer, model: ModalModel, points: str = "each", across: str = "same"
+) -> SpringSet:
+    """Return the SpringSet of an answer on the structure it belongs to.
+
+    The k and c of a support are shared by its contact points with their weights, in both
+    transverse directions, as in the linear tube that the methods compare with (linear.modes).
+    What is not resolved is left out.
+
+    points: "each" for every contact point, "one" for a single spring at the middle of a support.
+    across: "same" gives a transverse direction that the force of the study does not move the k and
+        c of the other one; "none" leaves it free. Parallel stops act along their normal alone.
+
+    Raises EquivalentError where no k is resolved, or the structure has no positions in space.
+    """
+    _require_positions(model)
+    by_support: dict[str, list[GroupAnswer]] = {name: [] for name in model.support_names}
+    for group in answer.groups:
+        for name in group.supports:
+            by_support[name].append(group)
+    springs = [
+        spring
+        for number, name in enumerate(model.support_names)
+        for spring in _springs_of_support(model, number, by_support[name], points, across)
+    ]
+    kept = tuple(spring for spring in springs if spring.k != (None, None))
+    bare = [name for name in model.support_names if name not in {item.support for item in kept}]
+    left_out = [*answer.unresolved, *(f"support {name} has no spring" for name in bare)]
+    if not kept:
+        raise EquivalentError(f"nothing to export: {'; '.join(left_out)}")
+    return SpringSet(kept, _notes(answer, across), tuple(left_out))
+
+
+def _require_positions(model: ModalModel) -> None:
+    if not np.any(model.contact_position):
+        raise EquivalentError(
+            "the supports of this structure have no positions in space (a chain, matrices or"
+            " measured modes): put k and c at their named points by hand"
+        )
+
+
+def _springs_of_support(
+    model: ModalModel, number: int, groups: list[GroupAnswer], points: str, across: str
+) -> Iterator[PointSpring]:
+    """Yield the springs of one support."""
+    inside = np.flatnonzero(model.support_of_point == number)
+    weight = model.contact_weight[inside]
+    support = model.support_names[number]
+    if points == "one":
+        middle = int(inside[np.argmin(np.abs(np.cumsum(weight) - 0.5))])
+        axes, k, c = _along(model, middle, groups, across)
+        position = weight @ model.contact_position[inside]
+        yield PointSpring(support, support, position, axes, k, c)
+        return
+    for order, (point, share) in enumerate(zip(inside, weight, strict=True), 1):
+        axes, k, c = _along(model, int(point), groups, across)
+        position = model.contact_position[point]
+        yield PointSpring(
+            f"{support}_{order}", support, position, axes, _shared(k, share), _shared(c, share)
+        )
+
+
+def _shared(pair: Pair, share: float) -> Pair:
+    """Return the share that one point has of the values of a support."""
+    first, second = (None if value is None else share * value for value in pair)
+    return first, second
+
+
+def _along(
+    model: ModalModel, point: int, groups: list[GroupAnswer], across: str
+) -> tuple[np.ndarray, Pair, Pair]:
+    """Return (axes (2, 3), k, c) of the whole support at a point."""
+    acting = acting_directions(model, point)
+    known = {group.direction: group for group in groups if group.moved}
+    found = [known.get(word) for word in acting]
+    there = [group for group in found if group is not None]
+    if across == "same" and len(there) == 1:
+        found = [there[0] for _ in acting]
+    axes = list(acting.values())
+    if len(axes) == 1:  # parallel stops: nothing across them
+        axes.append(np.cross(np.cross(*model.contact_directions[point]), axes[0]))
+        found.append(None)
+    k, c = (
+        tuple(None if group is None else _value(getattr(group, name)) for group in found)
+        for name in ("k", "c")
+    )
+    damped = (None if stiffness is None else value for stiffness, value in zip(k, c, strict=True))
+    return np.array(axes), (k[0], k[1]), (next(damped), next(damped))
+
+
+def _value(span: Span) -> float | None:
+    return span.value if span.resolved else None
+
+
+def _notes(answer: Answer, across: str) -> tuple[str, ...]:
+    """Return what the head of a file says."""
+    kind = "ESTIMATE from a law, without a simulation" if answer.kind == "estimate" else "study"
+    notes = [
+        f"Equivalent supports of {kind} '{answer.study}' at {answer.load_rms_N:g} N RMS and a gap"
+        f" of {1e3 * answer.gap_m:.6g} mm.",
+    ]
+    for group in filter(lambda group: group.moved, answer.groups):
+        notes.append(
+            f"Group {group.group} ({', '.join(group.supports)}) along {group.direction}, per"
+            f" support: k {_span_text(group.k, 'N/m')}; c {_span_text(group.c, 'N s/m')}."
+            f" {group.how[:1].upper()}{group.how[1:]}."
+        )
+    if across == "same":
+        notes.append(
+            "A transverse direction that the force did not move has the k and c of the other one."
+        )
+    return tuple(notes)
+
+
+def _span_text(span: Span, unit: str) -> str:
+    if not span.resolved:
+        return "unresolved"
+    return f"{span.value:.6g} {unit} ({span.low:.4g} to {span.high:.4g})"

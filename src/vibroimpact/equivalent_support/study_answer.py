@@ -1,0 +1,309 @@
+"""The equivalent support of a study at any load and gap inside its grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.identify.estimate import METHODS
+from vibroimpact.records import RecordError
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.model_file import read_model
+
+from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswer, Span
+from .homogeneity import effects_with_a_scale
+from .interpolation import SAME, Reading, ranges_of_agreement, read_at
+from .missing_case import outside_sentence
+from .study_tables import SUMMARY, recommended_rows_of, summary_rows_of
+from .support_directions import acting_directions, driven_word
+
+Rows = list[dict[str, Any]]
+
+
+def equivalent(
+    study: str | Path,
+    load_rms_N: float,
+    gap_m: float,
+    model: ModalModel | None = None,
+) -> Answer:
+    """Return the Answer of a finished study at a load and a gap.
+
+    Where the model is homogeneous of degree one, k and c depend on load over gap alone: they are
+    interpolated over it, from every gap of the study that reaches there. Otherwise they are
+    interpolated over the load, at a gap of the study. Nothing is extrapolated.
+
+    study: folder of its results, or its name under results/.
+    load_rms_N: RMS of the force in N. gap_m: radial gap in m.
+    model: reduced model of the study; that of its model.nc by default.
+
+    Raises EquivalentError where there is no answer; the message says what to do.
+    """
+    folder = study_folder(study)
+    _require_positive(load_rms_N, gap_m)
+    model = model_of(folder) if model is None else model
+    direction = driven_word(model)
+    summary = summary_rows_of(folder, direction)
+    recommended = recommended_rows_of(folder, summary, direction)
+    effects = effects_with_a_scale(model)
+    level_of: Callable[[dict[str, Any]], float]
+    if effects:
+        gap = _gap_of_the_grid(folder.name, recommended, gap_m, effects)
+        recommended = [row for row in recommended if row["gap_m"] == gap]
+        summary = [row for row in summary if row["gap_m"] == gap]
+        level_of, level = _load, load_rms_N
+    else:
+        level_of, level = _load_over_gap, load_rms_N / gap_m
+    levels = [level_of(row) for row in recommended]
+    if not min(levels) * (1.0 - SAME) <= level <= max(levels) * (1.0 + SAME):
+        raise EquivalentError(
+            outside_sentence(folder.name, recommended, load_rms_N, gap_m, bool(effects))
+        )
+    keys = dict.fromkeys((row["group"], row["direction"]) for row in recommended)
+    asked = _Asked(load_rms_N, gap_m, level, level_of, not effects)
+    answers = tuple(
+        _group_answer(
+            asked,
+            group,
+            direction,
+            members(group, direction, model),
+            [
+                [row for row in rows if (row["group"], row["direction"]) == (group, direction)]
+                for rows in (recommended, summary)
+            ],
+        )
+        for group, direction in keys
+    )
+    return Answer(folder.name, "study", load_rms_N, gap_m, answers, not effects, _notes(effects))
+
+
+class _Asked:
+    """What was asked: load in N, gap in m, and the level that the tables are read at."""
+
+    def __init__(
+        self,
+        load_rms_N: float,
+        gap_m: float,
+        level: float,
+        level_of: Callable[[dict[str, Any]], float],
+        homogeneous: bool,
+    ) -> None:
+        self.load_rms_N, self.gap_m = load_rms_N, gap_m
+        self.level, self.level_of, self.homogeneous = level, level_of, homogeneous
+
+    def rows_of(self, rows: Rows) -> Rows:
+        """Return the rows of the very case where the study has it, else all rows."""
+        same = [
+            row
+            for row in rows
+            if abs(row["gap_m"] / self.gap_m - 1.0) <= SAME
+            and abs(row["load_rms_N"] / self.load_rms_N - 1.0) <= SAME
+        ]
+        return same or rows
+
+    def read(self, rows: Rows, name: str, columns: tuple[str, str, str]) -> Reading:
+        """Return the Reading of k or c."""
+        return read_at(self.rows_of(rows), self.level, self.level_of, columns, name == "k")
+
+
+def study_folder(study: str | Path) -> Path:
+    """Return the folder of a study's results.
+
+    study: the folder, or its name under results/. Raises EquivalentError.
+    """
+    for folder in (Path(study), Path("results") / study):
+        if (folder / SUMMARY).is_file():
+            return folder.resolve() if folder.name in ("", ".", "..") else folder
+    raise EquivalentError(
+        f"'{study}' is no finished study: neither {Path(study) / SUMMARY} nor"
+        f" {Path('results') / study / SUMMARY} is there. Run `make study CONFIG=FILE` with an"
+        " identification, or name another folder"
+    )
+
+
+def model_of(folder: Path) -> ModalModel:
+    """Return the reduced model of a study's folder. Raises EquivalentError."""
+    try:
+        return read_model(folder / "model.nc")
+    except (RecordError, ValueError) as error:
+        raise EquivalentError(
+            f"{error}. Or give the study's configuration with --config FILE"
+        ) from error
+
+
+def members(group: str, direction: str, model: ModalModel) -> tuple[str, ...]:
+    """Return the supports of a group that act in a direction.
+
+    group: "all", the name of a support, or names joined by "+", as in plate_1+plate_2.
+
+    Raises EquivalentError for a name that is no support, and where none acts in the direction.
+    """
+    wanted = model.support_names
+    if group != "all":
+        wanted = (group,) if group in wanted else tuple(group.split("+"))
+    unknown = [name for name in wanted if name not in model.support_names]
+    if unknown:
+        raise EquivalentError(
+            f"group '{group}' names no supports of the study's model"
+            f" ({', '.join(model.support_names)}): the tables and the model belong to different"
+            " studies"
+        )
+    acting = {
+        model.support_names[number]
+        for point, number in enumerate(model.support_of_point)
+        if direction in acting_directions(model, point)
+    }
+    found = tuple(name for name in wanted if name in acting)
+    if not found:
+        raise EquivalentError(
+            f"no support of group '{group}' acts in the direction '{direction}': the tables and the"
+            " model belong to different studies"
+        )
+    return found
+
+
+def _require_positive(load_rms_N: float, gap_m: float) -> None:
+    for name, value, unit in (("load", load_rms_N, "N"), ("gap", gap_m, "m")):
+        if not (np.isfinite(value) and value > 0.0):
+            raise EquivalentError(f"the {name} is {value:g} {unit}: give a positive number")
+
+
+def _load(row: dict[str, Any]) -> float:
+    return float(row["load_rms_N"])
+
+
+def _load_over_gap(row: dict[str, Any]) -> float:
+    return float(row["load_rms_N"]) / float(row["gap_m"])
+
+
+def _gap_of_the_grid(study: str, rows: Rows, gap_m: float, effects: list[str]) -> float:
+    """Return the gap of the study that was asked for. Raises EquivalentError for another one."""
+    gaps = sorted({float(row["gap_m"]) for row in rows})
+    same = [gap for gap in gaps if abs(gap / gap_m - 1.0) <= SAME]
+    if same:
+        return same[0]
+    raise EquivalentError(
+        f"gap {gap_m:g} m is none of study '{study}' ({', '.join(f'{gap:g}' for gap in gaps)} m)."
+        f" It can not be interpolated, because the model has {'; '.join(effects)}: k does not"
+        " depend on load over gap alone. " + outside_sentence(study, rows, None, gap_m, True)
+    )
+
+
+def _group_answer(
+    asked: _Asked, group: str, direction: str, supports: tuple[str, ...], tables: list[Rows]
+) -> GroupAnswer:
+    """Return the GroupAnswer from the recommended and the summary rows of a group."""
+    recommended, summary = tables
+    k = asked.read(recommended, "k", ("k", "k_low", "k_high"))
+    c = asked.read(recommended, "c", ("c", "c_low", "c_high"))
+    secant = {
+        name: asked.read(recommended, name, (f"secant_{name}",) * 3).span.value
+        for name in ("k", "c")
+    }
+    return GroupAnswer(
+        group=group,
+        supports=supports,
+        direction=direction,
+        k=k.span,
+        c=c.span,
+        agreement_k=_agreement(k, "k"),
+        agreement_c=_agreement(c, "c"),
+        reason_k=_reason(k, "k"),
+        reason_c=_reason(c, "c"),
+        secant_k=secant["k"],
+        secant_c=secant["c"],
+        methods=tuple(
+            MethodAnswer(method, *(_of_method(asked, summary, method, name) for name in "kc"))
+            for method in METHODS
+            if any(row["method"] == method for row in summary)
+        ),
+        how=_how(asked, k if k.gaps else c, recommended),
+        agreeing=_agreeing_range(asked, recommended),
+    )
+
+
+def _of_method(asked: _Asked, summary: Rows, method: str, name: str) -> Span:
+    """Return k or c of one method."""
+    rows = [row for row in summary if row["method"] == method]
+    columns = (f"{name}_median", f"{name}_low", f"{name}_high")
+    return asked.read(rows, name, columns).span
+
+
+def _agreement(reading: Reading, name: str) -> str:
+    """Return the weakest agreement of the rows behind a value."""
+    said = {row[f"agreement_{name}"] for row in reading.rows}
+    if not reading.span.resolved or "unresolved" in said:
+        return "unresolved"
+    return "agree" if said == {"agree"} else "spread"
+
+
+def _reason(reading: Reading, name: str) -> str:
+    """Return why there is no value: the reason of the first case of the study that lacks it."""
+    lacking = [row for row in reading.rows if not np.isfinite(row[name])]
+    if reading.span.resolved or not lacking:
+        return ""
+    text = lacking[0][f"reason_{name}"] or "no value in the study"
+    if text.startswith(NOT_MOVED):
+        return NOT_MOVED
+    place = f"{lacking[0]['load_rms_N']:.3g} N at {1e3 * lacking[0]['gap_m']:.4g} mm"
+    others = len(lacking) - 1
+    more = f", and likewise {others} more case{'s' if others > 1 else ''} beside it"
+    return f"{text} ({place}{more if others else ''})"
+
+
+def _how(asked: _Asked, reading: Reading, rows: Rows) -> str:
+    """Return the sentence that says where a value comes from."""
+    if asked.rows_of(rows) is not rows:
+        return f"a case of the study: {asked.load_rms_N:g} N RMS at {1e3 * asked.gap_m:.4g} mm"
+    if not reading.gaps:
+        return "between cases of the study that are not resolved"
+    low, high = reading.bracket
+    if not asked.homogeneous:
+        return (
+            f"interpolated between {low:.3g} and {high:.3g} N RMS at gap"
+            f" {1e3 * reading.gaps[0]:.4g} mm"
+        )
+    gaps = _listed([f"{1e3 * gap:.4g}" for gap in reading.gaps])
+    collapse = (
+        f"collapse within {100.0 * (reading.ratio - 1.0):.0f} %"
+        if len(reading.gaps) > 1
+        else "no other gap reaches there"
+    )
+    if reading.blocked:
+        unresolved = _listed([f"{1e3 * gap:.4g}" for gap in reading.blocked])
+        collapse = f"{collapse if len(reading.gaps) > 1 else ''}; not resolved at {unresolved} mm"
+        collapse = collapse.removeprefix("; ")
+    several = "s" if len(reading.gaps) > 1 else ""
+    return (
+        f"interpolated between {low:.2e} and {high:.2e} N/m of load over gap, from gap{several}"
+        f" {gaps} mm; {collapse}"
+    )
+
+
+def _listed(words: Sequence[str]) -> str:
+    """Return "a", "a and b" or "a, b and c"."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def _agreeing_range(asked: _Asked, rows: Rows) -> tuple[float, float] | None:
+    """Return the range of level nearest to the one asked for where the methods agree on k."""
+    ranges = ranges_of_agreement(rows, asked.level_of, "agreement_k")
+    x = np.log(asked.level)
+
+    def distance(ends: tuple[float, float]) -> float:
+        low, high = np.log(ends)
+        return float(max(low - x, x - high, 0.0))
+
+    return min(ranges, key=distance) if ranges else None
+
+
+def _notes(effects: list[str]) -> tuple[str, ...]:
+    """Return what is to be said about the interpolation."""
+    if not effects:
+        return ()
+    return (
+        f"The model has {'; '.join(effects)}: it is not homogeneous, and k does not depend on load"
+        " over gap alone. Values are interpolated over the load at fixed gap.",
+    )

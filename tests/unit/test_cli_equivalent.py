@@ -1,0 +1,129 @@
+"""The command `vibroimpact equivalent`: what it prints and writes, and its exit code."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.exported_springs import nastran
+from tests.study_tables import k_law, made_up_study
+from vibroimpact.cli import main
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def run(capsys):
+    """A command, as (exit code, output, errors)."""
+
+    def run(*arguments):
+        code = main(["equivalent", *map(str, arguments)])
+        return code, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def study(tmp_path, study_model):
+    """The folder of a study whose k is a power of load over gap."""
+    folder = tmp_path / "made_up"
+    folder.mkdir()
+    return made_up_study(folder, study_model)
+
+
+def test_the_answer_is_printed_as_a_table(run, study):
+    code, output, errors = run(study, "--load", 4, "--gap", 1e-4)
+    assert (code, errors) == (0, "")
+    assert output.startswith(
+        "Study 'made_up': equivalent support at 4 N RMS and a gap of 0.1 mm (load over gap 4e+04"
+        " N/m)\n\nGroup 'all' (left, right), along y; values per support\n"
+    )
+    assert f"k = {k_law(4e4):.4g} N/m" in output and "methods: agree" in output
+    assert "A case of the study: 4 N RMS at 0.1 mm." in output
+    assert "The methods agree on k from 6.67e+03 to 8e+04 N/m of load over gap." in output
+
+
+def test_json_and_csv_hold_the_same_numbers(run, study):
+    values = json.loads(run(study, "--load", 4, "--gap", 1e-4, "--json")[1])
+    (row,) = csv.DictReader(io.StringIO(run(study, "--load", 4, "--gap", 1e-4, "--csv")[1]))
+    k = values["groups"][0]["k"]
+    assert k["value"] == float(row["k_N_per_m"]) == pytest.approx(k_law(4e4))
+    assert (k["low"], k["high"]) == (float(row["k_low"]), float(row["k_high"]))
+
+
+def test_a_study_is_found_by_its_name_in_results(run, tmp_path, monkeypatch, study_model):
+    folder = tmp_path / "results" / "mine"
+    folder.mkdir(parents=True)
+    made_up_study(folder, study_model)
+    monkeypatch.chdir(tmp_path)
+    assert run("mine", "--load", 4, "--gap", 1e-4)[0] == 0
+
+
+def test_outside_the_grid_is_a_sentence_and_code_1(run, study):
+    code, output, errors = run(study, "--load", 400, "--gap", 1e-4)
+    assert (code, output) == (1, "")
+    assert "nothing is extrapolated" in errors and "Traceback" not in errors
+
+
+def test_what_is_not_resolved_gives_code_1_and_no_file(run, study, tmp_path):
+    code, output, errors = run(study, "--load", 1, "--gap", 3e-4)
+    assert code == 1 and "k   unresolved" in output and "do not resolve k" in errors
+    path = tmp_path / "out.bdf"
+    code, output, errors = run(study, "--load", 1, "--gap", 3e-4, "--export", "nastran", path)
+    assert (code, output) == (1, "") and errors.startswith("nothing to export")
+    assert not path.exists()
+
+
+def test_the_export_holds_the_answer(run, study, tmp_path):
+    path = tmp_path / "out.bdf"
+    options = ("--export", "nastran", path, "--points", "one", "--unit", "mm", "--across", "none")
+    code, output, errors = run(study, "--load", 4, "--gap", 1e-4, *options)
+    assert (code, errors) == (0, "") and "k = " in output
+    found = nastran(path.read_text())
+    place, stiffness, _ = found["left"]
+    assert place == pytest.approx([-300.0, 0.0, 350.0])
+    assert stiffness[1, 1] == pytest.approx(1.0e-3 * k_law(4e4)) and stiffness[0, 0] == 0.0
+
+
+@pytest.mark.parametrize(
+    "arguments, part",
+    [
+        ((), "name a study"),
+        (("nowhere",), "'nowhere' is no finished study"),
+        (("--estimate",), "--estimate needs no study and a configuration"),
+        (("--estimate", "--config", "nowhere.yaml"), "nowhere.yaml"),
+    ],
+)
+def test_a_wrong_call_is_a_sentence(run, arguments, part):
+    code, output, errors = run(*arguments, "--load", 1, "--gap", 1e-4)
+    assert (code, output) == (1, "") and part in errors and "Traceback" not in errors
+
+
+def test_an_unknown_format_and_a_missing_folder_are_sentences(run, study, tmp_path):
+    case = (study, "--load", 4, "--gap", 1e-4)
+    assert "format 'ansys' is none of nastran" in run(*case, "--export", "ansys", "x")[2]
+    (tmp_path / "file").write_text("")
+    code, _, errors = run(*case, "--export", "csv", tmp_path / "file" / "x.csv")
+    assert code == 1 and "cannot be written" in errors
+
+
+def test_a_study_without_its_model_is_a_sentence(run, study):
+    (study / "model.nc").unlink()
+    code, _, errors = run(study, "--load", 4, "--gap", 1e-4)
+    assert code == 1 and "give the study's configuration with --config FILE" in errors
+    config = ROOT / "config" / "study.yaml"
+    assert run(study, "--load", 4, "--gap", 1e-4, "--config", config)[0] == 0
+
+
+def test_the_estimate_needs_no_results(run, tmp_path):
+    path = tmp_path / "out.csv"
+    config = ROOT / "config" / "study.yaml"
+    code, output, errors = run(
+        "--estimate", "--config", config, "--load", 5, "--gap", 0.25e-3, "--export", "csv", path
+    )
+    assert (code, errors) == (0, "")
+    assert output.startswith("Estimate without a simulation for 'gv_local'")
+    assert "This is an estimate from a law, not a result" in output
+    assert len(path.read_text().splitlines()) == 1 + 2 * 10
