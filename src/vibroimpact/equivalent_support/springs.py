@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.linear.support_groups import acting_directions
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .answer import Answer, EquivalentError, GroupAnswer, Span
-from .support_directions import acting_directions
 
 Pair = tuple[float | None, float | None]
 
@@ -125,7 +125,7 @@ def _along(
     there = [group for group in found if group is not None]
     if across == "same" and len(there) == 1:
         found = [there[0] for _ in acting]
-    axes = list(acting.values())
+    axes = [along @ model.contact_directions[point] for along in acting.values()]
     if len(axes) == 1:  # parallel stops: nothing across them
         axes.append(np.cross(np.cross(*model.contact_directions[point]), axes[0]))
         found.append(None)

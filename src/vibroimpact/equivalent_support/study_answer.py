@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.estimate import METHODS
+from vibroimpact.linear.support_groups import acting_directions
 from vibroimpact.records import RecordError
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
@@ -18,7 +19,7 @@ from .homogeneity import effects_with_a_scale
 from .interpolation import SAME, Reading, ranges_of_agreement, read_at
 from .missing_case import outside_sentence
 from .study_tables import SUMMARY, recommended_rows_of, summary_rows_of
-from .support_directions import acting_directions, driven_word
+from .support_directions import driven_word
 
 Rows = list[dict[str, Any]]
 

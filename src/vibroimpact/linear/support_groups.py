@@ -70,39 +70,37 @@ def support_directions(
         rows: dict[str, list[tuple[int, np.ndarray]]] = {}
         for point, directions in enumerate(acting):
             if model.support_names[model.support_of_point[point]] in members:
-                for along in directions:
-                    rows.setdefault(_label(model, point, directions, along), []).append(
-                        (point, along)
-                    )
+                for direction, along in directions.items():
+                    rows.setdefault(direction, []).append((point, along))
         for direction, entries in sorted(rows.items()):
             found.append(_support_direction(model, group, direction, entries))
     return found
 
 
-def acting_directions(model: ModalModel, point: int) -> list[np.ndarray]:
-    """Return the unit vectors (2,), in the two contact directions, that a contact point acts along.
+def acting_directions(model: ModalModel, point: int) -> dict[str, np.ndarray]:
+    """Return {name: unit vector (2,)} of the directions that a contact point acts along.
 
-    There is one for parallel stops, two for any other obstacle.
+    There is one for parallel stops, their normal, and two for any other obstacle. Vectors are in
+    the two contact directions of the point. A direction has the name of the global axis that it
+    lies along, `normal` for oblique parallel stops, else `first` or `second`.
     """
-    laws = model.contact_laws
+    laws, axes = model.contact_laws, model.contact_directions[point]
     normals = laws.land_normal[laws.land_point == point]
     if len(normals):
         first = normals[0]
         across = normals @ np.array([-first[1], first[0]])
         if np.all(np.abs(across) < PARALLEL):
-            return [first]
-    return [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
+            return {_name(first @ axes, "normal"): first}
+    return {
+        _name(along @ axes, other): along
+        for along, other in zip(np.eye(2), ("first", "second"), strict=True)
+    }
 
 
-def _label(model: ModalModel, point: int, directions: list, along: np.ndarray) -> str:
-    """Return the name of a direction: a global axis, `normal` of oblique stops, first or second."""
-    vector = along @ model.contact_directions[point]
+def _name(vector: np.ndarray, other: str) -> str:
+    """Return the global axis that a unit vector (3,) lies along, else another word."""
     axis = int(np.argmax(np.abs(vector)))
-    if abs(vector[axis]) > ALIGNED:
-        return "xyz"[axis]
-    if len(directions) == 1:
-        return "normal"
-    return ("first", "second")[int(np.argmax(np.abs(along)))]
+    return "xyz"[axis] if abs(vector[axis]) > ALIGNED else other
 
 
 def _support_direction(

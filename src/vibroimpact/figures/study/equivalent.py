@@ -25,12 +25,16 @@ MOST_COLUMNS = 4  # gaps side by side; more begin another block below
 
 
 def figure_13_equivalent_support(config, model, rows):
-    """Return the Sheet of k and c against load, a column per gap, a colour and marker per method.
+    """Return the Sheet of k and c against load, a colour and marker per method.
+
+    There is a column per gap, and per group of supports and direction where there are several.
 
     rows: the consistency table, list of {column: value}.
     """
+    places = _places(rows)
+    columns = "a column per gap" if len(places) == 1 else "a column per group of supports and gap"
     caption = (
-        "Equivalent bilateral support by each method against load, a column per gap: stiffness k"
+        f"Equivalent bilateral support by each method against load, {columns}: stiffness k"
         " (top) and damping c on top of the modal damping (bottom), per support; median over seeds,"
         " bars from the smallest to the largest seed. What a method does not resolve is left out:"
         " near the free tube none sees k. The shape carries no damping. Lines without bars:"
@@ -38,7 +42,11 @@ def figure_13_equivalent_support(config, model, rows):
         " simulated contact forces. Dashed: the contact stiffness, the upper limit."
     )
     gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
-    panels = {gap: (f"k, gap {gap:.5g} m", f"c, gap {gap:.5g} m") for gap in gaps}
+    panels = {
+        (gap, place): tuple(f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
+        for place in places
+        for gap in gaps
+    }
     mosaic = _in_blocks(list(panels.values()))
     sheet = Sheet(
         "figure_13_equivalent_support",
@@ -48,13 +56,16 @@ def figure_13_equivalent_support(config, model, rows):
         size=(max(2.6 + 2.6 * len(mosaic[0]), 6.4), 3.2 * len(mosaic)),
         sharex=True,
     )
-    for gap, (top, bottom) in panels.items():
-        chosen = [row for row in rows if row["gap_m"] == gap]
+    for (gap, place), (top, bottom) in panels.items():
+        chosen = [row for row in rows if row["gap_m"] == gap and _place(row) == place]
         _methods(sheet, sheet.axes[top], chosen, "k_N_per_m", (*METHODS,))
         _methods(
             sheet, sheet.axes[bottom], chosen, "c_N_s_per_m", (*OPEN_METHODS, "lscf", "broadband")
         )
-        sheet.axes[top].set_title(f"gap {gap_label(gap, outer_width(config.structure.section))}")
+        title = f"gap {gap_label(gap, outer_width(config.structure.section))}"
+        if len(places) > 1:
+            title = f"{place[0]} in {place[1]}" + (f", {gap * 1e3:.3g} mm" * (len(gaps) > 1))
+        sheet.axes[top].set_title(title)
         sheet.mark(
             sheet.axes[top],
             "k_N_per_m",
@@ -66,7 +77,9 @@ def figure_13_equivalent_support(config, model, rows):
             linewidth=1.0,
             label="contact stiffness",
         )
-    _alike(sheet, mosaic, config)
+    _alike(sheet, mosaic, config, len(places) == 1)
+    for place in places:
+        _same_limits([sheet.axes[panels[gap, place][1]] for gap in gaps])
     handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
     for key, _ in panels.values():  # a method may be resolved at one gap only
         for handle, label in zip(*sheet.axes[key].get_legend_handles_labels(), strict=True):
@@ -135,27 +148,42 @@ def _in_blocks(pairs):
     return rows
 
 
-def _alike(sheet, mosaic, config):
-    """Give all panels of a quantity the same axes, labels at the outside only."""
+def _alike(sheet, mosaic, config, one_place):
+    """Give all panels the same loads and stiffnesses, labels at the outside only.
+
+    one_place: whether all panels are of one group of supports, with comparable dampings.
+    """
     lowest = config.identification.stiffness_range_N_per_m[0]
-    tops, bottoms = (
-        [sheet.axes[key] for row in mosaic[first::2] for key in row if key != "."]
-        for first in (0, 1)
-    )
+    tops = [sheet.axes[key] for row in mosaic[::2] for key in row if key != "."]
     for axes in tops:
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(0.5 * lowest, 2e7)
         axes.set_xlabel("")
-    for group in (tops, bottoms):
-        limits = [axes.get_ylim() for axes in group]
-        for axes in group:
-            axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+    _same_limits(tops)
     for row in mosaic:
         for key in (key for key in row[1:] if key != "."):
             sheet.axes[key].set_ylabel("")
-            sheet.axes[key].tick_params(labelleft=False)
+            if one_place or sheet.axes[key] in tops:
+                sheet.axes[key].tick_params(labelleft=False)
     sheet.figure.align_ylabels([sheet.axes[row[0]] for row in mosaic])
+
+
+def _same_limits(group):
+    """Give some axes the same limits along y."""
+    limits = [axes.get_ylim() for axes in group]
+    for axes in group:
+        axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+
+
+def _place(row):
+    """Return the (group of supports, direction) of a row."""
+    return str(row["group"]), str(row["direction"])
+
+
+def _places(rows):
+    """Return the (group of supports, direction) of all rows, each once."""
+    return list(dict.fromkeys(map(_place, rows)))
 
 
 def collapse(config, model, rows):
@@ -172,52 +200,58 @@ def collapse(config, model, rows):
         " the smallest to the largest value. Lines: statistical linearisation and the mean secant"
         " stiffness, of all gaps."
     )
+    places = _places(rows)
+    keys = {place: tuple(f"{name}, {' in '.join(place)}" for name in "kc") for place in places}
     sheet = Sheet(
         "collapse",
         "All gaps fall on one curve in load / gap",
         caption,
-        [["k", "c"]],
-        size=(7.6, 4.2),
+        [list(pair) for pair in keys.values()],
+        size=(7.6, 1.0 + 3.2 * len(places)),
     )
-    gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
     table = [{**row, "load_over_gap_N_per_m": row["load_over_gap"]} for row in rows]
-    for index, gap in enumerate(gaps):
-        style = {
-            "color": GAP_COLOURS[index % len(GAP_COLOURS)],
-            "marker": GAP_MARKERS[index % len(GAP_MARKERS)],
-            "linestyle": "none",
-            "label": f"gap {gap_label(gap, outer_width(config.structure.section))}",
-        }
-        compared = [row for row in table if row["gap_m"] == gap and row["method"] in COMPARED]
-        over_seeds(
-            sheet,
-            sheet.axes["k"],
-            compared,
-            "load_over_gap_N_per_m",
-            "k_N_per_m",
-            "identified",
-            tags=("gap_m", "load_rms_N"),
-            **style,
+    for place, (top, bottom) in keys.items():
+        own = [row for row in table if _place(row) == place]
+        axes = (sheet.axes[top], sheet.axes[bottom])
+        _collapse_of(sheet, axes, config, own)
+        axes[0].set_ylim(
+            0.5 * config.identification.stiffness_range_N_per_m[0], 2.5 * contact_stiffness(model)
         )
-        over_seeds(
-            sheet,
-            sheet.axes["c"],
-            compared,
-            "load_over_gap_N_per_m",
-            "c_N_s_per_m",
-            "identified",
-            tags=("gap_m", "load_rms_N"),
-            **style,
-        )
+        of = "" if len(places) == 1 else f", {' in '.join(place)}"
+        axes[0].set_title(f"stiffness{of}")
+        axes[1].set_title("damping on top of the modal damping" if not of else f"damping{of}")
+    handles, labels = axes[0].get_legend_handles_labels()
+    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return [sheet]
+
+
+def _collapse_of(sheet, axes, config, rows):
+    """Draw k and c of one group of supports and direction against load over gap."""
+    for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
+        compared = [row for row in rows if row["gap_m"] == gap and row["method"] in COMPARED]
+        for place, column in zip(axes, ("k_N_per_m", "c_N_s_per_m"), strict=True):
+            over_seeds(
+                sheet,
+                place,
+                compared,
+                "load_over_gap_N_per_m",
+                column,
+                "identified",
+                tags=("gap_m", "load_rms_N"),
+                color=GAP_COLOURS[index % len(GAP_COLOURS)],
+                marker=GAP_MARKERS[index % len(GAP_MARKERS)],
+                linestyle="none",
+                label=f"gap {gap_label(gap, outer_width(config.structure.section))}",
+            )
     for method, colour, dash in (("statistical_linearisation", PINK, "--"), ("secant", BLACK, "-")):
         place, value = medians(
-            [row for row in table if row["method"] == method and row["k_N_per_m"] > 0.0],
+            [row for row in rows if row["method"] == method and row["k_N_per_m"] > 0.0],
             "load_over_gap_N_per_m",
             "k_N_per_m",
         )
         if place.size:
             sheet.line(
-                sheet.axes["k"],
+                axes[0],
                 ("load_over_gap_N_per_m", place),
                 ("k_N_per_m", value),
                 method,
@@ -227,18 +261,10 @@ def collapse(config, model, rows):
                 label=METHODS[method][0],
                 zorder=1,
             )
-    for key, column in (("k", "k_N_per_m"), ("c", "c_N_s_per_m")):
-        if not sheet.axes[key].get_xlabel():
-            sheet.note(sheet.axes[key], "nothing resolved", "load_over_gap_N_per_m", column)
-        sheet.axes[key].set_xscale("log")
-    sheet.axes["k"].set_yscale("log")
-    sheet.axes["k"].set_ylim(
-        0.5 * config.identification.stiffness_range_N_per_m[0], 2.5 * contact_stiffness(model)
-    )
-    sheet.axes["k"].set_title("stiffness")
-    sheet.axes["c"].set_title("damping on top of the modal damping")
-    sheet.axes["c"].axhline(0.0, color=GREY, linewidth=0.8)
-    sheet.axes["c"].sharex(sheet.axes["k"])
-    handles, labels = sheet.axes["k"].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return [sheet]
+    for place, column in zip(axes, ("k_N_per_m", "c_N_s_per_m"), strict=True):
+        if not place.get_xlabel():
+            sheet.note(place, "nothing resolved", "load_over_gap_N_per_m", column)
+        place.set_xscale("log")
+    axes[0].set_yscale("log")
+    axes[1].axhline(0.0, color=GREY, linewidth=0.8)
+    axes[1].sharex(axes[0])

@@ -146,12 +146,12 @@ def _shapes(sheet, axes, model, found, loads):
 
 
 def _likeness(sheet, axes, found, loads):
-    """Draw the MAC against the stiffness for some loads."""
+    """Draw the MAC against the stiffness for some loads; a note where supports differ."""
     axes.set_title("MAC with the linear tube's shape")
     lowest = min((case.seed for case in found), default=0)
     colours = ordered_colours(loads or [1.0])
     for case, dataset in found.items():
-        if case.load_rms_N in loads and case.seed == lowest:
+        if case.load_rms_N in loads and case.seed == lowest and "mac_k" in dataset:
             k, mac = dataset["mac_k"].values, dataset["mac"].values
             sheet.line(
                 axes,
@@ -164,8 +164,9 @@ def _likeness(sheet, axes, found, loads):
             best = int(np.argmax(mac))
             axes.plot(k[best], mac[best], marker="o", color=colours[case.load_rms_N])
     axes.set_xscale("log")
-    if not loads:
-        sheet.note(axes, "no shape found", "support_stiffness_N_per_m", "mac")
+    if not axes.lines:
+        note = "no shape found" if not loads else "each support has its own stiffness"
+        sheet.note(axes, note, "support_stiffness_N_per_m", "mac")
 
 
 def _unit(shape):
