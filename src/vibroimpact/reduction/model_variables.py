@@ -10,6 +10,12 @@ MODEL_VARIABLES: dict[str, tuple[str | None, str, str]] = {
     "full_mode_frequencies": ("Hz", "natural frequency of the full model without contact", ""),
     "initial_displacement": (None, "modal amplitude at the start", "in kg^1/2 m"),
     "initial_velocity": (None, "rate of the modal amplitude at the start", "in kg^1/2 m/s"),
+    "initial_residual": (
+        "1",
+        "part of the initial displacement and velocity that the modes do not represent",
+        "",
+    ),
+    "preload": ("N", "force at rest of each flat land of the point", ""),
     "constant_force": (None, "constant force on the mode", "in kg^-1/2 N"),
     "contact_shapes": (None, "mode shape at the contact point", PER_ROOT_KG),
     "contact_directions": ("1", "unit vector of the direction in which the contact acts", ""),
