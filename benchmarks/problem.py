@@ -7,10 +7,10 @@ from functools import cache
 
 import numpy as np
 
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.validation.variant import changed
 
 CONFIG = "config/study.yaml"
 RATE = 51200  # steps per second
@@ -92,7 +92,7 @@ def tube_problem(values=None, kind="modes", path=CONFIG):
     config = load_config(path)
     at = config.structure.bend_radius_m * np.sqrt(0.5)
     drive = [-at, 0.0, config.structure.leg_length_m + at]
-    config = changed(
+    config = changed_config(
         config,
         {f"points.{config.excitation.point}": drive, "points.bend_45": drive, **(values or {})},
     )

@@ -20,6 +20,7 @@ import numpy as np
 
 from benchmarks.table import write_csv
 from benchmarks.work_precision_figure import draw
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.validation.convergence import runs as convergence_runs
@@ -31,7 +32,6 @@ from vibroimpact.validation.reference import (
     runs as reference_runs,
 )
 from vibroimpact.validation.reference.random_stops import exact_law
-from vibroimpact.validation.variant import changed
 
 COLUMNS = (
     "case",
@@ -66,7 +66,7 @@ def forced_impact_rows():
     contact_s = float(np.mean(np.diff(reference_cases.FORCED_CONTACT_S, axis=1)))
     for scheme in SCHEMES:
         for rate in R3_RATES:
-            run = changed(
+            run = changed_config(
                 config, {"integration.scheme": scheme, "integration.steps_per_second": rate}
             )
             records, cost = timed(reference_runs.run, run)
@@ -111,7 +111,7 @@ def random_stop_rows():
     )  # white: RMS grows with the root of the rate
     for scheme in SCHEMES:
         for rate in R11_RATES:
-            run = changed(
+            run = changed_config(
                 config,
                 {
                     "integration.scheme": scheme,
@@ -212,7 +212,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=16, help="records per load of the tube")
     options = parser.parse_args()
     reference_runs.run(
-        changed(
+        changed_config(
             load_config(REFERENCE / "r3_forced_impact.yaml"),
             {"integration.steps_per_second": 20000},
         )

@@ -221,7 +221,7 @@ def test_a_failed_run_names_case_log_and_remedy(study):
 
 def test_a_complete_study_names_its_tables(study):
     told = study.finished.stderr
-    assert "  results/smoke/consistency_summary.csv" in told
+    assert "  results/smoke/equivalent.csv" in told
     assert "  results/smoke/figures" in told
 
 
