@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.made_up_study import GAPS, LOADS, equivalent_rows, summary_rows
-from vibroimpact.reports.equivalent_answer import answers, with_places
+from vibroimpact.reports.equivalent_answer import answers, unmoved, with_places
+from vibroimpact.study.equivalent_table import NOT_MOVED
 
 
 def found(rows, gap, load, direction="y"):
@@ -73,3 +74,10 @@ def test_a_group_named_by_a_number_is_a_text():
     assert (row["group"], row["direction"]) == ("1", "x")
     assert with_places([{"gap_m": 1e-4}], "y")[0]["direction"] == "y"
     assert with_places([{"gap_m": 1e-4, "group": ""}], "y")[0]["group"] == "all"
+
+
+def test_directions_that_nothing_moves_are_named_not_judged():
+    still = [row | {"reason_k": NOT_MOVED} for row in equivalent_rows() if row["direction"] == "x"]
+    rows = [row for row in equivalent_rows() if row["direction"] == "y"]
+    assert unmoved(rows + still) == [("plates", "x")]
+    assert {row.direction for row in answers(summary_rows(), rows + still, "y")} == {"y"}

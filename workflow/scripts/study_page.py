@@ -11,7 +11,7 @@ from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_attributes, read_record, read_table, write_text
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption
-from vibroimpact.reports.equivalent_answer import answers
+from vibroimpact.reports.equivalent_answer import answers, unmoved
 from vibroimpact.reports.study_content import StudyContent, provenance
 from vibroimpact.reports.study_page import study_page
 from vibroimpact.reports.study_statistics import study_statistics
@@ -38,6 +38,7 @@ content = StudyContent(
     study_statistics(given.records, read_record),
     limits(config.integration),
     provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
+    unmoved(tables.get("equivalent")),
 )
 model = read_model(given.model)
 files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_record)

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.study.equivalent_table import NOT_MOVED
+
 from .method_names import method_name
 
 # The methods whose agreement is judged, by quantity: a shape carries no damping.
@@ -76,6 +78,8 @@ def answers(
 ) -> list[Answer]:
     """Return the Answers, ordered by gap (largest first), group, direction and load.
 
+    Directions that the force does not move are left out: see unmoved.
+
     summary: rows of consistency_summary.csv.
     equivalent: rows of equivalent.csv; None where there is no such table. The recommended value is
     then the median of the compared methods.
@@ -84,8 +88,18 @@ def answers(
     if equivalent is None:
         found = _from_summary(with_places(summary, direction))
     else:
-        found = [_from_equivalent(row) for row in with_places(equivalent, direction)]
+        moved = [row for row in equivalent if row["reason_k"] != NOT_MOVED]
+        found = [_from_equivalent(row) for row in with_places(moved, direction)]
     return sorted(found, key=lambda row: (-row.gap_m, row.group, row.direction, row.load_rms_N))
+
+
+def unmoved(equivalent: Sequence[dict] | None) -> list[tuple[str, str]]:
+    """Return (group, direction) of the supports that the force does not move, each once.
+
+    equivalent: rows of equivalent.csv; None where there is no such table.
+    """
+    still = [row for row in equivalent or () if row["reason_k"] == NOT_MOVED]
+    return list(dict.fromkeys((str(row["group"]), str(row["direction"])) for row in still))
 
 
 def _from_equivalent(row: dict[str, Any]) -> Answer:

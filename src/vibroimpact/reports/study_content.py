@@ -94,6 +94,7 @@ class StudyContent:
     config: its configuration.
     answers: empty for a study without identification.
     limits: {residual: largest accepted value}.
+    unmoved: (group of supports, direction) that the force does not move.
     """
 
     config: Any
@@ -101,6 +102,7 @@ class StudyContent:
     statistics: StudyStatistics
     limits: Mapping[str, float]
     provenance: Provenance
+    unmoved: Sequence[tuple[str, str]] = ()
 
     @property
     def name(self) -> str:
@@ -124,7 +126,11 @@ class StudyContent:
 
     def headline(self) -> list[str]:
         """Return the answer in sentences."""
-        return headline(self.answers, self.unit)
+        sentences = headline(self.answers, self.unit)
+        if self.unmoved:
+            places = ", ".join(f"{group} in {direction}" for group, direction in self.unmoved)
+            sentences.append(f"No answer where the force moves no support: {places}.")
+        return sentences
 
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""
