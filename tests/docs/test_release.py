@@ -97,7 +97,10 @@ def test_the_workflow_catalogue_finds_what_it_asks_for():
 
 def test_every_configuration_is_named_in_their_readme():
     text = (ROOT / "config" / "README.md").read_text(encoding="utf-8")
-    assert [file.name for file in ROOT.glob("config/*.yaml") if f"`{file.name}`" not in text] == []
+    config = ROOT / "config"
+    files = [*config.glob("*.yaml"), *config.glob("examples/*.yaml")]
+    names = [file.relative_to(config).as_posix() for file in files]
+    assert [name for name in names if f"`{name}`" not in text] == []
 
 
 def test_workflow_is_planned_as_a_module_of_another(tmp_path):

@@ -55,7 +55,7 @@ def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
     mode: number of the mode in its group, from 1;
     full_Hz, reduced_Hz: frequencies up to 400 Hz; NaN where the basis has fewer modes;
     relative_error: positive, because a Ritz basis can only stiffen, but for the round-off of the
-        full eigenvalues (about 1e-8).
+        full eigenvalues (about 1e-8). 0 for rigid motion that is rigid on the basis too.
 
     Empty for a structure that is no tube: all modes are in the model, or the user's matrices set
     the basis.
@@ -83,11 +83,18 @@ def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
                         "mode": mode + 1,
                         "full_Hz": full[mode],
                         "reduced_Hz": reduced[mode],
-                        "relative_error": reduced[mode] / full[mode] - 1.0,
+                        "relative_error": _relative_error(reduced[mode], full[mode]),
                     }
                     for mode in range(len(full))
                 ]
     return rows
+
+
+def _relative_error(reduced: float, full: float) -> float:
+    """Return the relative error of a frequency; 0 / 0 is none."""
+    if full == 0.0:
+        return 0.0 if reduced == 0.0 else np.inf
+    return reduced / full - 1.0
 
 
 def _bases(group: DofGroup, basis: ConfigPart) -> dict[str, tuple[np.ndarray, np.ndarray]]:

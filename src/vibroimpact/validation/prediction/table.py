@@ -12,6 +12,7 @@ USABLE_dB = 2.0  # 26 % in amplitude: the "agree" of the study
 # Name and largest fraction of time in contact.
 REGIMES = (("hardly touching", 0.01), ("transition", 0.40), ("mostly in contact", 1.0))
 EULER_GAMMA = 0.5772
+TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True)
@@ -45,30 +46,38 @@ def linear_response(model, k, c, load, band_Hz, duration_s) -> Response:
     """
     frequency = np.arange(band_Hz[0], band_Hz[1], RESOLUTION_HZ)
     level = load**2 / (band_Hz[1] - band_Hz[0])
-    outputs = np.hstack(
-        [
-            model.sensor_shapes,
-            model.stress_shapes.reshape(len(model.omega), -1),
-            _support_shapes(model),
-        ]
-    )
+    outputs = np.hstack([displacement_and_stress(model), _support_shapes(model)])
     power = np.abs(frf(model, k, c, frequency, outputs)) ** 2 * level
-    sensors, sections = len(model.sensor_names), len(model.section_names)
-    variance = power.sum(axis=1) * RESOLUTION_HZ
-    stress = power[sensors : sensors + 2 * sections].reshape(sections, 2, -1).sum(axis=1)
-    sigma = np.sqrt(stress.sum(axis=1) * RESOLUTION_HZ)
-    crossings = np.sqrt((stress * frequency**2).sum(axis=1) * RESOLUTION_HZ) / sigma * duration_s
-    support = power[sensors + 2 * sections :] * (k**2 + (2.0 * np.pi * frequency * c) ** 2)
-    force = np.sqrt(support.sum(axis=1).reshape(-1, 2).sum(axis=1) * RESOLUTION_HZ)
+    places = len(model.sensor_names) + 2 * len(model.section_names)
+    support = power[places:] * (k**2 + (2.0 * np.pi * frequency * c) ** 2)
+    force = support.reshape(-1, 2, len(frequency)).sum(axis=1)
+    return response_of_psds(model, frequency, power[:places], force, duration_s)
+
+
+def displacement_and_stress(model) -> np.ndarray:
+    """Return (mode, sensor + 2 section): the sensors, then both bending stresses per section."""
+    return np.hstack([model.sensor_shapes, model.stress_shapes.reshape(len(model.omega), -1)])
+
+
+def response_of_psds(model, frequency, power, force, duration_s) -> Response:
+    """Return the Response of a linear tube from its PSDs on evenly spaced frequencies.
+
+    frequency: (frequency,) Hz. power: (output, frequency) m²/Hz and Pa²/Hz, of the outputs of
+    displacement_and_stress. force: (support, frequency) N²/Hz. duration_s: for the peak stress.
+    """
+    step, sensors = frequency[1] - frequency[0], len(model.sensor_names)
+    rms = np.sqrt(power[:sensors].sum(axis=1) * step)
+    stress = power[sensors:].reshape(-1, 2, len(frequency)).sum(axis=1)
+    sigma = np.sqrt(stress.sum(axis=1) * step)
+    rate = np.sqrt((stress * frequency**2).sum(axis=1) * step) / np.maximum(sigma, TINY)
+    peaks = sigma * expected_peak_factor(rate * duration_s)
     return Response(
         frequency=frequency,
         psd=dict(zip(model.sensor_names, power[:sensors], strict=True)),
-        rms_displacement=dict(zip(model.sensor_names, np.sqrt(variance[:sensors]), strict=True)),
-        rms_force=dict(zip(model.support_names, force, strict=True)),
+        rms_displacement=dict(zip(model.sensor_names, rms, strict=True)),
+        rms_force=dict(zip(model.support_names, np.sqrt(force.sum(axis=1) * step), strict=True)),
         rms_stress=dict(zip(model.section_names, sigma, strict=True)),
-        peak_stress=dict(
-            zip(model.section_names, sigma * expected_peak_factor(crossings), strict=True)
-        ),
+        peak_stress=dict(zip(model.section_names, peaks, strict=True)),
         contact=np.nan,
     )
 
@@ -148,7 +157,7 @@ def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) ->
     rows = []
     for sensor in sensors:
         rows.append(
-            _row(
+            compared_row(
                 "RMS displacement",
                 sensor,
                 "m",
@@ -158,10 +167,12 @@ def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) ->
         )
         for low, high in BANDS_HZ:
             pair = [
-                _band(linear, sensor, low, high),
-                *(_band(seed, sensor, low, high) for seed in seeds),
+                band_level(linear, sensor, low, high),
+                *(band_level(seed, sensor, low, high) for seed in seeds),
             ]
-            rows.append(_row(f"PSD {low:g}-{high:g} Hz", sensor, "m/sqrt(Hz)", pair[0], pair[1:]))
+            rows.append(
+                compared_row(f"PSD {low:g}-{high:g} Hz", sensor, "m/sqrt(Hz)", pair[0], pair[1:])
+            )
     for quantity, unit, name in (
         ("RMS plate force", "N", "rms_force"),
         ("RMS bending stress", "Pa", "rms_stress"),
@@ -170,7 +181,9 @@ def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) ->
         ours = getattr(linear, name)
         places = ours if name == "rms_force" else _largest(ours)
         rows += [
-            _row(quantity, place, unit, ours[place], [getattr(seed, name)[place] for seed in seeds])
+            compared_row(
+                quantity, place, unit, ours[place], [getattr(seed, name)[place] for seed in seeds]
+            )
             for place in places
         ]
     return [{**labels, "contact_fraction": contact, "regime": regime, **row} for row in rows]
@@ -181,12 +194,17 @@ def _largest(values, count=3):
     return sorted(values, key=values.get, reverse=True)[:count]
 
 
-def _band(response, sensor, low, high):
+def band_level(response, sensor, low, high):
+    """Return the root of a sensor's mean PSD between two frequencies in Hz, in m/sqrt(Hz)."""
     inside = (response.frequency >= low) & (response.frequency < high)
     return float(np.sqrt(np.mean(response.psd[sensor][inside])))
 
 
-def _row(quantity, of, unit, linear, seeds):
+def compared_row(quantity, of, unit, linear, seeds) -> dict:
+    """Return the columns that compare a linear value with those of several seeds.
+
+    They are the last columns of prediction_rows.
+    """
     seeds = np.asarray(seeds, dtype=float)
     nonlinear = float(np.sqrt(np.mean(seeds**2)))
     error = 20.0 * np.log10(linear / nonlinear) if linear > 0.0 and nonlinear > 0.0 else np.nan
