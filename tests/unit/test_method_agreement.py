@@ -18,7 +18,7 @@ from vibroimpact.study.method_agreement import (
 ALL = SimpleNamespace(group="all", direction="y")
 
 
-def case(k, seed, load=5.0, gap=2.0e-4, silent=(), **others):
+def case(k, seed, load=5.0, gap=2.0e-4, silent=(), place=None, **others):
     """The rows of a case in which every method gives k, but for others (method=value) and silent
     methods.
     """
@@ -29,7 +29,7 @@ def case(k, seed, load=5.0, gap=2.0e-4, silent=(), **others):
             else Estimate(
                 method, others.get(method, k), 0.1 * k, others.get(f"c_{method}", 50.0), 5.0
             )
-        ).at(ALL)
+        ).at(place or ALL)
         for method in METHODS
     ]
     return table_rows(estimates, {"gap_m": gap, "load_rms_N": load, "seed": seed})
@@ -96,6 +96,21 @@ def test_two_methods_recommend_a_stiffness_one_does_not():
     assert np.isnan(alone[0]["k_N_per_m"]) and np.isnan(alone[0]["c_N_s_per_m"])
     assert alone[0]["reason_k"] == "lscf: lscf sees nothing; ods: ods sees nothing"
     assert alone[1]["direction"] == "x" and "does not move" in alone[1]["reason_k"]
+
+
+def test_of_several_supports_the_shape_must_see_what_it_can():
+    # lscf and broadband are one reading of several supports.
+    rows = []
+    for direction, silent in (("x", ("ods",)), ("y", ())):
+        place = SimpleNamespace(group="all", direction=direction)
+        for load, missing in ((1.0, ("ods",)), (5.0, silent)):
+            rows += case(1.0e5, 0, load=load, silent=missing, place=place)
+    found = {
+        (row["direction"], row["load_rms_N"]): row["k_N_per_m"]
+        for row in equivalent_rows(summary_rows(consistency_rows([rows])))
+    }
+    assert found["x", 1.0] == found["x", 5.0] == 1.0e5  # the shape never sees x
+    assert np.isnan(found["y", 1.0]) and found["y", 5.0] == 1.0e5
 
 
 def test_method_unresolved_by_half_the_seeds_is_open():

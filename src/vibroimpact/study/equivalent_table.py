@@ -39,9 +39,11 @@ NOT_MOVED = "the force does not move the supports in this direction"
 def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = ()) -> list[dict]:
     """Return the rows of equivalent.csv from those of consistency_summary.csv.
 
-    A stiffness needs two of the three compared methods, a damping one of the two. low and high are
-    the smallest and largest value of these methods over all seeds. Where a value is not resolved,
-    it is NaN and the reason says why.
+    A stiffness needs two of the three compared methods, a damping one of the two. With several
+    supports the pole only corrects what the spectra say, so that the two are one reading: the shape
+    must then resolve the stiffness too, if it does so at any load. low and high are the smallest
+    and largest value of these methods over all seeds. Where a value is not resolved, it is NaN and
+    the reason says why.
 
     unreached: (group, direction) that the force does not move; they get rows without values.
     """
@@ -49,16 +51,30 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
     for row in summary:
         place = (row["gap_m"], row["load_rms_N"], row["group"], row["direction"])
         places.setdefault(place, {})[row["method"]] = row
-    rows = [_row(place, methods) for place, methods in places.items()]
+    supports = {place[2:] for place in places}
+    seen = {
+        place[2:]
+        for place, methods in places.items()
+        if "ods" in methods and np.isfinite(methods["ods"]["k_median"])
+    }
+    rows = [
+        _row(place, methods, len(supports) > 1 and place[2:] in seen)
+        for place, methods in places.items()
+    ]
     for gap_m, load_rms_N in dict.fromkeys(place[:2] for place in places):
         for group, direction in unreached:
             rows.append(_empty((gap_m, load_rms_N, group, direction), NOT_MOVED))
     return sorted(rows, key=lambda row: (-row["gap_m"], row["load_rms_N"]))
 
 
-def _row(place: tuple, methods: dict[str, dict]) -> dict:
-    """Return the row of one gap, load, group and direction."""
+def _row(place: tuple, methods: dict[str, dict], shape_needed: bool) -> dict:
+    """Return the row of one gap, load, group and direction.
+
+    shape_needed: whether the stiffness must be resolved by the shape.
+    """
     k = _recommended(methods, "k", COMPARED, FEWEST_METHODS)
+    if shape_needed and not np.isfinite(methods.get("ods", {}).get("k_median", np.nan)):
+        k = (np.nan, np.nan, np.nan)
     c = _recommended(methods, "c", COMPARED_DAMPING, 1)
     secant = methods.get("secant", {"k_median": np.nan, "c_median": np.nan})
     compared = next((methods[name] for name in COMPARED_DAMPING if name in methods), {})
