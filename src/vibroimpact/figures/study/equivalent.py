@@ -69,7 +69,7 @@ def figure_13_equivalent_support(config, model, rows):
         sheet.mark(
             sheet.axes[top],
             "k_N_per_m",
-            contact_stiffness(model),
+            contact_stiffness(model, place[0]),
             "contact stiffness",
             vertical=False,
             color=GREY,

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import linalg
 
 from vibroimpact.linear.modes import contact_matrix, driven_block
+from vibroimpact.linear.support_groups import grouped_supports
 
 HELD = 1.0e14  # N/m: practically fixed contact points; larger values show round-off
 
@@ -32,9 +33,11 @@ def linear_modes(model, k, count):
     return driven_frequencies(model, k, count)[0]
 
 
-def contact_stiffness(model):
-    """Return the contact stiffness in N/m per support (the largest of the supports)."""
-    return float(np.bincount(model.support_of_point, model.contact_stiffness).max())
+def contact_stiffness(model, group="all"):
+    """Return the contact stiffness in N/m per support, the largest of a group of supports."""
+    each = np.bincount(model.support_of_point, model.contact_stiffness)
+    members = grouped_supports(model.support_names, "all").get(group, group.split("+"))
+    return float(max(each[model.support_names.index(name)] for name in members))
 
 
 def shown_band(model, highest_Hz=np.inf):
