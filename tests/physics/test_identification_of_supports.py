@@ -162,6 +162,21 @@ def test_an_oblique_force_tells_both_directions():
     assert np.isnan(x.k) and x.quality == "unresolved" and x.note
 
 
+def test_bars_do_not_act_along_themselves():
+    # Driven in x between bars that act in y: the one stiffness is that of the plates alone.
+    data = yaml.safe_load(STRAIGHT)
+    data["supports"][1]["profile"] = {"kind": "bars", "normal": [0.0, 1.0, 0.0]}
+    data["excitation"]["direction"] = [1.0, 0.0, 0.0]
+    data["record"]["shape_line"]["direction"] = "x"
+    data["identification"]["groups"] = "all"
+    config = check_config(data, "bars")
+    model = build_model(config)
+    values = {"all": (1.0e5, 40.0)}
+    found = identified(config, model, records(config, model, values).exact("hann"))
+    assert {key[1:] for key in found} == {("all", "x")}
+    check_exact(found, values, ("ods", "broadband", "lscf"))
+
+
 def test_unequal_legs_of_a_u_tube_come_back(study_config, study_model):
     each = study_config.identification.model_copy(update={"groups": "each"})
     config = study_config.model_copy(update={"identification": each})

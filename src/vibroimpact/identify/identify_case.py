@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.linear.support_groups import reached_supports
+from vibroimpact.linear.support_groups import acts_on_all, reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.welch import complex_values, driven_axis
 
@@ -54,8 +54,8 @@ def identify_case(
     record: statistics of the case (secant.MOMENTS, attributes load_rms_N and gap_m).
     spectra: dataset of study.case_spectra.
     """
-    directions, _ = reached_supports(model, config.identification.groups)
-    if len(directions) > 1:
+    directions, modes = reached_supports(model, config.identification.groups)
+    if len(directions) > 1 or not acts_on_all(directions[0], model, modes):
         return _identify_each(config, model, record, spectra)
     tube = reference_tube(config, model, spectra)
     case = CaseSpectra(spectra, tube)

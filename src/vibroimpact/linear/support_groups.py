@@ -161,6 +161,16 @@ def reached_supports(
     return tuple(itertools.compress(directions, reached)), modes
 
 
+def acts_on_all(direction: SupportDirection, model: ModalModel, modes: np.ndarray) -> bool:
+    """Return True when a direction holds every contact that some modes (mode,) move.
+
+    A family with one k and c for all contacts is then that of this direction. Bars that the motion
+    slides along have contacts that do not act.
+    """
+    moved = np.any(model.contact_shapes[modes] != 0.0, axis=0)
+    return int(moved.sum()) == len(direction.rows)
+
+
 def unreached_supports(
     model: ModalModel, groups: str | tuple[tuple[str, ...], ...]
 ) -> list[tuple[str, str]]:
