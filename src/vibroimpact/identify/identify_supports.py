@@ -14,6 +14,7 @@ import xarray as xr
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.spectra.welch import complex_values
 
+from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC
 from .estimate import Estimate, mark_weak, unresolved
 from .graded_supports import MethodResult, graded_supports
 from .ods import DeflectionShape, deflection_shape
@@ -26,9 +27,6 @@ from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
 
-# Below these the motion is not that of the linear structure: see case_estimates.
-LOWEST_MAC = 0.9
-LOWEST_CORRELATION = 0.8
 SHAPE_LOSS = 0.1  # loss factor of the supports where the search by shapes starts
 
 
@@ -36,12 +34,10 @@ SHAPE_LOSS = 0.1  # loss factor of the supports where the search by shapes start
 class SupportsResult:
     """What the methods found in one case.
 
-    frequency: (frequency,) Hz of the sensors' spectra.
     peaks: {method: PeakFit or None}.
     pole, shape, spectra, shapes: of the other methods, None where they found nothing.
     """
 
-    frequency: np.ndarray
     peaks: dict[str, PeakFit | None]
     pole: OperationalPole | None
     shape: DeflectionShape | None
@@ -86,7 +82,7 @@ class SupportsCase:
                 )
             pole = self.operational_pole(spectra)
         shape = self.main_shape(peaks["peak_25th"])
-        return SupportsResult(self.tube.frequency, peaks, pole, shape, spectra, shapes)
+        return SupportsResult(peaks, pole, shape, spectra, shapes)
 
     def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
         """Return the SpectraFit, or None where the force has no power in the band.
