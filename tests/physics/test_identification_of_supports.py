@@ -3,6 +3,8 @@
 On exact spectra within 2 %; on records the mean over seeds within two of its standard errors.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import yaml
@@ -14,6 +16,7 @@ from vibroimpact.linear.responses import frf
 from vibroimpact.linear.support_groups import reached_supports, support_directions
 from vibroimpact.linear.supported_structure import SupportedStructure
 from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.study.in_process import identify_support, simulate_case
 
 STRAIGHT = """
 study: three_plates
@@ -48,6 +51,7 @@ identification:
 """
 SUPPORTS = {"plate_1": (2.0e5, 60.0), "plate_2": (3.0e4, 20.0), "plate_3": (1.0e5, 40.0)}
 SEEDS = 24
+CONFIGURATIONS = Path(__file__).parents[2] / "config"
 
 
 def structure(**changes):
@@ -227,3 +231,20 @@ def test_records_give_each_support_back_on_average(straight):
             allowed = 2.0 * error + (0.3 * scatter if method == "lscf" else 0.0)
             assert abs(values.mean() - truth) < allowed, (key, name, values.mean() / truth - 1.0)
             assert scatter < 1.5 * stated, (key, name, scatter / stated)
+
+
+@pytest.mark.slow
+def test_unequal_gaps_of_a_u_tube_give_unequal_supports():
+    # Simulated impacts: the right leg has three times the gap of the left one.
+    data = yaml.safe_load((CONFIGURATIONS / "smoke.yaml").read_text(encoding="utf-8"))
+    data["supports"][1]["gap_factor"] = 3.0
+    data["identification"]["groups"] = "each"
+    data["record"]["duration_s"] = 30.0
+    data["spectra"] = {"segment_s": 6.0}
+    config = check_config(data, "unequal gaps")
+    found = identify_support(config, simulate_case(config, 12.0, 2.8886e-4))
+    left, right = found.of("left", "y"), found.of("right", "y")
+    assert left["secant"].k > 10.0 * right["secant"].k
+    for method in ("lscf", "ods", "broadband"):
+        assert left[method].k == pytest.approx(left["secant"].k, rel=0.35), method
+        assert right[method].k == pytest.approx(right["secant"].k, rel=0.5), method
