@@ -58,5 +58,6 @@ def test_an_edited_matrix_reruns_the_model_and_what_follows(tmp_path):
         "_basis",
         "_simulate",
         "_statistics",
+        "_study_page",
         "all",
     }
