@@ -30,7 +30,7 @@ $(1)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --r
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study smoke test test-all lint format judges benchmark docs setup clean
+.PHONY: help study smoke test test-all reliability lint format judges benchmark docs setup clean
 
 help: ## list the targets
 	@$(PYTHON) -c "import re; [print(f'make {name:<10} {text}') for name, text in \
@@ -47,7 +47,12 @@ test: $(READY) ## the fast tier of every kind of test, in parallel
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow"
 
 test-all: $(READY) ## every test, and the coverage of the library
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --cov --cov-report term
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile thorough \
+		--cov --cov-report term
+
+reliability: $(READY) ## the tests of faults and bad input: writes docs/reliability.md
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile thorough \
+		--reliability tests/faults tests/properties
 
 lint: $(READY) ## formatting, static checks and types
 	$(BIN)/ruff format --check

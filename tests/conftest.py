@@ -9,11 +9,24 @@ from pathlib import Path
 os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")}
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from vibroimpact.config.reading import load_config
 from vibroimpact.reduction.reduced_model import build_model
 
 ROOT = Path(__file__).resolve().parents[1]
+pytest_plugins = ["tests.reliability_page"]
+
+# Examples of a property test: the same in every run; `--hypothesis-profile thorough` takes more.
+FIXED = {
+    "derandomize": True,
+    "database": None,
+    "deadline": None,
+    "suppress_health_check": list(HealthCheck),
+}
+settings.register_profile("fast", max_examples=25, **FIXED)
+settings.register_profile("thorough", max_examples=250, **FIXED)
+settings.load_profile("fast")
 
 
 @pytest.hookimpl(tryfirst=True)

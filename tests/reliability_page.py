@@ -1,0 +1,100 @@
+"""The page docs/reliability.md, written by the tests: `make reliability`.
+
+A test states what it has shown through the fixture `reliability`. A statement counts if its test
+passes. Parallel workers send theirs to the main process with the report of the test.
+"""
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "reliability.md"
+RELIABILITY = pytest.StashKey[list]()
+HEADERS = {
+    "faults": ("fault", "what happens"),
+    "inputs": ("input", "tried", "refused with a sentence", "right"),
+    "scale": ("what", "measured"),
+}
+TITLES = {
+    "faults": "Faults",
+    "inputs": "Input",
+    "scale": "Scale",
+}
+INTRODUCTION = """# Reliability
+
+<!-- Written by `make reliability`: do not edit. -->
+
+Every row is stated by a test that passed. `make reliability` runs these tests and writes the page.
+"""
+
+
+class Statements:
+    """What one test has shown, as rows of the page."""
+
+    def __init__(self, record_property) -> None:
+        self._record = record_property
+
+    def fault(self, fault: str, outcome: str) -> None:
+        """State a fault that was tried, and what happens then."""
+        self._record("faults", [fault, outcome])
+
+    def inputs(self, what: str, tried) -> None:
+        """State how many generated inputs were refused or right.
+
+        tried: the `Tried` of the test (tests/properties/guarded.py).
+        """
+        counts = tried.outcomes
+        self._record(
+            "inputs", [what, *map(str, (counts.total(), counts["refused"], counts["right"]))]
+        )
+
+    def scale(self, what: str, measured: str) -> None:
+        """State a figure of scale that the test has measured or counted."""
+        self._record("scale", [what, measured])
+
+
+@pytest.fixture
+def reliability(record_property):
+    """What a test states on the page of reliability."""
+    return Statements(record_property)
+
+
+def pytest_addoption(parser):
+    """Add --reliability, which writes the page."""
+    parser.addoption("--reliability", action="store_true", help=f"write {PAGE.name}")
+
+
+def pytest_configure(config):
+    """Start the list of rows."""
+    config.stash[RELIABILITY] = []
+    config.pluginmanager.register(_Collector(config), "reliability-collector")
+
+
+class _Collector:
+    """Collects the rows of passed tests, and writes the page at the end."""
+
+    def __init__(self, config) -> None:
+        self.config = config
+
+    def pytest_runtest_logreport(self, report):
+        """Keep what a passed test has stated."""
+        if report.when == "call" and report.passed:
+            self.config.stash[RELIABILITY] += [
+                (section, row) for section, row in report.user_properties if section in HEADERS
+            ]
+
+    def pytest_sessionfinish(self, session):
+        """Write the page in the main process."""
+        if self.config.getoption("--reliability") and not hasattr(self.config, "workerinput"):
+            PAGE.write_text(page(self.config.stash[RELIABILITY]), encoding="utf-8")
+
+
+def page(rows):
+    """Return the page of rows (section, cells)."""
+    parts = [INTRODUCTION]
+    for section, header in HEADERS.items():
+        table = sorted(cells for name, cells in rows if name == section)
+        lines = [" | ".join(cells) for cells in (header, ["---"] * len(header), *table)]
+        parts.append(f"## {TITLES[section]}\n\n" + "\n".join(f"| {line} |" for line in lines))
+    return "\n".join(parts[:1]) + "\n" + "\n\n".join(parts[1:]) + "\n"
