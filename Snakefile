@@ -15,6 +15,7 @@ report: "workflow/report/study.rst"
 include: "workflow/rules/configuration.smk"
 include: "workflow/rules/study_files.smk"
 include: "workflow/rules/run_files.smk"
+include: "workflow/rules/scheduling.smk"
 include: "workflow/rules/completed_campaigns.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/simulate.smk"
@@ -45,6 +46,7 @@ localrules:
 
 
 onstart:
+    start_no_timers()
     write_files_of_run()
 
 

@@ -14,7 +14,7 @@ from vibroimpact.study.cases import all_cases, load_values, nearest_loads, value
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS = ROOT / "workflow" / "scripts"
-SOURCES = [str(ROOT / "src" / "vibroimpact" / "records.py")]
+SOURCE_DIGEST = "0a1b2c3d4e5f6789"
 FIGURES = ("model", "response", "identification", "checks")
 
 
@@ -63,10 +63,11 @@ class TinyStudy:
         """Run the script of a stage, with the settings that its rule gives it."""
         log = self.folder / "logs" / f"{stage}{load}.log"
         job = SimpleNamespace(
-            input=SimpleNamespace(library=SOURCES, **inputs),
+            input=SimpleNamespace(**inputs),
             output=SimpleNamespace(**outputs),
-            params=SimpleNamespace(config=stage_params(self.config, stage), **params),
-            wildcards=SimpleNamespace(load=load),
+            params=SimpleNamespace(
+                library=SOURCE_DIGEST, config=stage_params(self.config, stage), **params
+            ),
             log=[str(log)],
         )
         streams = sys.stdout, sys.stderr

@@ -22,7 +22,6 @@ rule f16:
 
 rule _f16_records:
     input:
-        library=library_of(f"{F16}/records.py"),
         program=f"{F16}/records.py",
         records=F16_FILES,
     output:
@@ -36,6 +35,7 @@ rule _f16_records:
         mem_mb=1500,
         runtime=10,
     params:
+        library=library_of(f"{F16}/records.py"),
         python=PYTHON,
     message:
         "Records of the F-16 as a campaign"
@@ -45,7 +45,6 @@ rule _f16_records:
 
 rule _f16_poles:
     input:
-        library=library_of(f"{F16}/poles.py"),
         program=f"{F16}/poles.py",
         records=F16_FILES,
     output:
@@ -59,6 +58,7 @@ rule _f16_poles:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library_of(f"{F16}/poles.py"),
         python=PYTHON,
     message:
         "Pole and shape of the F-16 near 7.3 Hz, by peak and by LSCF"

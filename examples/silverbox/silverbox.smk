@@ -19,7 +19,6 @@ rule silverbox:
 
 rule _silverbox_records:
     input:
-        library=library_of(f"{SILVERBOX}/records.py"),
         program=f"{SILVERBOX}/records.py",
         records=downloaded(
             "silverbox_data",
@@ -38,6 +37,7 @@ rule _silverbox_records:
         mem_mb=1500,
         runtime=10,
     params:
+        library=library_of(f"{SILVERBOX}/records.py"),
         python=PYTHON,
     message:
         "Records of the Silverbox as a campaign"
@@ -47,7 +47,6 @@ rule _silverbox_records:
 
 rule _silverbox_published:
     input:
-        library=library_of(f"{SILVERBOX}/published.py"),
         program=f"{SILVERBOX}/published.py",
         verdict="results/silverbox/verdict.json",
         completed="results/silverbox/completed.json",
@@ -62,6 +61,7 @@ rule _silverbox_published:
         mem_mb=500,
         runtime=10,
     params:
+        library=library_of(f"{SILVERBOX}/published.py"),
         python=PYTHON,
     message:
         "Coefficients of the Silverbox beside the published ones"

@@ -6,7 +6,7 @@ import ast
 import hashlib
 import json
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -58,36 +58,47 @@ def versions() -> dict[str, str]:
     return found
 
 
-def origin(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
+def origin(params: Mapping[str, Any], library: str) -> dict[str, str]:
     """Return {name: text} of what made a result.
 
     They are the version of vibroimpact, the digests of a stage's keys and of its source files, and
     the versions of the packages that it used.
+
+    library: the library_digest of the stage.
     """
-    library = [file for file in files if Path(file).suffix == ".py"]
     return {
         "vibroimpact_version": __version__,
         "config_digest": config_digest(params),
-        "source_digest": source_digest(library),
+        "source_digest": library,
         "versions": " ".join(f"{name} {version}" for name, version in versions().items()),
     }
 
 
-def file_attributes(params: Mapping[str, Any], files: Iterable[Path | str]) -> dict[str, str]:
+def file_attributes(params: Mapping[str, Any], library: str) -> dict[str, str]:
     """Return the global attributes of a netCDF file of a stage: its origin and its configuration.
 
     params: {dotted key: value} that the stage was given. As YAML they are the attribute
     `configuration`; with `config_digest` they tell which settings the file depends on, and no
     others: a key of a later stage changes neither.
+    library: the library_digest of the stage.
     """
     study = {"study": str(params["study"])} if "study" in params else {}
     text = yaml.safe_dump(json.loads(_text_of(params)), sort_keys=True, allow_unicode=True)
-    return {**study, **origin(params, files), "configuration": text}
+    return {**study, **origin(params, library), "configuration": text}
 
 
 def package_digest() -> str:
     """Return 16 hexadecimal digits that stand for all source files of the package."""
     return source_digest(Path(__file__).parent.rglob("*.py"))
+
+
+def library_digest(script: Path | str, source: Path | str) -> str:
+    """Return 16 hexadecimal digits that stand for the library files that a script imports.
+
+    They change with the content of these files and of no others. Arguments and errors are those of
+    imported_files.
+    """
+    return source_digest(imported_files(script, source))
 
 
 def imported_files(script: Path | str, source: Path | str) -> list[Path]:
@@ -127,7 +138,7 @@ def _imports(file: Path, source: Path, _changed_at: int) -> frozenset[Path]:
 def _imported_names(file: Path, source: Path) -> set[str]:
     """Return the dotted names inside the package that a file imports, e.g. vibroimpact.units."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), filename=str(file))):
+    for node in _statements(ast.parse(file.read_text(encoding="utf-8"), filename=str(file))):
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -135,6 +146,16 @@ def _imported_names(file: Path, source: Path) -> set[str]:
             names.add(base)
             names.update(f"{base}.{alias.name}" for alias in node.names)
     return {name for name in names if name.split(".")[0] == PACKAGE}
+
+
+def _statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield every statement below a node, at any depth. No import stands in an expression, and
+    most of a file is expressions.
+    """
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, (ast.stmt, ast.excepthandler, ast.match_case)):
+            yield child
+            yield from _statements(child)
 
 
 def _package_above(file: Path, source: Path, level: int) -> str:

@@ -17,6 +17,7 @@ from vibroimpact.provenance import (
     config_digest,
     file_attributes,
     imported_files,
+    library_digest,
     origin,
     package_digest,
     source_digest,
@@ -27,6 +28,25 @@ ROOT = Path(__file__).parents[2]
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
 
 
+# Imports inside every kind of block.
+LAZY = """
+class Shape:
+    def lazy(self, kind):
+        match kind:
+            case 1:
+                try:
+                    pass
+                except ValueError:
+                    pass
+                else:
+                    with open(kind):
+                        while kind:
+                            from .inner import deep
+                finally:
+                    from . import plain
+"""
+
+
 @pytest.fixture
 def library(tmp_path):
     """A small package with every form of import, and a script beside it."""
@@ -34,7 +54,7 @@ def library(tmp_path):
         "src/vibroimpact/__init__.py": "",
         "src/vibroimpact/alone.py": "import numpy",
         "src/vibroimpact/top.py": "from vibroimpact.middle import name\nimport os.path",
-        "src/vibroimpact/middle.py": "def lazy():\n    from .inner import deep\n",
+        "src/vibroimpact/middle.py": LAZY,
         "src/vibroimpact/inner/__init__.py": "from . import sibling",
         "src/vibroimpact/inner/sibling.py": "",
         "src/vibroimpact/inner/deep.py": "from ..plain import value",
@@ -156,7 +176,8 @@ def test_source_digest_depends_on_contents_not_location(tmp_path):
 
 
 def test_an_origin_names_digests_and_versions():
-    found = origin({"seed": 1}, [ROOT / "src" / "vibroimpact" / "units.py"])
+    found = origin({"seed": 1}, "0a1b2c3d4e5f6789")
+    assert found["source_digest"] == "0a1b2c3d4e5f6789"
     assert set(found) == {"vibroimpact_version", "config_digest", "source_digest", "versions"}
     assert found["vibroimpact_version"] == vibroimpact.__version__
     assert f"python {sys.version.split()[0]}" in found["versions"]
@@ -165,12 +186,26 @@ def test_an_origin_names_digests_and_versions():
 
 def test_a_file_carries_the_configuration_of_its_stage():
     keys = {"study": "mine", "grid.gap_m": [2.5e-5, 1e-4], "seed": 7}
-    found = file_attributes(keys, [])
+    found = file_attributes(keys, "")
     assert yaml.safe_load(found["configuration"]) == keys
     assert found["study"] == "mine"
-    again = file_attributes(dict(reversed(keys.items())), [])
+    again = file_attributes(dict(reversed(keys.items())), "")
     assert again == found and found["config_digest"] == config_digest(keys)
-    assert "study" not in file_attributes({"seed": 1}, [])
+    assert "study" not in file_attributes({"seed": 1}, "")
+
+
+def test_library_digest_changes_with_imported_files_alone(library):
+    script = library / "script.py"
+    script.write_text("from vibroimpact.inner.sibling import x")
+    source = library / "src"
+    before = library_digest(script, source)
+    assert before == source_digest(imported_files(script, source))
+    sibling, alone = (source / "vibroimpact" / name for name in ("inner/sibling.py", "alone.py"))
+    alone.write_text("import scipy")
+    sibling.touch()
+    assert library_digest(script, source) == before
+    sibling.write_text("x = 1")
+    assert library_digest(script, source) != before
 
 
 def test_package_digest_is_that_of_all_its_files(monkeypatch, tmp_path):

@@ -214,8 +214,8 @@ def test_a_run_leaves_its_configuration_and_provenance(study):
 def test_a_failed_run_names_case_log_and_remedy(study):
     told = study.stopped.stderr
     assert "2 jobs failed:" in told
-    assert "  Identification at 4 N RMS: 2 of 4 cases (rule identify_from_3.16)" in told
-    assert "results/smoke/logs/identify_from_3.16.log is empty" in told
+    assert "  Identification at 4 N RMS: 2 of 4 cases (rule identify_from_4)" in told
+    assert "results/smoke/logs/identify_from_4.log is empty" in told
     assert "give the same command again" in told
 
 

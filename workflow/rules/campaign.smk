@@ -4,7 +4,6 @@ from vibroimpact.study.cases import nearest_loads
 
 rule _synthetic_campaign:
     input:
-        library=library("synthetic_campaign"),
         model=f"{RESULTS}/model.nc",
         force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
     output:
@@ -18,6 +17,7 @@ rule _synthetic_campaign:
         mem_mb=2000,
         runtime=20,
     params:
+        library=library("synthetic_campaign"),
         config=settings("synthetic_campaign"),
         loads=nearest_loads(STUDY.grid, STUDY.overlay.load_rms_N),
     message:

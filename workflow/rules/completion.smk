@@ -18,7 +18,6 @@ wildcard_constraints:
 
 checkpoint _completion_prepare:
     input:
-        library=library("completion_prepare"),
         campaign=campaign_completed,
     output:
         campaign="results/{structure}/campaign.nc",
@@ -34,6 +33,7 @@ checkpoint _completion_prepare:
         mem_mb=2000,
         runtime=30,
     params:
+        library=library("completion_prepare"),
         structure=structure_completed,
     message:
         "{wildcards.structure}: records, linear models, places"
@@ -43,7 +43,6 @@ checkpoint _completion_prepare:
 
 rule _completion_candidate:
     input:
-        library=library("completion_candidate"),
         campaign="results/{structure}/campaign.nc",
         study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
@@ -58,6 +57,7 @@ rule _completion_candidate:
         mem_mb=1500,
         runtime=30,
     params:
+        library=library("completion_candidate"),
         law="{law}",
     message:
         "{wildcards.structure}: {wildcards.law}"
@@ -67,7 +67,6 @@ rule _completion_candidate:
 
 rule _completion_addition:
     input:
-        library=library("completion_addition"),
         campaign="results/{structure}/campaign.nc",
         study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
@@ -83,6 +82,7 @@ rule _completion_addition:
         mem_mb=1500,
         runtime=30,
     params:
+        library=library("completion_addition"),
         law="{law}",
     message:
         "{wildcards.structure}: {wildcards.law} as second effect"
@@ -92,7 +92,6 @@ rule _completion_addition:
 
 rule _completion_outcome:
     input:
-        library=library("completion_outcome"),
         campaign="results/{structure}/campaign.nc",
         study="results/{structure}/study.json",
         linear="results/{structure}/linear.json",
@@ -112,6 +111,7 @@ rule _completion_outcome:
         mem_mb=1500,
         runtime=30,
     params:
+        library=library("completion_outcome"),
         structure=structure_completed,
     message:
         "{wildcards.structure}: verdict and prediction of every level"
@@ -121,7 +121,6 @@ rule _completion_outcome:
 
 rule _completion_report:
     input:
-        library=library("completion_report"),
         template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
         campaign="results/{structure}/campaign.nc",
         study="results/{structure}/study.json",
@@ -142,6 +141,7 @@ rule _completion_report:
         mem_mb=1500,
         runtime=10,
     params:
+        library=library("completion_report"),
         name="{structure}",
     message:
         "{wildcards.structure}: results/{wildcards.structure}/report.html"

@@ -17,7 +17,6 @@ wildcard_constraints:
 
 checkpoint _discrepancy_prepare:
     input:
-        library=library("discrepancy_prepare"),
         campaign=requested("campaign", "FILE"),
     output:
         prepared=f"{DISCREPANCY}/prepared.json",
@@ -30,6 +29,7 @@ checkpoint _discrepancy_prepare:
         mem_mb=3000,
         runtime=20,
     params:
+        library=library("discrepancy_prepare"),
         config=MODEL.model_dump(mode="json"),
         compared_s=COMPARED_S,
         draw=DRAW,
@@ -41,7 +41,6 @@ checkpoint _discrepancy_prepare:
 
 rule _discrepancy_null:
     input:
-        library=library("discrepancy_null"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
@@ -55,6 +54,7 @@ rule _discrepancy_null:
         mem_mb=3000,
         runtime=60,
     params:
+        library=library("discrepancy_null"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Null: seeds of the bare model, part {wildcards.part}"
@@ -64,7 +64,6 @@ rule _discrepancy_null:
 
 rule _discrepancy_candidate:
     input:
-        library=library("discrepancy_candidate"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
@@ -78,6 +77,7 @@ rule _discrepancy_candidate:
         mem_mb=3000,
         runtime=60,
     params:
+        library=library("discrepancy_candidate"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Candidate {wildcards.candidate}: simulated at its first parameters"
@@ -87,7 +87,6 @@ rule _discrepancy_candidate:
 
 checkpoint _discrepancy_screening:
     input:
-        library=library("discrepancy_screening"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
@@ -104,6 +103,7 @@ checkpoint _discrepancy_screening:
         mem_mb=3000,
         runtime=30,
     params:
+        library=library("discrepancy_screening"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Screening of all candidates"
@@ -113,7 +113,6 @@ checkpoint _discrepancy_screening:
 
 rule _discrepancy_finalist:
     input:
-        library=library("discrepancy_finalist"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
@@ -131,6 +130,7 @@ rule _discrepancy_finalist:
         mem_mb=3000,
         runtime=60,
     params:
+        library=library("discrepancy_finalist"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Finalist {wildcards.candidate}: refined by direct simulation"
@@ -140,7 +140,6 @@ rule _discrepancy_finalist:
 
 checkpoint _discrepancy_pairs:
     input:
-        library=library("discrepancy_pairs"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
@@ -159,6 +158,7 @@ checkpoint _discrepancy_pairs:
         mem_mb=3000,
         runtime=30,
     params:
+        library=library("discrepancy_pairs"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Second effect: which pairs to simulate"
@@ -168,7 +168,6 @@ checkpoint _discrepancy_pairs:
 
 rule _discrepancy_pair:
     input:
-        library=library("discrepancy_pair"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
@@ -186,6 +185,7 @@ rule _discrepancy_pair:
         mem_mb=3000,
         runtime=60,
     params:
+        library=library("discrepancy_pair"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Pair {wildcards.pair}: refined by direct simulation"
@@ -195,7 +195,6 @@ rule _discrepancy_pair:
 
 rule _discrepancy_verdict:
     input:
-        library=library("discrepancy_verdict"),
         campaign=requested("campaign", "FILE"),
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
@@ -220,6 +219,7 @@ rule _discrepancy_verdict:
         mem_mb=3000,
         runtime=60,
     params:
+        library=library("discrepancy_verdict"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Verdict, verified on fresh seeds"

@@ -4,7 +4,6 @@
 
 rule _discrepancy_quick:
     input:
-        library=library("discrepancy_quick"),
         campaign=requested("campaign", "FILE"),
         mode=f"{DISCREPANCY}/mode.txt",
     output:
@@ -22,6 +21,7 @@ rule _discrepancy_quick:
         mem_mb=6000,
         runtime=20,
     params:
+        library=library("discrepancy_quick"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Quick look for what is missing: short records, fewer parameters, no second effect"

@@ -11,8 +11,6 @@ DISCREPANCY_FIGURES = (
 
 # The mode is a parameter: a full run does not take the products of a quick one for its own.
 rule _discrepancy_mode:
-    input:
-        library=library("discrepancy_mode"),
     output:
         mode=f"{DISCREPANCY}/mode.txt",
     log:
@@ -24,6 +22,7 @@ rule _discrepancy_mode:
         mem_mb=500,
         runtime=1,
     params:
+        library=library("discrepancy_mode"),
         mode="quick" if QUICK else "full",
     message:
         "Mode of the discrepancy run: {params.mode}"
@@ -33,7 +32,6 @@ rule _discrepancy_mode:
 
 rule _discrepancy_report:
     input:
-        library=library("discrepancy_report"),
         template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
         verdict=f"{DISCREPANCY}/verdict.json",
         map=f"{DISCREPANCY}/map.nc",
@@ -55,6 +53,7 @@ rule _discrepancy_report:
         mem_mb=2000,
         runtime=10,
     params:
+        library=library("discrepancy_report"),
         name=LOOKED_AT,
         quick=QUICK,
     message:

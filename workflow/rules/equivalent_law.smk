@@ -5,7 +5,6 @@
 rule equivalent_law:
     """The law of `vibroimpact equivalent --estimate` from this study, and its errors elsewhere."""
     input:
-        library=library("equivalent_law"),
         model=f"{RESULTS}/model.nc",
         table=f"{RESULTS}/consistency_summary.csv",
         tubes=f"{CONFIGURATIONS}/validation/other_tubes.yaml",
@@ -21,6 +20,7 @@ rule equivalent_law:
         mem_mb=1000,
         runtime=20,
     params:
+        library=library("equivalent_law"),
         config=settings("validation"),
     message:
         f"The law of the equivalent support, and its error on other tubes: {RESULTS}"

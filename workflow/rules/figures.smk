@@ -3,7 +3,6 @@
 
 rule _figures_model:
     input:
-        library=library("figures_model"),
         quality=f"{RESULTS}/basis_quality.csv",
     output:
         figures=reported_figures("model"),
@@ -16,6 +15,7 @@ rule _figures_model:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("figures_model"),
         config=settings("figures_model"),
     message:
         "Figures: layout, modes, contact law, first frequency, reduced model"
@@ -25,7 +25,6 @@ rule _figures_model:
 
 rule _figures_response:
     input:
-        library=library("figures_response"),
         model=f"{RESULTS}/model.nc",
         campaign=STUDY.overlay.campaign or f"{RESULTS}/synthetic_campaign.nc",
         spectra=files_of_study("spectra"),
@@ -40,6 +39,7 @@ rule _figures_response:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("figures_response"),
         config=settings("figures_response"),
     message:
         "Figures: campaign over simulation, responses against load, in-plane share"
@@ -49,7 +49,6 @@ rule _figures_response:
 
 rule _figures_identification:
     input:
-        library=library("figures_identification"),
         model=f"{RESULTS}/model.nc",
         spectra=files_of_study("spectra"),
         curves=files_of_study("estimates"),
@@ -65,6 +64,7 @@ rule _figures_identification:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("figures_identification"),
         config=settings("figures_identification"),
     message:
         "Figures: poles, stabilisation, shapes, singular values, broadband"
@@ -74,7 +74,6 @@ rule _figures_identification:
 
 rule _figures_checks:
     input:
-        library=library("figures_checks"),
         model=f"{RESULTS}/model.nc",
         records=files_of_study("records"),
         table=f"{RESULTS}/consistency.csv",
@@ -89,6 +88,7 @@ rule _figures_checks:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("figures_checks"),
         config=settings("figures_checks"),
     message:
         "Figures: equivalent support, collapse, energy balance, contact statistics"

@@ -1,45 +1,37 @@
 # Equivalent stiffness and damping per case by every method, and the table that compares the
-# methods. The loads of half a decade are identified in one job (rules _identify_from_0.316 and so
-# on), because a job needs longer to start and to prepare the linear tube than for the cases of one
-# load.
-from vibroimpact.study.cases import loads_by_half_decade
-
-for START, LOADS in loads_by_half_decade(STUDY.grid).items():
+# methods. One job per batch of cases (rules _identify_from_0.5 and so on).
+for BATCH, BATCH_CASES in IDENTIFIED.items():
 
     rule _identify:
         name:
-            f"_identify_{START}"
+            f"_identify_{BATCH}"
         input:
-            library=library("identify"),
             model=f"{RESULTS}/model.nc",
-            records=files_of_loads("records", LOADS),
-            spectra=files_of_loads("spectra", LOADS),
+            records=files_of_cases("records", BATCH_CASES),
+            spectra=files_of_cases("spectra", BATCH_CASES),
         output:
-            curves=files_of_loads("estimates", LOADS),
-            tables=files_of_loads("estimates", LOADS, "csv"),
+            curves=files_of_cases("estimates", BATCH_CASES),
+            tables=files_of_cases("estimates", BATCH_CASES, "csv"),
         log:
-            f"{RESULTS}/logs/identify_{START}.log",
+            f"{RESULTS}/logs/identify_{BATCH}.log",
         benchmark:
-            f"{RESULTS}/benchmarks/identify_{START}.tsv"
+            f"{RESULTS}/benchmarks/identify_{BATCH}.tsv"
         priority: 1  # spread over the simulations, not after them
         threads: 1
         resources:
             mem_mb=500,
             runtime=30,
         params:
+            library=library("identify"),
             config=settings("identify"),
         message:
-            (
-                f"Identification at {' to '.join(dict.fromkeys((LOADS[0], LOADS[-1])))} N RMS:"
-                f" {len(LOADS) * CASES_PER_LOAD} of {len(CASES)} cases"
-            )
+            f"Identification {work_on(BATCH_CASES)}"
         script:
             "../scripts/identify.py"
 
 
 rule _consistency:
     input:
-        library=library("consistency"),
         model=f"{RESULTS}/model.nc",
         tables=files_of_study("estimates", "csv"),
     output:
@@ -57,6 +49,7 @@ rule _consistency:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("consistency"),
         config=settings("consistency"),
     message:
         f"Consistency of the methods over {len(CASES)} cases"

@@ -6,7 +6,6 @@ IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
 rule import_campaign:
     """Turn a folder of raw measurements into a campaign file: --config import=FOLDER."""
     input:
-        library=library("import_campaign"),
         folder=requested("import", "FOLDER"),
         files=lambda wildcards: sorted(
             str(file) for file in Path(REQUEST["import"]).iterdir() if file.is_file()
@@ -26,6 +25,7 @@ rule import_campaign:
         mem_mb=4000,
         runtime=20,
     params:
+        library=library("import_campaign"),
         folder=REQUEST.get("import"),
     message:
         f"Campaign of the folder {IMPORTED}: results/{IMPORTED}/import.txt says what was found"
@@ -36,7 +36,6 @@ rule import_campaign:
 rule quicklook:
     """Check and draw a campaign file, without a model: --config campaign=FILE."""
     input:
-        library=library("quicklook"),
         campaign=requested("campaign", "FILE.nc"),
     output:
         checks=f"results/{LOOKED_AT}/quicklook_checks.csv",
@@ -51,6 +50,7 @@ rule quicklook:
         mem_mb=4000,
         runtime=10,
     params:
+        library=library("quicklook"),
         campaign=REQUEST.get("campaign"),
     message:
         f"Quick look at {LOOKED_AT}: results/{LOOKED_AT}/quicklook.png"

@@ -3,7 +3,6 @@
 
 rule _basis:
     input:
-        library=library("basis"),
         matrices=matrix_files(),
     output:
         model=f"{RESULTS}/model.nc",
@@ -17,6 +16,7 @@ rule _basis:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("basis"),
         config=settings("basis"),
     message:
         "Reduced model of the structure, and its quality against the full model"

@@ -1,91 +1,91 @@
-# One job per load: its gaps and seeds are integrated side by side, with one file of each kind per
-# case. Where the time series are kept, spectra are made from those files by a rule of their own.
-# Otherwise the simulation makes them and writes no series. Without an identification there are no
-# spectra.
-if KEPT or STUDY.identification is None:
+# One job per batch of cases (rules _simulate_from_0.5 and so on): they are integrated side by side,
+# with one file of each kind per case. Where the time series are kept, spectra are made from those
+# files by a job of their own. Otherwise the simulation makes them and writes no series. Without an
+# identification there are no spectra.
+for BATCH, BATCH_CASES in TO_SERIES.items():
 
-    ruleorder: _simulate > _simulate_to_spectra
-    ruleorder: _spectra > _simulate_to_spectra
-
-else:
-
-    ruleorder: _simulate_to_spectra > _spectra
-    ruleorder: _simulate_to_spectra > _simulate
-
-
-rule _simulate:
-    input:
-        library=library("simulate"),
-        model=f"{RESULTS}/model.nc",
-        force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
-    output:
-        records=files_of_load("records"),
-        series=series_of_load(),
-    log:
-        f"{RESULTS}/logs/simulate_load_{{load}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
-    threads: 1
-    resources:
-        mem_mb=500,
-        runtime=60,
-    params:
-        config=settings("simulate"),
-    message:
-        f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
-    script:
-        "../scripts/simulate.py"
+    rule _simulate:
+        name:
+            f"_simulate_{BATCH}"
+        input:
+            model=f"{RESULTS}/model.nc",
+            force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
+        output:
+            records=files_of_cases("records", BATCH_CASES),
+            series=files_of_cases("timeseries", BATCH_CASES if KEPT else []),
+        log:
+            f"{RESULTS}/logs/simulate_{BATCH}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/simulate_{BATCH}.tsv"
+        threads: 1
+        resources:
+            mem_mb=500,
+            runtime=60,
+        params:
+            library=library("simulate"),
+            config=settings("simulate"),
+        message:
+            f"Simulation {work_on(BATCH_CASES)}"
+        script:
+            "../scripts/simulate.py"
 
 
-rule _simulate_to_spectra:
-    input:
-        library=library("simulate_to_spectra"),
-        model=f"{RESULTS}/model.nc",
-        force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
-    output:
-        records=files_of_load("records"),
-        spectra=files_of_load("spectra"),
-    log:
-        f"{RESULTS}/logs/simulate_load_{{load}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
-    threads: 1
-    resources:
-        mem_mb=500,
-        runtime=60,
-    params:
-        config=settings("simulate_to_spectra"),
-    message:
-        f"Simulation at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
-    script:
-        "../scripts/simulate_to_spectra.py"
+for BATCH, BATCH_CASES in TO_SPECTRA.items():
+
+    rule _simulate_to_spectra:
+        name:
+            f"_simulate_to_spectra_{BATCH}"
+        input:
+            model=f"{RESULTS}/model.nc",
+            force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
+        output:
+            records=files_of_cases("records", BATCH_CASES),
+            spectra=files_of_cases("spectra", BATCH_CASES),
+        log:
+            f"{RESULTS}/logs/simulate_{BATCH}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/simulate_{BATCH}.tsv"
+        threads: 1
+        resources:
+            mem_mb=500,
+            runtime=60,
+        params:
+            library=library("simulate_to_spectra"),
+            config=settings("simulate_to_spectra"),
+        message:
+            f"Simulation {work_on(BATCH_CASES)}"
+        script:
+            "../scripts/simulate_to_spectra.py"
 
 
-rule _spectra:
-    input:
-        library=library("spectra"),
-        series=files_of_load("timeseries"),
-    output:
-        spectra=files_of_load("spectra"),
-    log:
-        f"{RESULTS}/logs/spectra_load_{{load}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/spectra_load_{{load}}.tsv"
-    threads: 1
-    resources:
-        mem_mb=1000,
-        runtime=20,
-    params:
-        config=settings("spectra"),
-    message:
-        f"Spectra at {{wildcards.load}} N RMS: {CASES_PER_LOAD} of {len(CASES)} cases"
-    script:
-        "../scripts/spectra.py"
+for BATCH, BATCH_CASES in TO_SERIES.items():
+
+    rule _spectra:
+        name:
+            f"_spectra_{BATCH}"
+        input:
+            series=files_of_cases("timeseries", BATCH_CASES),
+        output:
+            spectra=files_of_cases("spectra", BATCH_CASES),
+        log:
+            f"{RESULTS}/logs/spectra_{BATCH}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/spectra_{BATCH}.tsv"
+        threads: 1
+        resources:
+            mem_mb=1000,
+            runtime=20,
+        params:
+            library=library("spectra"),
+            config=settings("spectra"),
+        message:
+            f"Spectra {work_on(BATCH_CASES)}"
+        script:
+            "../scripts/spectra.py"
 
 
 rule _statistics:
     input:
-        library=library("statistics"),
         records=files_of_study("records"),
     output:
         table=reported(f"{RESULTS}/statistics.csv"),
@@ -98,6 +98,7 @@ rule _statistics:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("statistics"),
         config=settings("statistics"),
     message:
         "Contact, wear and stress statistics of every case, as one table"

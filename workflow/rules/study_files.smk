@@ -1,14 +1,10 @@
 # The names of the files of a study, and the inputs and params that rules get from functions.
+from functools import cache
+
 from vibroimpact.config.stage_keys import stage_params
-from vibroimpact.provenance import imported_files
+from vibroimpact.provenance import library_digest
 from vibroimpact.reports.captions import read_caption
-from vibroimpact.study.cases import (
-    all_cases,
-    ids_of_load,
-    load_values,
-    loads_by_half_decade,
-    value_text,
-)
+from vibroimpact.study.cases import all_cases, batches
 
 FIGURES = {
     "model": (
@@ -40,17 +36,35 @@ CAPTIONS = as_input(ROOT / "workflow" / "report")
 
 CASES = [case.id for case in all_cases(STUDY.grid)]
 KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
-CASES_PER_LOAD = len(CASES) // len(load_values(STUDY.grid))
+# The cases that a job simulates: of the default study, those of one load. A job of the
+# identification takes those of half a decade, because it needs longer to start and to prepare the
+# linear tube than for the cases of one load.
+SIMULATED = batches(STUDY.grid, 10)
+IDENTIFIED = batches(STUDY.grid, 2)
+# By what the simulation writes beside its records.
+TO_SERIES = SIMULATED if KEPT or STUDY.identification is None else {}
+TO_SPECTRA = {} if TO_SERIES else SIMULATED
 
 
+@cache
 def library(script):
-    """The library files that a script imports; an edit reruns only the stages that import it."""
+    """The digest of the library files that a script imports, as a param: an edit reruns only the
+    stages that import the file.
+
+    It is a function, so that only the digests of jobs that are planned are made. A param costs the
+    same whatever the number of files, while each input of each job is looked at again and again.
+    """
     return library_of(f"{SCRIPTS}/{script}.py")
 
 
 def library_of(program):
-    """The library files that a program imports."""
-    return [str(file) for file in imported_files(program, SOURCE)]
+    """The digest of the library files that a program imports, as library() gives it."""
+
+    @cache
+    def digest():
+        return library_digest(program, SOURCE)
+
+    return lambda wildcards: digest()
 
 
 def settings(stage):
@@ -66,18 +80,9 @@ def matrix_files():
     return sorted({file for file in named if file})
 
 
-def files_of_load(folder, suffix="nc"):
-    """The files of the cases of wildcard {load}, one per gap and seed."""
-    return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in ids_of_load(STUDY.grid, "{load}")]
-
-
-def files_of_loads(folder, loads, suffix="nc"):
-    """The files of the cases of some loads."""
-    return [
-        f"{RESULTS}/{folder}/{case}.{suffix}"
-        for load in loads
-        for case in ids_of_load(STUDY.grid, load)
-    ]
+def files_of_cases(folder, cases, suffix="nc"):
+    """The files of some cases."""
+    return [f"{RESULTS}/{folder}/{case.id}.{suffix}" for case in cases]
 
 
 def files_of_study(folder, suffix="nc"):
@@ -85,12 +90,10 @@ def files_of_study(folder, suffix="nc"):
     return [f"{RESULTS}/{folder}/{case}.{suffix}" for case in CASES]
 
 
-def series_of_load():
-    """The time series that a simulation writes.
-
-    There are none where the study neither keeps them nor identifies anything from them.
-    """
-    return files_of_load("timeseries") if KEPT or STUDY.identification is not None else []
+def work_on(cases):
+    """The loads and the number of the cases that a job works on, for its message."""
+    loads = [f"{load:g}" for load in dict.fromkeys((cases[0].load_rms_N, cases[-1].load_rms_N))]
+    return f"at {' to '.join(loads)} N RMS: {len(cases)} of {len(CASES)} cases"
 
 
 def figure_files(group):
@@ -137,13 +140,12 @@ def figures_of_study():
 
 def jobs_of_study():
     """The names of the benchmark files and logs of the jobs of a complete study."""
-    loads = [value_text(load) for load in load_values(STUDY.grid)]
-    jobs = ["basis", *(f"simulate_load_{load}" for load in loads)]
+    jobs = ["basis", *(f"simulate_{batch}" for batch in SIMULATED)]
     if STUDY.identification is None:
         jobs.append("statistics")
     else:
-        jobs += [f"spectra_load_{load}" for load in loads] if KEPT else []
-        jobs += [f"identify_{start}" for start in loads_by_half_decade(STUDY.grid)]
+        jobs += [f"spectra_{batch}" for batch in SIMULATED] if KEPT else []
+        jobs += [f"identify_{batch}" for batch in IDENTIFIED]
         jobs += ["consistency", *(f"figures_{group}" for group in FIGURES)]
         jobs += ["synthetic_campaign"] if not STUDY.overlay.campaign else []
     return [*jobs, "study_page"]
@@ -165,4 +167,3 @@ def targets():
 
 wildcard_constraints:
     law=r"[a-z_]+\.[A-Za-z0-9_-]+",
-    load=r"[0-9.e+-]+",

@@ -3,7 +3,6 @@
 
 rule _study_page:
     input:
-        library=library("study_page"),
         page=[str(file) for file in sorted(Path(SOURCE).glob("vibroimpact/reports/*study_page.*"))],
         model=f"{RESULTS}/model.nc",
         records=files_of_study("records"),
@@ -29,6 +28,7 @@ rule _study_page:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("study_page"),
         config=settings("study_page"),
         jobs=[
             [f"{RESULTS}/{folder}/{job}.{suffix}" for job in jobs_of_study()[:-1]]

@@ -27,8 +27,6 @@ wildcard_constraints:
 
 
 rule _suite_bank:
-    input:
-        library=library("suite_bank"),
     output:
         campaign="results/{suite}/bank/bank.nc",
         done="results/{suite}/bank/verdict.json",
@@ -41,6 +39,7 @@ rule _suite_bank:
         mem_mb=6000,
         runtime=120,
     params:
+        library=library("suite_bank"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Candidates without a hidden effect, for all campaigns of {wildcards.suite}"
@@ -50,7 +49,6 @@ rule _suite_bank:
 
 rule _suite_campaign:
     input:
-        library=library("suite_campaign"),
         bank="results/{suite}/bank/verdict.json",
     output:
         verdict="results/{suite}/campaign_{number}/verdict.json",
@@ -64,6 +62,7 @@ rule _suite_campaign:
         mem_mb=3000,
         runtime=60,
     params:
+        library=library("suite_campaign"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Campaign {wildcards.number} of {wildcards.suite}"
@@ -74,7 +73,6 @@ rule _suite_campaign:
 rule suite:
     """Judge verdicts on campaigns in which an effect is hidden: --config count=N."""
     input:
-        library=library("suite"),
         template=f"{SOURCE}/vibroimpact/reports/suite_page.html",
         added=SUITE_ADDED,
         verdicts=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
@@ -98,6 +96,7 @@ rule suite:
         mem_mb=2000,
         runtime=10,
     params:
+        library=library("suite"),
         campaigns=len(SUITE_CAMPAIGNS),
         seed=SUITE_SEED,
     message:
@@ -109,7 +108,6 @@ rule suite:
 rule suite_difference:
     """Judge a suite again with other seeds or lengths: --config draw=1 or seconds=49."""
     input:
-        library=library("suite_difference"),
         plain=plain_verdicts(SUITE_SEED, SUITE, SUITE_CAMPAIGNS),
         other=[f"{SUITE}/campaign_{number:04d}/verdict.json" for number in SUITE_CAMPAIGNS],
     output:
@@ -124,6 +122,7 @@ rule suite_difference:
         mem_mb=500,
         runtime=5,
     params:
+        library=library("suite_difference"),
         campaigns=[f"campaign_{number:04d}" for number in SUITE_CAMPAIGNS],
     message:
         f"Verdicts of {SUITE} against those of the plain one: {SUITE}/difference.csv"

@@ -5,8 +5,6 @@ SUITE_CHECK = "results/suite_check"
 
 
 rule _suite_check_campaign:
-    input:
-        library=library("suite_check_campaign"),
     output:
         verdict=f"{SUITE_CHECK}/{{check}}/verdict.json",
     log:
@@ -18,6 +16,7 @@ rule _suite_check_campaign:
         mem_mb=3000,
         runtime=20,
     params:
+        library=library("suite_check_campaign"),
         config=MODEL.model_dump(mode="json"),
     message:
         "Quick verdict of a sealed campaign: {wildcards.check}"
@@ -28,7 +27,6 @@ rule _suite_check_campaign:
 rule suite_check:
     """Judge six small hidden effects in quick mode."""
     input:
-        library=library("suite_check"),
         verdicts=[f"{SUITE_CHECK}/{name}/verdict.json" for name in CHECKS],
     output:
         table=f"{SUITE_CHECK}/table.csv",
@@ -41,6 +39,7 @@ rule suite_check:
         mem_mb=500,
         runtime=1,
     params:
+        library=library("suite_check"),
         checks=list(CHECKS),
     message:
         f"Check of quick verdicts: {SUITE_CHECK}/table.csv"

@@ -5,7 +5,6 @@
 rule supports_prediction:
     """Linear supports against the simulated contacts: one k and c for all, and each its own."""
     input:
-        library=library("supports_prediction"),
         model=f"{RESULTS}/model.nc",
         equivalent=f"{RESULTS}/equivalent.csv",
         records=files_of_study("records"),
@@ -22,6 +21,7 @@ rule supports_prediction:
         mem_mb=2000,
         runtime=20,
     params:
+        library=library("supports_prediction"),
         config=settings("supports_prediction"),
     message:
         f"Linear supports against the simulated contacts of {len(CASES)} cases"

@@ -4,7 +4,6 @@
 rule timing:
     """Where the time of a finished study went: table and figure."""
     input:
-        library=library("timing"),
         benchmarks=[f"{RESULTS}/benchmarks/{job}.tsv" for job in jobs_of_study()],
     output:
         table=reported(f"{RESULTS}/timing.csv", "timing_table"),
@@ -21,6 +20,7 @@ rule timing:
         mem_mb=500,
         runtime=10,
     params:
+        library=library("timing"),
         config=settings("timing"),
         logs=[f"{RESULTS}/logs/{job}.log" for job in jobs_of_study()],
     message:

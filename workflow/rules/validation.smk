@@ -32,7 +32,6 @@ wildcard_constraints:
 
 rule _validation_reference:
     input:
-        library=library("validation_reference"),
         configs=[str(path) for path in sorted(Path(CONFIGURATIONS, "reference").glob("*.yaml"))],
     output:
         checks=f"{VALIDATION}/checks_{{group}}.csv",
@@ -46,6 +45,7 @@ rule _validation_reference:
         mem_mb=2000,
         runtime=30,
     params:
+        library=library("validation_reference"),
         config=settings("validation"),
     message:
         "Reference cases: {wildcards.group}"
@@ -55,7 +55,6 @@ rule _validation_reference:
 
 rule _validation_claims:
     input:
-        library=library("validation_claims"),
         model=f"{RESULTS}/model.nc",
         quality=f"{RESULTS}/basis_quality.csv",
         tables=[
@@ -80,6 +79,7 @@ rule _validation_claims:
         mem_mb=3000,
         runtime=20,
     params:
+        library=library("validation_claims"),
         config=settings("validation"),
     message:
         "The paper's claims, measured"
@@ -89,7 +89,6 @@ rule _validation_claims:
 
 rule _validation_prediction_cases:
     input:
-        library=library("validation_prediction_cases"),
         model=f"{RESULTS}/model.nc",
         table=f"{RESULTS}/consistency_summary.csv",
         records=files_of_study("records"),
@@ -106,6 +105,7 @@ rule _validation_prediction_cases:
         mem_mb=3000,
         runtime=30,
     params:
+        library=library("validation_prediction_cases"),
         config=settings("validation"),
     message:
         "Equivalent linear tube against the non-linear one: {wildcards.cases}"
@@ -115,7 +115,6 @@ rule _validation_prediction_cases:
 
 rule _validation_prediction:
     input:
-        library=library("validation_prediction"),
         tables=[f"{VALIDATION}/prediction_{cases}.csv" for cases in PREDICTION_CASES],
     output:
         table=f"{VALIDATION}/prediction.csv",
@@ -130,6 +129,7 @@ rule _validation_prediction:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("validation_prediction"),
         config=settings("statistics"),
     message:
         "When the equivalent linear model may be used"
@@ -140,7 +140,6 @@ rule _validation_prediction:
 rule validation:
     """Reference cases, frequencies, convergence and the claims of the paper, on one page."""
     input:
-        library=library("validation"),
         checks=PAGE_CHECKS,
         order=f"{VALIDATION}/order_impacts.csv",
         claims=f"{VALIDATION}/claims.csv",
@@ -162,6 +161,7 @@ rule validation:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("validation"),
         config=settings("statistics"),
     message:
         f"Validation: every comparison in one table, and the page {VALIDATION}/index.html"

@@ -36,8 +36,6 @@ wildcard_constraints:
 
 
 rule _validation_convergence_frequencies:
-    input:
-        library=library("validation_convergence_frequencies"),
     output:
         tables=CONVERGENCE_TABLES["frequencies"],
         figures=CONVERGENCE_FIGURE_FILES["frequencies"],
@@ -50,6 +48,7 @@ rule _validation_convergence_frequencies:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("validation_convergence_frequencies"),
         config=settings("validation"),
     message:
         "Convergence of frequencies with mesh and contact points"
@@ -58,8 +57,6 @@ rule _validation_convergence_frequencies:
 
 
 rule _validation_convergence_runs:
-    input:
-        library=library("validation_convergence_runs"),
     output:
         table="results/validation/convergence_runs_{axis}.csv",
     log:
@@ -71,6 +68,7 @@ rule _validation_convergence_runs:
         mem_mb=2000,
         runtime=30,
     params:
+        library=library("validation_convergence_runs"),
         config=settings("validation"),
     message:
         "Impacting runs along the axis {wildcards.axis}"
@@ -80,7 +78,6 @@ rule _validation_convergence_runs:
 
 rule _validation_convergence_statistics:
     input:
-        library=library("validation_convergence_statistics"),
         runs=expand("results/validation/convergence_runs_{axis}.csv", axis=CONVERGENCE_AXES),
     output:
         tables=CONVERGENCE_TABLES["statistics"],
@@ -94,6 +91,7 @@ rule _validation_convergence_statistics:
         mem_mb=1000,
         runtime=10,
     params:
+        library=library("validation_convergence_statistics"),
         config=settings("validation"),
     message:
         "Convergence of linear modes, energy and response statistics with step and modes"
@@ -102,8 +100,6 @@ rule _validation_convergence_statistics:
 
 
 rule _validation_convergence_spectra:
-    input:
-        library=library("validation_convergence_spectra"),
     output:
         tables=CONVERGENCE_TABLES["spectra"],
         figures=CONVERGENCE_FIGURE_FILES["spectra"],
@@ -116,6 +112,7 @@ rule _validation_convergence_spectra:
         mem_mb=2500,
         runtime=20,
     params:
+        library=library("validation_convergence_spectra"),
         config=settings("validation"),
     message:
         "Effective averages and leakage of spectra, scatter over seeds with impacts"

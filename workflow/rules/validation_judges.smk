@@ -1,8 +1,6 @@
 # Other codes as judges. `make judges` installs those in Python; judges_present.txt names the
 # absent.
 rule _validation_judges:
-    input:
-        library=library("validation_judges"),
     output:
         checks="results/validation/checks_judges.csv",
         oval_bend="results/validation/oval_bend.csv",
@@ -20,6 +18,7 @@ rule _validation_judges:
         mem_mb=2000,
         runtime=10,
     params:
+        library=library("validation_judges"),
         config=settings("validation"),
     message:
         "Third-party codes judge frequencies, impacts, poles and spectra"

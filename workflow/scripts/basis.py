@@ -14,7 +14,9 @@ config = StageSettings(snakemake.params.config)
 model = build_model(config)
 print(f"{model.modes} modes; residuals of the initial state: {model.initial_residual.tolist()}")
 write_model(
-    model, snakemake.output.model, file_attributes(snakemake.params.config, snakemake.input.library)
+    model,
+    snakemake.output.model,
+    file_attributes(snakemake.params.config, snakemake.params.library),
 )
 write_table(basis_frequency_errors(config), snakemake.output.quality)
 print(Stopwatch().line())

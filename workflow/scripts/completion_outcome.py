@@ -8,7 +8,7 @@ from vibroimpact.provenance import origin
 
 redirect_output(snakemake.log[0])
 campaign, prepared = read_kept(snakemake.input.campaign), read_values(snakemake.input.study)
-study, source = study_of(prepared), origin(snakemake.params.structure, snakemake.input.library)
+study, source = study_of(prepared), origin(snakemake.params.structure, snakemake.params.library)
 singles, additions = (
     [read_values(path) for path in paths]
     for paths in (snakemake.input.singles, snakemake.input.additions)

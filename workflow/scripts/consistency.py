@@ -28,7 +28,7 @@ unreached = unreached_supports(model, config.identification.groups)
 write_table(equivalent_rows(summary, unreached), snakemake.output.equivalent, EQUIVALENT_COLUMNS)
 dataset = consistency_dataset(rows, summary)
 write_record(
-    dataset.assign_attrs(file_attributes(snakemake.params.config, snakemake.input.library)),
+    dataset.assign_attrs(file_attributes(snakemake.params.config, snakemake.params.library)),
     snakemake.output.dataset,
 )
 print(f"{len(rows)} estimates")

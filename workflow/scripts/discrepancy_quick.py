@@ -14,7 +14,7 @@ from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import origin
 
 redirect_output(snakemake.log[0])
-source = origin(snakemake.params.config, snakemake.input.library)
+source = origin(snakemake.params.config, snakemake.params.library)
 with TemporaryDirectory(dir=Path(snakemake.output.verdict).parent) as work:
     run_campaign(
         snakemake.params.config,

@@ -8,6 +8,6 @@ from vibroimpact.provenance import origin
 
 redirect_output(snakemake.log[0])
 run = Run.opened(snakemake)
-source = origin(snakemake.params.config, snakemake.input.library)
+source = origin(snakemake.params.config, snakemake.params.library)
 files = [*snakemake.input.finalists, *snakemake.input.pairs]
 conclude(run, read_json(snakemake.input.screening), files, source)

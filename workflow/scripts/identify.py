@@ -13,7 +13,7 @@ redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
 model = read_model(snakemake.input.model)
 stopwatch = Stopwatch()
-source = file_attributes(snakemake.params.config, snakemake.input.library)
+source = file_attributes(snakemake.params.config, snakemake.params.library)
 for record_path, spectra_path, table_path, curves_path in zip(
     snakemake.input.records,
     snakemake.input.spectra,

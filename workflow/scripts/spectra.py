@@ -13,7 +13,7 @@ for series, path in zip(snakemake.input.series, snakemake.output.spectra, strict
     record = read_record(series)
     spectra = stopwatch.time("spectra", case_spectra, config, record)
     write_record(
-        spectra.assign_attrs(file_attributes(snakemake.params.config, snakemake.input.library)),
+        spectra.assign_attrs(file_attributes(snakemake.params.config, snakemake.params.library)),
         path,
     )
     print(f"{path} written")

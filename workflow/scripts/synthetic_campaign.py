@@ -14,7 +14,7 @@ campaign = synthetic_campaign(
     config, read_model(snakemake.input.model), snakemake.params.loads, stopwatch
 )
 write_campaign(
-    campaign.assign_attrs(file_attributes(snakemake.params.config, snakemake.input.library)),
+    campaign.assign_attrs(file_attributes(snakemake.params.config, snakemake.params.library)),
     snakemake.output.campaign,
 )
 print(f"{snakemake.output.campaign} written, loads {snakemake.params.loads} N RMS")

@@ -8,15 +8,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 ID_PATTERN = re.compile(r"load_(?P<load>[^_]+)_gap_(?P<gap>[^_]+)_seed_(?P<seed>\d+)")
 SIGNIFICANT_DIGITS = 6
+# Cases of a job at most: minutes of work beside the seconds that a job needs to start, and files
+# that Snakemake handles at once.
+CASES_PER_JOB = 1000
+SEEDS_PER_JOB = 64  # the force of each seed is in memory
+ROUND_OFF = 1e-9  # of a logarithm: a load on the edge of a bin is the lowest of its bin
+FINEST = 2**20  # bins per decade: loads closer than this stay together
 
 
 @dataclass(frozen=True, order=True)
@@ -35,12 +42,8 @@ class Case:
     @property
     def id(self) -> str:
         """The name of the case's files, e.g. load_0.5_gap_0.00028886_seed_0."""
-        return case_id(value_text(self.load_rms_N), self.gap_m, self.seed)
-
-
-def case_id(load_text: str, gap_m: float, seed: int) -> str:
-    """Return the id of a case; `load_text` may be a wildcard that stands for the load."""
-    return f"load_{load_text}_gap_{value_text(gap_m)}_seed_{seed}"
+        load, gap = value_text(self.load_rms_N), value_text(self.gap_m)
+        return f"load_{load}_gap_{gap}_seed_{self.seed}"
 
 
 def value_text(value: float) -> str:
@@ -62,6 +65,11 @@ def case_from_id(case_id: str) -> Case:
     return Case(float(match["load"]), float(match["gap"]), int(match["seed"]))
 
 
+def cases_of_files(paths: Iterable[str | Path]) -> list[Case]:
+    """Return the Case of each file that is named after one. Raises ValueError for another name."""
+    return [case_from_id(Path(path).stem) for path in paths]
+
+
 def load_values(grid: Any) -> list[float]:
     """Return the loads (load,) in N RMS of config.grid.
 
@@ -75,20 +83,50 @@ def load_values(grid: Any) -> list[float]:
     return [float(f"{load:.{SIGNIFICANT_DIGITS}g}") for load in spaced]
 
 
-def loads_by_half_decade(grid: Any) -> dict[str, list[str]]:
-    """Return {name of a half decade: texts of its loads}, both ascending.
+def batches(grid: Any, bins_per_decade: int) -> dict[str, list[Case]]:
+    """Return {name of a batch: its cases}, the cases of a job each, ascending in load.
 
-    A half decade holds loads from 10^(n/2) N up to, not including, 10^((n+1)/2) N. It is named
-    after its lower end, e.g. from_0.316. Batches made of half decades change only where a load is
-    added.
+    A decade of loads is cut into `bins_per_decade` bins at fixed places. The cases of a bin are a
+    batch; one of more than CASES_PER_JOB cases is halved, and its halves again. Seeds are taken in
+    blocks of SEEDS_PER_JOB. An added load or seed thus changes the batch that it falls into, and no
+    other, and the number of jobs grows with the grid only where jobs would become too long.
+
+    A batch is named after its lowest load, e.g. from_0.5, and with several blocks of seeds after
+    its first seed too. Its cases are in the order of all_cases.
     """
-    batches: dict[int, list[float]] = {}
-    for load in sorted(load_values(grid)):
-        batches.setdefault(math.floor(2.0 * math.log10(load) + 1e-9), []).append(load)
-    return {
-        f"from_{10 ** (half / 2):.3g}": [value_text(load) for load in loads]
-        for half, loads in batches.items()
-    }
+    loads = load_values(grid)
+    found: dict[str, list[Case]] = {}
+    for first in range(0, grid.seeds, SEEDS_PER_JOB):
+        seeds = range(first, min(first + SEEDS_PER_JOB, grid.seeds))
+        most = max(CASES_PER_JOB // (len(grid.gap_m) * len(seeds)), 1)
+        block = f"_seed_{first}" if grid.seeds > SEEDS_PER_JOB else ""
+        for together in loads_by_bin(loads, bins_per_decade, most):
+            name = f"from_{value_text(together[0])}{block}"
+            found[name] = [
+                Case(load, float(gap), seed)
+                for load, gap, seed in product(together, grid.gap_m, seeds)
+            ]
+    return found
+
+
+def loads_by_bin(loads: Sequence[float], bins_per_decade: int, most: int) -> list[list[float]]:
+    """Return the loads of each bin, ascending; a bin of more than `most` loads is cut in halves.
+
+    Bin n holds loads from 10^(n / bins_per_decade) N up to, not including, the next bin.
+    """
+    bins: dict[int, list[float]] = {}
+    for load in sorted(loads):
+        at = math.floor(bins_per_decade * math.log10(load) + ROUND_OFF)
+        bins.setdefault(at, []).append(load)
+    return [
+        part
+        for together in bins.values()
+        for part in (
+            [together]
+            if len(together) <= most or bins_per_decade > FINEST
+            else loads_by_bin(together, 2 * bins_per_decade, most)
+        )
+    ]
 
 
 def nearest_loads(grid: Any, wanted: Sequence[float]) -> list[float]:
@@ -116,14 +154,4 @@ def cases_of_load(grid: Any, load_rms_N: float) -> list[Case]:
     return [
         Case(float(load_rms_N), float(gap), seed)
         for gap, seed in product(grid.gap_m, range(grid.seeds))
-    ]
-
-
-def ids_of_load(grid: Any, load_text: str) -> list[str]:
-    """Return the ids of the cases of one load, in the order of cases_of_load.
-
-    load_text: of the load, or a wildcard that stands for it.
-    """
-    return [
-        case_id(load_text, float(gap), seed) for gap, seed in product(grid.gap_m, range(grid.seeds))
     ]
