@@ -26,6 +26,7 @@ PACKAGES = (
     "provenance",
     "stopwatch",
     "job_log",
+    "whole_file",
     "least_squares",
     "random_streams",
     "records",

@@ -35,14 +35,14 @@ def tiny_values(**changes):
 
 
 class TinyStudy:
-    """The files of a study in a folder, made by the scripts of the workflow.
+    """The files of a study in a folder of its name, made by the scripts of the workflow.
 
     values: a configuration, as YAML gives it.
     """
 
     def __init__(self, folder, values):
-        self.folder = Path(folder)
         self.config = check_config(values, "the tiny study")
+        self.folder = Path(folder) / self.config.study
         self.loads = [value_text(load) for load in load_values(self.config.grid)]
         for name in ("logs", "records", "timeseries", "spectra", "estimates", "figures"):
             (self.folder / name).mkdir(parents=True, exist_ok=True)

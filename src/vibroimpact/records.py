@@ -1,8 +1,11 @@
 """Reading and writing of netCDF files and tables. No other module opens them."""
 
 import csv
-import os
-from collections.abc import Iterable
+import io
+import json
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, closing, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,8 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from .whole_file import RecordError, whole_file
+
 # The end of a label's name in a file. By the CF conventions (1.11, sections 5 and 6.1) only numbers
 # may carry the name of their dimension, so the names of supports are support_name (support).
 LABEL = "_name"
@@ -18,9 +23,9 @@ LABEL = "_name"
 # (CF 4.4).
 TIME, TIME_IN_FILE = "time", "elapsed_time"
 
-
-class RecordError(Exception):
-    """A file that cannot be read or written; the message names it."""
+# What to do with a file that cannot be read: with a result, and with one that a user gave.
+MAKE_AGAIN = "delete it and run again"
+GIVE_AGAIN = "copy or export it again, or give another file"
 
 
 def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False) -> None:
@@ -28,7 +33,8 @@ def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False
 
     names_kept: as in RecordFile.
 
-    The file appears complete or not at all. Raises TypeError for other contents.
+    The file appears complete or not at all. Raises TypeError for other contents, RecordError where
+    the folder cannot be written or is full.
     """
     with RecordFile(path, dataset, names_kept=names_kept):
         pass
@@ -38,9 +44,10 @@ class RecordFile:
     """A netCDF-4 file that is written piece by piece inside a `with` block.
 
     It has a temporary name in the same folder until the end of the block, and is then renamed. If
-    the block raises, no file remains. Time series of float32 are not compressed: their noise does
-    not shrink, and compression takes longer than the simulation. `Dataset.to_netcdf` is not used
-    because it takes twice as long for files of many small variables.
+    the block raises, no file remains, see whole_file. Time series of float32 are not compressed:
+    their noise does not shrink, and compression takes longer than the simulation.
+    `Dataset.to_netcdf` is not used because it takes twice as long for files of many small
+    variables.
     """
 
     def __init__(
@@ -59,31 +66,36 @@ class RecordFile:
         names_kept: write all names as they are. Otherwise labels of a dimension and the time get
             the names that CF asks for, support_name and elapsed_time, which read_record undoes.
 
-        Raises TypeError for a variable that holds neither numbers nor texts.
+        Raises TypeError for a variable that holds neither numbers nor texts, RecordError where the
+        folder cannot be written or is full.
         """
         self._names = {} if names_kept else _names_in_file(dataset)
-        self._path = Path(path)
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        self._temporary = self._path.with_name(f".{self._path.name}.{os.getpid()}")
-        self._file = netCDF4.Dataset(self._temporary, "w", format="NETCDF4")
+        self._open = ExitStack()
         try:
-            self._file.set_fill_off()
-            lengths: dict = {**dataset.sizes, **(sizes or {})}
-            for name, size in lengths.items():
-                self._file.createDimension(_dimension(str(name), self._names), size)
-            unnamed = _put_variables(self._file, dataset, parts or {}, self._names)
-            self._file.setncatts(
-                {
-                    "title": "vibroimpact record",
-                    **dataset.attrs,
-                    "Conventions": "CF-1.11",
-                    "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
-                    **({"coordinates": " ".join(unnamed)} if unnamed else {}),
-                }
-            )
+            temporary = self._open.enter_context(whole_file(path))
+            self._file = netCDF4.Dataset(temporary, "w", format="NETCDF4")
+            self._open.enter_context(closing(self._file))
+            self._create(dataset, parts or {}, sizes or {})
         except BaseException:
-            self._close(keep=False)
+            self._open.__exit__(*sys.exc_info())
             raise
+
+    def _create(self, dataset: xr.Dataset, parts: dict, sizes: dict) -> None:
+        """Create dimensions, variables and attributes, and write the variables of the dataset."""
+        self._file.set_fill_off()
+        lengths: dict = {**dataset.sizes, **sizes}
+        for name, size in lengths.items():
+            self._file.createDimension(_dimension(str(name), self._names), size)
+        unnamed = _put_variables(self._file, dataset, parts, self._names)
+        self._file.setncatts(
+            {
+                "title": "vibroimpact record",
+                **dataset.attrs,
+                "Conventions": "CF-1.11",
+                "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by vibroimpact",
+                **({"coordinates": " ".join(unnamed)} if unnamed else {}),
+            }
+        )
 
     def put(self, name: str, place: Any, values: np.ndarray) -> None:
         """Write values into a part, at an index or slices."""
@@ -92,16 +104,8 @@ class RecordFile:
     def __enter__(self) -> "RecordFile":
         return self
 
-    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        self._close(keep=kind is None)
-
-    def _close(self, keep: bool) -> None:
-        try:
-            self._file.close()
-            if keep:
-                os.replace(self._temporary, self._path)
-        finally:
-            self._temporary.unlink(missing_ok=True)
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> bool | None:
+        return self._open.__exit__(kind, error, trace)
 
 
 def _names_in_file(dataset: xr.Dataset) -> dict[str, str]:
@@ -174,34 +178,40 @@ def read_record(path: str | Path, names: Iterable[str] | None = None) -> xr.Data
 
     names: the variables wanted; all of them by default.
 
-    Raises RecordError when there is no such file or it is not netCDF, KeyError when a variable is
-    missing.
+    Raises RecordError when there is no such file, it is not netCDF, or lacks a variable.
     """
+    with _opened(path, MAKE_AGAIN) as file:
+        file.set_auto_maskandscale(False)
+        names = list(file.variables) if names is None else list(names)
+        missing = [name for name in names if name not in file.variables]
+        if missing:
+            raise RecordError(
+                f"{path}: has no variable '{missing[0]}': it is a file of another kind or version:"
+                f" {MAKE_AGAIN}"
+            )
+        auxiliary = set(getattr(file, "coordinates", "").split())
+        data = {}
+        for name in names:
+            data[name], others = _variable(file.variables[name])
+            auxiliary.update(others)
+        sizes = {str(dim) for variable in data.values() for dim in variable.dims}
+        for coordinate in ((auxiliary | sizes) & set(file.variables)) - set(data):
+            data[coordinate] = _variable(file.variables[coordinate])[0]
+        attributes = {
+            name: file.getncattr(name) for name in file.ncattrs() if name != "coordinates"
+        }
+        labels = {name for name in auxiliary if _labels_of(file, name)}
+    return _with_own_names(data, auxiliary, labels, attributes)
+
+
+@contextmanager
+def _opened(path: str | Path, remedy: str) -> Iterator[netCDF4.Dataset]:
+    """Open a netCDF file to read it. Raises RecordError, also where reading in the block fails."""
     try:
         with netCDF4.Dataset(path) as file:
-            file.set_auto_maskandscale(False)
-            auxiliary = set(getattr(file, "coordinates", "").split())
-            data = {}
-            for name in file.variables if names is None else names:
-                data[name], others = _variable(file.variables[name])
-                auxiliary.update(others)
-            if names is not None:
-                coordinates = {
-                    *auxiliary,
-                    *(dim for variable in data.values() for dim in variable.dims),
-                } & set(file.variables)
-                data.update(
-                    {name: _variable(file.variables[name])[0] for name in coordinates - set(data)}
-                )
-            attributes = {
-                name: file.getncattr(name) for name in file.ncattrs() if name != "coordinates"
-            }
-            labels = {name for name in auxiliary if _labels_of(file, name)}
-    except OSError as error:
-        raise RecordError(
-            f"{path}: cannot be read as netCDF ({error}): delete it and run again"
-        ) from error
-    return _with_own_names(data, auxiliary, labels, attributes)
+            yield file
+    except (OSError, RuntimeError) as error:  # netCDF4 gives the latter for damaged data
+        raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
 
 
 def _labels_of(file: netCDF4.Dataset, name: str) -> bool:
@@ -237,29 +247,26 @@ def _variable(stored: netCDF4.Variable) -> tuple[xr.Variable, list[str]]:
 
 
 def read_attributes(path: str | Path) -> dict[str, Any]:
-    """Return the global attributes of a netCDF file. Raises RecordError."""
-    try:
-        with netCDF4.Dataset(path) as file:
-            return {name: file.getncattr(name) for name in file.ncattrs()}
-    except OSError as error:
-        raise RecordError(
-            f"{path}: cannot be read as netCDF ({error}): delete it and run again"
-        ) from error
+    """Return the global attributes of a file of write_record. Raises RecordError."""
+    with _opened(path, MAKE_AGAIN) as file:
+        return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def read_dataset(path: str | Path) -> xr.Dataset:
+def read_dataset(path: str | Path, remedy: str = GIVE_AGAIN) -> xr.Dataset:
     """Return the dataset of any netCDF file, decoded by the CF conventions; the time of a record is
-    called `time`, as in read_record. Raises RecordError.
+    called `time`, as in read_record.
+
+    remedy: what to do where it cannot be read: GIVE_AGAIN for a file that a user gave, MAKE_AGAIN
+        for a result.
+    Raises RecordError.
     """
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             own = {} if TIME in dataset.sizes else {TIME_IN_FILE: TIME}
             names = {name: own[name] for name in (*dataset.variables, *dataset.dims) if name in own}
             return dataset.load().rename(names)
-    except OSError as error:
-        raise RecordError(
-            f"{path}: cannot be read as netCDF ({error}): delete it and run again"
-        ) from error
+    except (OSError, RuntimeError) as error:
+        raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
 
 
 def read_numeric_variables(path: str | Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
@@ -318,49 +325,70 @@ def write_table(rows: list[dict], path: str | Path, columns: tuple[str, ...] = (
 
 
 def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> None:
-    """Write rows of plain Python values under a header as CSV, whole or not at all."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with open(temporary, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(columns)
-            writer.writerows(rows)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    """Write rows of plain Python values under a header as CSV, whole or not at all.
+
+    Raises RecordError where the folder cannot be written or is full.
+    """
+    with (
+        whole_file(path) as temporary,
+        open(temporary, "w", newline="", encoding="utf-8") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(rows)
 
 
 def write_text(text: str, path: str | Path) -> None:
-    """Write a text file, whole or not at all."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
+    """Write a text file, whole or not at all.
+
+    Raises RecordError where the folder cannot be written or is full.
+    """
+    with whole_file(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def read_text(path: str | Path) -> str:
-    """Return the text of a file. Raises RecordError when there is no such file."""
+    """Return the text of a file. Raises RecordError when there is no such file, or no text."""
     try:
         return Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise RecordError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise RecordError(f"{path}: is not text in UTF-8 ({error.reason}): {MAKE_AGAIN}") from error
 
 
-def read_table(path: str | Path) -> list[dict[str, Any]]:
-    """Return the rows of a CSV table; what reads as a number becomes one.
+def read_json(path: str | Path) -> Any:
+    """Return the values of a JSON file. Raises RecordError when it is not there or is no JSON."""
+    try:
+        return json.loads(read_text(path))
+    except json.JSONDecodeError as error:
+        raise RecordError(f"{path}: is not JSON ({error}): {MAKE_AGAIN}") from error
 
-    Raises RecordError when there is no such file.
+
+def read_table(path: str | Path, texts: Iterable[str] = ()) -> list[dict[str, Any]]:
+    """Return the rows of a CSV table of write_table; what reads as a number becomes one.
+
+    texts: columns whose values stay texts: a name may read as a number.
+
+    Raises RecordError when there is no such file, it is empty, or a row is not whole.
     """
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            return [
-                {key: _number(value) for key, value in row.items()} for row in csv.DictReader(file)
-            ]
-    except OSError as error:
-        raise RecordError(f"{path}: cannot be read ({error.strerror})") from error
+        columns, *rows = list(csv.reader(io.StringIO(read_text(path), newline=""))) or [[]]
+    except csv.Error as error:
+        raise RecordError(f"{path}: is not a CSV table ({error}): {MAKE_AGAIN}") from error
+    if not columns:
+        raise RecordError(f"{path}: is empty: {MAKE_AGAIN}")
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(columns):
+            raise RecordError(
+                f"{path}: row {number} has {len(row)} values for {len(columns)} columns:"
+                f" {MAKE_AGAIN}"
+            )
+    kinds = [str if column in texts else _number for column in columns]
+    return [
+        {column: kind(text) for column, kind, text in zip(columns, kinds, row, strict=True)}
+        for row in rows
+    ]
 
 
 def _plain(value):

@@ -96,7 +96,7 @@ def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
     some = records.read_record(tmp_path / "some.nc", ["a", "c"])
     assert some.equals(dataset[["a", "c"]]) and set(some.coords) == {"x", "beside"}
     assert records.read_record(tmp_path / "some.nc").equals(dataset)
-    with pytest.raises(KeyError):
+    with pytest.raises(records.RecordError, match="some.nc: has no variable 'none'.*run again"):
         records.read_record(tmp_path / "some.nc", ["none"])
 
 

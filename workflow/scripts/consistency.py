@@ -4,10 +4,11 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.linear.support_groups import unreached_supports
 from vibroimpact.provenance import file_attributes
-from vibroimpact.records import read_table, write_record, write_table
+from vibroimpact.records import write_record, write_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.agreement_dataset import consistency_dataset
+from vibroimpact.study.case_files import read_estimates
 from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS, equivalent_rows
 from vibroimpact.study.method_agreement import (
     COLLAPSE_COLUMNS,
@@ -19,7 +20,7 @@ from vibroimpact.study.method_agreement import (
 redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
 model = read_model(snakemake.input.model)
-rows = consistency_rows([read_table(path) for path in snakemake.input.tables])
+rows = consistency_rows(read_estimates(snakemake.input.tables, model, config.identification.groups))
 summary = summary_rows(rows)
 write_table(rows, snakemake.output.table)
 write_table(summary, snakemake.output.summary)

@@ -1,8 +1,9 @@
 """Refine a finalist by direct simulation."""
 
-from vibroimpact.discrepancy.jobs import finalist, read_json
+from vibroimpact.discrepancy.jobs import finalist
 from vibroimpact.discrepancy.run import Run
 from vibroimpact.job_log import redirect_output
+from vibroimpact.records import read_json
 
 redirect_output(snakemake.log[0])
 finalist(

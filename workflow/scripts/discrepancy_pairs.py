@@ -1,8 +1,9 @@
 """Choose the pairs of effects to simulate, where one effect leaves something."""
 
-from vibroimpact.discrepancy.jobs import pairs, read_json
+from vibroimpact.discrepancy.jobs import pairs
 from vibroimpact.discrepancy.run import Run
 from vibroimpact.job_log import redirect_output
+from vibroimpact.records import read_json
 
 redirect_output(snakemake.log[0])
 run = Run.opened(snakemake)

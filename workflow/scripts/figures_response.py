@@ -6,14 +6,14 @@ from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import overlay, psd_table, response
 from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_record
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_files import read_case
 
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
 campaign = read_campaign(snakemake.input.campaign)
-spectra = psd_table.spectra_shown(config, snakemake.input.spectra, read_record)
+spectra = psd_table.spectra_shown(config, snakemake.input.spectra, read_case)
 responses = psd_table.gather(config, model, spectra)
 sheets = [
     *overlay.figure_05_overlay(config, model, responses, campaign),

@@ -5,9 +5,10 @@ from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ, identify_case
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import file_attributes
-from vibroimpact.records import read_record, write_record, write_table
+from vibroimpact.records import write_record, write_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_files import read_case
 
 redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)
@@ -21,8 +22,8 @@ for record_path, spectra_path, table_path, curves_path in zip(
     snakemake.output.curves,
     strict=True,
 ):
-    record = read_record(record_path, RECORD_READ)
-    spectra = read_record(spectra_path, SPECTRA_READ)
+    record = read_case(record_path, RECORD_READ)
+    spectra = read_case(spectra_path, SPECTRA_READ)
     estimates, curves = stopwatch.time(
         "identification", identify_case, config, model, record, spectra
     )

@@ -3,14 +3,15 @@
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import file_attributes
-from vibroimpact.records import read_record, write_record
+from vibroimpact.records import write_record
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_files import read_case
 from vibroimpact.study.case_spectra import case_spectra
 
 redirect_output(snakemake.log[0])
 config, stopwatch = StageSettings(snakemake.params.config), Stopwatch()
 for series, path in zip(snakemake.input.series, snakemake.output.spectra, strict=True):
-    record = read_record(series)
+    record = read_case(series)
     spectra = stopwatch.time("spectra", case_spectra, config, record)
     write_record(
         spectra.assign_attrs(file_attributes(snakemake.params.config, snakemake.params.library)),

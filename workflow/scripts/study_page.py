@@ -8,7 +8,7 @@ from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of
 from vibroimpact.figures.study.checks import limits
 from vibroimpact.figures.study_summary import study_summary
 from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_attributes, read_record, read_table, write_text
+from vibroimpact.records import read_attributes, read_table, write_text
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.equivalent_answer import answers, unmoved
@@ -16,6 +16,7 @@ from vibroimpact.reports.study_content import StudyContent, provenance
 from vibroimpact.reports.study_page import study_page
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_files import read_case
 from vibroimpact.study.timing import timing_so_far
 
 redirect_output(snakemake.log[0])
@@ -35,13 +36,13 @@ stages = {
 content = StudyContent(
     config,
     answers(summary, tables.get("equivalent"), direction_of(config)),
-    study_statistics(given.records, read_record),
+    study_statistics(given.records, read_case),
     limits(config.integration),
     provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
     unmoved(tables.get("equivalent")),
 )
 model = read_model(given.model)
-files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_record)
+files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_case)
 captions = {caption.name: caption for caption in map(read_caption, given.captions)}
 page = study_page(content, study_plots(content, files), pictures(given.figures, captions))
 write_text(page, snakemake.output.page)

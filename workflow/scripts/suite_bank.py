@@ -6,6 +6,7 @@ from pathlib import Path
 from vibroimpact.acceptance.shards import suite_of
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact.job_log import redirect_output
+from vibroimpact.whole_file import whole_file
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign
 
 redirect_output(snakemake.log[0])
@@ -36,4 +37,5 @@ run_campaign(
     draw=suite["draw"],
     workers=snakemake.threads,
 )
-(folder / "tables.pickle").write_bytes(pickle.dumps(tables))
+with whole_file(folder / "tables.pickle") as temporary:
+    temporary.write_bytes(pickle.dumps(tables))

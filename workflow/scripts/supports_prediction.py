@@ -4,9 +4,10 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ
 from vibroimpact.job_log import redirect_output
 from vibroimpact.linear.support_groups import ALL
-from vibroimpact.records import read_record, read_table, write_table
+from vibroimpact.records import read_table, write_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.case_files import read_case
 from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS
 from vibroimpact.validation.prediction import supports
 
@@ -14,10 +15,10 @@ redirect_output(snakemake.log[0])
 settings, model = snakemake.params.config, read_model(snakemake.input.model)
 of_all = {**settings, "identification": {**settings["identification"], "groups": ALL}}
 records = [
-    read_record(path, (*RECORD_READ, *supports.RECORD_READ)) for path in snakemake.input.records
+    read_case(path, (*RECORD_READ, *supports.RECORD_READ)) for path in snakemake.input.records
 ]
 spectra = [
-    read_record(path, (*SPECTRA_READ, *supports.SPECTRA_READ)) for path in snakemake.input.spectra
+    read_case(path, (*SPECTRA_READ, *supports.SPECTRA_READ)) for path in snakemake.input.spectra
 ]
 one = supports.one_for_all(StageSettings(of_all), model, records, spectra)
 equivalent = {supports.ONE: one, supports.EACH: read_table(snakemake.input.equivalent)}

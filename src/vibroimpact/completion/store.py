@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.campaign.file import read_campaign, write_campaign
-from vibroimpact.records import plain_values
+from vibroimpact.records import plain_values, read_json, write_text
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
 from .trial import Term, Trial
@@ -58,15 +58,12 @@ def trial_of(values):
 
 def write_values(values, path):
     """Write plain values as JSON; numbers that are not finite become null."""
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
-    Path(path).write_text(
-        json.dumps(plain_values(values), indent=1, allow_nan=False) + "\n", encoding="utf-8"
-    )
+    write_text(json.dumps(plain_values(values), indent=1, allow_nan=False) + "\n", path)
 
 
 def read_values(path):
     """Return the values of a JSON file."""
-    return json.loads(Path(path).read_text(encoding="utf-8"))
+    return read_json(path)
 
 
 def write_kept(campaign, path):

@@ -3,14 +3,13 @@ under a random force in the band.
 """
 
 import re
-from pathlib import Path
 
 import numpy as np
 import yaml
 
 from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.contact.local_elements import COLUMNS
-from vibroimpact.records import plain_values
+from vibroimpact.records import plain_values, write_text
 
 from .local_laws import LAWS
 from .store import trial_of
@@ -97,10 +96,10 @@ def write_configuration(completed, campaign, study, path):
         width=150,
         default_flow_style=None,
     )
-    Path(path).write_text(
+    write_text(
         f"# {study.name}: measured modes completed with {completed['chosen']}. Units are in the"
         " keys; shapes are in kg^-1/2.\n# There is no gap in it: gap_m is not used.\n" + text,
-        encoding="utf-8",
+        path,
     )
 
 

@@ -2,8 +2,9 @@
 names of candidates.
 """
 
-import json
 from pathlib import Path
+
+from vibroimpact.records import read_json
 
 QUICK_S = 16.0  # records are cut to it where the run must be quick
 NULL_PARTS = (
@@ -15,7 +16,7 @@ def screened_names(path):
     """Return the names of the candidates that the first job (its file) left to be screened by
     simulation.
     """
-    return json.loads(Path(path).read_text(encoding="utf-8"))["screened"]
+    return read_json(path)["screened"]
 
 
 def screened_files(names, folder, bank=""):
@@ -31,9 +32,9 @@ def screened_files(names, folder, bank=""):
 
 def finalist_names(path):
     """Return the names of the finalists that a screening file names."""
-    return list(json.loads(Path(path).read_text(encoding="utf-8"))["finalists"])
+    return list(read_json(path)["finalists"])
 
 
 def pair_names(path):
     """Return the names of the pairs that a file of pairs names."""
-    return list(json.loads(Path(path).read_text(encoding="utf-8"))["pairs"])
+    return list(read_json(path)["pairs"])

@@ -8,7 +8,7 @@ from dataclasses import asdict
 import numpy as np
 
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.records import read_text, write_text
+from vibroimpact.records import write_text
 
 from . import naming, priors, second, store
 from .bank import described
@@ -412,8 +412,3 @@ def pairs(run, files, screened, path, quick=False):
         ),
         path,
     )
-
-
-def read_json(path):
-    """Return the content of a JSON file."""
-    return json.loads(read_text(path))

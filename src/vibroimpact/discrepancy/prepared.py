@@ -12,7 +12,7 @@ from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
-from vibroimpact.records import read_text, write_text
+from vibroimpact.records import read_json, write_text
 
 from . import priors
 from .candidates import candidate_named, local_candidates, not_testable
@@ -94,7 +94,7 @@ class Prepared:
     @classmethod
     def read(cls, path):
         """Return the Prepared of a file."""
-        return cls(**json.loads(read_text(path)))
+        return cls(**read_json(path))
 
 
 def usable_campaign(path, checks):

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 import xarray as xr
 
-from vibroimpact.records import read_dataset, read_table, read_text
+from vibroimpact.records import MAKE_AGAIN, read_dataset, read_json, read_table
 from vibroimpact.verdict.content import Verdict
 from vibroimpact.verdict.file import read_verdict
 
@@ -34,9 +33,7 @@ def read_results(folder):
     verdict = read_verdict(folder / "verdict.json")
     ranking = read_table(folder / "ranking.csv") if (folder / "ranking.csv").is_file() else []
     order = ["+".join(sorted(str(row["ids"]).split("+"))) for row in ranking]
-    candidates = [
-        json.loads(read_text(file)) for file in sorted((folder / "candidates").glob("*.json"))
-    ]
+    candidates = [read_json(file) for file in sorted((folder / "candidates").glob("*.json"))]
     keys = {id(candidate): "+".join(sorted(candidate["ids"])) for candidate in candidates}
     candidates.sort(
         key=lambda candidate: (
@@ -66,5 +63,5 @@ def best_places(rows):
 
 def _map(path):
     """Return the map of a file, None where there is no file or nothing in it."""
-    data = read_dataset(path) if path.is_file() else None
+    data = read_dataset(path, MAKE_AGAIN) if path.is_file() else None
     return data if data is not None and "D" in data else None

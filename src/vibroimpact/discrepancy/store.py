@@ -3,10 +3,13 @@ inside them.
 """
 
 import json
+import zipfile
 from dataclasses import asdict
-from pathlib import Path as File
 
 import numpy as np
+
+from vibroimpact.records import MAKE_AGAIN
+from vibroimpact.whole_file import RecordError, whole_file
 
 from .candidates import candidate_named
 from .finalists import Finalist
@@ -24,17 +27,20 @@ EMPTY = "empty"  # what a job writes where there is nothing to do
 
 def save(path, **arrays):
     """Write arrays to a .npz file, whole or not at all."""
-    path = File(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(path.name + ".partial.npz")
-    np.savez(partial, **arrays)
-    partial.replace(path)
+    with whole_file(path) as temporary, temporary.open("wb") as file:
+        np.savez(file, **arrays)
 
 
 def load(path):
-    """Return {name: array} of a .npz file, None where a job had nothing to do."""
-    with np.load(path, allow_pickle=False) as data:
-        return None if EMPTY in data else {name: data[name] for name in data.files}
+    """Return {name: array} of a .npz file, None where a job had nothing to do.
+
+    Raises RecordError where it cannot be read.
+    """
+    try:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as data:
+            return None if EMPTY in data else {name: data[name] for name in data.files}
+    except (OSError, EOFError, ValueError, AttributeError, TypeError, zipfile.BadZipFile) as error:
+        raise RecordError(f"{path}: cannot be read as .npz ({error}): {MAKE_AGAIN}") from error
 
 
 def save_empty(path):

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.records import read_json
 
 from . import jobs
 from .bank import lacking
@@ -116,4 +117,4 @@ def _kept(file, make):
     """Return the content of a JSON file, made where it is not there."""
     if not file.is_file():
         make(file)
-    return jobs.read_json(file)
+    return read_json(file)

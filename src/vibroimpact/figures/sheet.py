@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import repeat
 from pathlib import Path
@@ -19,7 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from vibroimpact.records import write_cells
+from vibroimpact.records import write_cells, write_text
+from vibroimpact.whole_file import whole_file
 
 from .style import label_of, shown, tidy_log_axis
 
@@ -211,7 +211,6 @@ class Sheet:
         The folder is created where it is missing.
         """
         folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
         for axis in (
             axis
             for axes in self.figure.axes
@@ -234,16 +233,12 @@ class Sheet:
         )
         columns = self.columns()
         write_cells(columns, self.cells(columns), folder / f"{self.name}.csv")
-        (folder / f"{self.name}.txt").write_text(self.caption + "\n", encoding="utf-8")
+        write_text(self.caption + "\n", folder / f"{self.name}.txt")
 
     def _write(self, folder, suffix, write, **options):
-        """Write one file under a temporary name, then rename it: no partial file remains."""
-        temporary = folder / f".{self.name}.{os.getpid()}.{suffix}"
-        try:
+        """Write one file, whole or not at all."""
+        with whole_file(folder / f"{self.name}.{suffix}") as temporary:
             write(temporary, **options)
-            os.replace(temporary, folder / f"{self.name}.{suffix}")
-        finally:
-            temporary.unlink(missing_ok=True)
 
     def columns(self) -> list[str]:
         """Return the names of the table's columns."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from vibroimpact.reports.study_content import MOST_LOADS, StudyContent
 from vibroimpact.reports.study_statistics import SEVERAL
 from vibroimpact.reports.study_tables import Table, answer_table, spread_evenly
 from vibroimpact.reports.study_words import load_label, place_in_words
+from vibroimpact.whole_file import whole_file
 
 from .printed_page import LEFT_PT, PrintedPage, height_pt
 from .style import GAP_COLOURS, GAP_MARKERS, label_of, shown, tidy_log_axis
@@ -26,17 +26,13 @@ FIGURE_PT, LEAST_PT, HEADING_PT, GAP_LINE_PT = 190.0, 99.0, 27.0, 14.0
 
 def study_summary(content: StudyContent, path: str | Path) -> None:
     """Write the two pages of a study as PDF, whole or not at all."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     pages = summary_pages(content)
-    try:
-        with PdfPages(temporary, metadata={"Title": content.name, "CreationDate": None}) as pdf:
-            for page in pages:
-                pdf.savefig(page.figure)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with (
+        whole_file(path) as temporary,
+        PdfPages(temporary, metadata={"Title": content.name, "CreationDate": None}) as pdf,
+    ):
+        for page in pages:
+            pdf.savefig(page.figure)
 
 
 def summary_pages(content: StudyContent) -> list[PrintedPage]:
