@@ -8,6 +8,7 @@ rule _basis:
     output:
         model=f"{RESULTS}/model.nc",
         quality=reported(f"{RESULTS}/basis_quality.csv", "basis_quality_table"),
+        accuracy=reported(f"{RESULTS}/model_accuracy.csv"),
     log:
         f"{RESULTS}/logs/basis.log",
     benchmark:
