@@ -18,7 +18,7 @@ wildcard_constraints:
 checkpoint _discrepancy_prepare:
     input:
         library=library("discrepancy_prepare"),
-        campaign=requested("campaign", "FILE"),
+        campaign=after_model_checks(MODEL, MODEL_FILES, requested("campaign", "FILE")),
     output:
         prepared=f"{DISCREPANCY}/prepared.json",
     log:

@@ -4,7 +4,7 @@
 rule _basis:
     input:
         library=library("basis"),
-        matrices=matrix_files(),
+        matrices=after_model_checks(STUDY, STUDY_FILES, matrix_files()),
     output:
         model=f"{RESULTS}/model.nc",
         quality=reported(f"{RESULTS}/basis_quality.csv", "basis_quality_table"),
