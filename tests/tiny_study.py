@@ -81,7 +81,12 @@ class TinyStudy:
     def simulate(self):
         """The model, and the records, time series and spectra of every case."""
         model = self.path("model.nc")
-        self.run("basis", {}, {"model": model, "quality": self.path("basis_quality.csv")})
+        outputs = {
+            "model": model,
+            "quality": self.path("basis_quality.csv"),
+            "accuracy": self.path("model_accuracy.csv"),
+        }
+        self.run("basis", {}, outputs)
         for load in self.loads:
             series, spectra = (self.files(kind, load=load) for kind in ("timeseries", "spectra"))
             outputs = {"records": self.files("records", load=load), "series": series}

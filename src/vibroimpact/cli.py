@@ -213,16 +213,16 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
     from vibroimpact.study.cases import all_cases
 
     config = check_config(data, path)
-    problems = [f"{path}: {problem}" for problem in _problems_of_files(config)]
+    problems, warnings = _problems_of_model(config)
     if problems:
-        return None, problems
+        return None, [f"{path}: {problem}" for problem in problems]
     aim = "with identification" if config.identification is not None else "without identification"
     return (
         f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"
         f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
         f" excitation of kind {config.excitation.kind},"
         f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}",
-        [],
+        [f"{path}: warning: {warning}" for warning in warnings],
     )
 
 
@@ -260,16 +260,12 @@ def _named(config) -> str:
     return words
 
 
-def _problems_of_files(config) -> list[str]:
-    """Return the problems of the matrices and of the measured force that a configuration names."""
-    problems = []
-    if config.structure.kind == "matrices":
-        from vibroimpact.structure.point_structure import build_point_structure
+def _problems_of_model(config) -> tuple[list[str], list[str]]:
+    """Return (problems of the model and of the measured force of a study, warnings)."""
+    from vibroimpact.study.model_checks import check_model
 
-        try:
-            build_point_structure(config)
-        except ValueError as error:
-            problems.append(str(error))
+    found = check_model(config)
+    problems = list(found.problems)
     if config.excitation.kind == "measured":
         from vibroimpact.excitation.force_files import ForceFileError, read_force
 
@@ -278,7 +274,7 @@ def _problems_of_files(config) -> list[str]:
             read_force(force.file, force.variable, force.sampling_frequency_Hz)
         except ForceFileError as error:
             problems.append(str(error))
-    return problems
+    return problems, list(found.warnings)
 
 
 def _sidecar(path: str) -> tuple[str | None, list[str]]:

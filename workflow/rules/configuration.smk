@@ -144,6 +144,7 @@ def own_structure():
 
 
 STUDY = checked_config()
+STUDY_FILES = " + ".join(os.path.relpath(file) for file in workflow.configfiles)
 OWN = own_structure()
 if OWN is not None and QUICK:
     sys.exit(
@@ -151,4 +152,5 @@ if OWN is not None and QUICK:
         " quick mode: leave it out, or narrow band_Hz and candidates"
     )
 MODEL = checked_model()
+MODEL_FILES = STUDY_FILES if MODEL is STUDY else REQUEST["model"]
 RESULTS = f"results/{STUDY.study}"

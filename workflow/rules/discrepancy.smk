@@ -17,7 +17,7 @@ wildcard_constraints:
 
 checkpoint _discrepancy_prepare:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=after_model_checks(MODEL, MODEL_FILES, requested("campaign", "FILE")),
     output:
         prepared=f"{DISCREPANCY}/prepared.json",
     log:

@@ -4,7 +4,7 @@
 
 rule _discrepancy_quick:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=after_model_checks(MODEL, MODEL_FILES, requested("campaign", "FILE")),
         mode=f"{DISCREPANCY}/mode.txt",
     output:
         verdict=f"{DISCREPANCY}/verdict.json",

@@ -3,10 +3,11 @@
 
 rule _basis:
     input:
-        matrices=matrix_files(),
+        matrices=after_model_checks(STUDY, STUDY_FILES, matrix_files()),
     output:
         model=f"{RESULTS}/model.nc",
         quality=reported(f"{RESULTS}/basis_quality.csv", "basis_quality_table"),
+        accuracy=reported(f"{RESULTS}/model_accuracy.csv"),
     log:
         f"{RESULTS}/logs/basis.log",
     benchmark:

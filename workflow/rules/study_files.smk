@@ -1,6 +1,7 @@
 # The names of the files of a study, and the inputs and params that rules get from functions.
 from functools import cache
 
+from snakemake.logging import logger
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.provenance import library_digest
 from vibroimpact.reports.captions import read_caption
@@ -34,6 +35,7 @@ FIGURES = {
 TABLES = ("equivalent", "consistency", "consistency_summary", "consistency_collapse")
 CAPTIONS = as_input(ROOT / "workflow" / "report")
 
+CHECKED = []  # configurations whose model has been checked
 CASES = [case.id for case in all_cases(STUDY.grid)]
 KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
 # The cases that a job simulates: of the default study, those of one load. A job of the
@@ -78,6 +80,29 @@ def matrix_files():
         return []
     named = (STUDY.structure.mass, STUDY.structure.stiffness, STUDY.structure.damping)
     return sorted({file for file in named if file})
+
+
+def after_model_checks(config, source, files):
+    """An input function that gives files, or those that a function of wildcards gives.
+
+    In the main process it first checks the model of a configuration, once, which `source` names.
+    Exits with every problem before a job starts; a dry run sees them as well.
+    """
+
+    def checked(wildcards):
+        if workflow.is_main_process and config not in CHECKED:
+            # Imported here: a job reads the Snakefile too, and checks nothing.
+            from vibroimpact.study.model_checks import check_model
+
+            CHECKED.append(config)
+            found = check_model(config)
+            if found.problems:
+                sys.exit("\n".join(f"{source}: {text}" for text in found.problems))
+            for text in found.warnings:
+                logger.warning(f"{source}: {text}")
+        return files(wildcards) if callable(files) else files
+
+    return checked
 
 
 def files_of_cases(folder, cases, suffix="nc"):

@@ -5,6 +5,7 @@ rule _study_page:
     input:
         page=[str(file) for file in sorted(Path(SOURCE).glob("vibroimpact/reports/*study_page.*"))],
         model=f"{RESULTS}/model.nc",
+        accuracy=f"{RESULTS}/model_accuracy.csv",
         records=files_of_study("records"),
         series=series_shown(),
         spectra=files_of_study("spectra") if STUDY.identification is not None else [],

@@ -9,6 +9,7 @@ from vibroimpact.figures.study.checks import limits
 from vibroimpact.figures.study_summary import study_summary
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_attributes, read_table, write_text
+from vibroimpact.reduction.model_accuracy import mesh_warnings
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.equivalent_answer import answers, unmoved
@@ -40,6 +41,7 @@ content = StudyContent(
     limits(config.integration),
     provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
     unmoved(tables.get("equivalent")),
+    mesh_warnings(read_table(given.accuracy)),
 )
 model = read_model(given.model)
 files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_case)

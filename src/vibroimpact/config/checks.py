@@ -229,7 +229,7 @@ def _bands_resolved(spectra: Spectra, identification: Identification) -> Problem
 
 
 def _step_and_force(excitation: Excitation, integration: Integration) -> Problems:
-    highest = _highest_frequency(excitation)
+    highest = highest_frequency(excitation)
     needed = STEPS_PER_EXCITED_PERIOD * highest
     if integration.steps_per_second < needed:
         yield (
@@ -242,7 +242,7 @@ def _step_and_force(excitation: Excitation, integration: Integration) -> Problem
         )
 
 
-def _highest_frequency(excitation: Excitation) -> float:
+def highest_frequency(excitation: Excitation) -> float:
     """Return the highest excited frequency in Hz, 0 where none is stated."""
     source = excitation.signal if excitation.kind == "base_motion" else excitation
     if source.kind in ("band_limited", "turbulence"):

@@ -52,7 +52,7 @@ def _first_page(content: StudyContent) -> PrintedPage:
     page.write(content.name, LEFT_PT, page.y, 17.0, weight="bold")
     page.y -= 27.0
     page.paragraph(content.run())
-    for sentence in content.headline():
+    for sentence in [*content.warnings, *content.headline()]:
         page.paragraph(sentence, weight="bold")
     for sentence in content.contact():
         page.paragraph(sentence)

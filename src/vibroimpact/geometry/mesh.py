@@ -45,6 +45,14 @@ def mesh_arc_lengths(
     return np.array(nodes)
 
 
+def halved_mesh(nodes: np.ndarray) -> np.ndarray:
+    """Return (2 node - 1,) arc lengths in m of a mesh whose elements are cut in two.
+
+    nodes: (node,) m, ascending.
+    """
+    return np.interp(np.arange(2 * len(nodes) - 1) / 2, np.arange(len(nodes)), nodes)
+
+
 def _elements_between(
     centreline: Centreline, mesh: Any, supports: Sequence[np.ndarray], left: float, right: float
 ) -> int:

@@ -15,6 +15,7 @@ from .kernels.lanes import LANES
 from .kernels.march import initial_forces, march
 from .kernels.tables import Contact, Laws, Modal, State, Work
 from .output_filter import OutputFilter, output_filter
+from .step_stability import require_stable_step
 from .stored_energy import stored_energy
 
 # Ticks (RATIO steps) integrated in one call: their forces fit the second-level cache.
@@ -129,9 +130,10 @@ def integrate_batch(
     initial (mode, LANES): modal amplitudes at which every lane rests, see `rest_state`; the
         model's initial state is added to them.
 
-    Raises IntegrationError: the contact is too stiff for the step (before anything runs), or the
-    run diverged.
+    Raises IntegrationError: the contact is too stiff for the step, or the step makes a motion grow
+    by itself (before anything runs), or the run diverged.
     """
+    require_stable_step(model, schedule.steps_per_second, schedule.scheme)
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
     return _Run(model, schedule, gap, imperfection, drive, contraction, initial).finish(receive)
 

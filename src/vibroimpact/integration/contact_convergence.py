@@ -71,9 +71,10 @@ def checked_contraction(
             np.abs(model.local_laws.stiffness).max(initial=0.0),
         )
         raise IntegrationError(
-            f"contact stiffness {largest:.3g} N/m is too stiff for a step of"
-            f" {1 / steps_per_second:.3g} s: the contact iteration contracts by {contraction:.2g}"
-            f" only (limit {CONTRACTION_LIMIT}; dampers and friction springs count too): raise"
+            f"contact stiffness {largest:.3g} N/m, of a point of supports.stiffness_N_per_m or of"
+            f" an element, is too stiff for a step of {1 / steps_per_second:.3g} s: the contact"
+            f" iteration contracts by {contraction:.2g} only"
+            f" (limit {CONTRACTION_LIMIT}; dampers and friction springs count too): raise"
             " integration.steps_per_second to at least"
             f" {steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
         )

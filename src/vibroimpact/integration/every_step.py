@@ -12,6 +12,7 @@ from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
 from .kernels.lanes import LANES
 from .kernels.march import march
+from .step_stability import require_stable_step
 from .stored_energy import stored_energy
 
 
@@ -57,8 +58,10 @@ def integrate_every_step(
     drive: gives the force at the times first / steps_per_second, ...; index 0 is the initial state.
     rest (mode, LANES): modal amplitudes from which the initial state counts; None for 0.
 
-    Raises IntegrationError: the contact is too stiff for the step, or the run diverged.
+    Raises IntegrationError: the contact is too stiff for the step, or the step makes a motion grow
+    by itself (before anything runs), or the run diverged.
     """
+    require_stable_step(model, steps_per_second, scheme)
     contraction = checked_contraction(model, steps_per_second, scheme)
     cases, ticks = np.size(gap), -(-steps // RATIO)
     layout = ModalLayout(model, scheme)

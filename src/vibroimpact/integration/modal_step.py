@@ -75,7 +75,7 @@ def step_coefficients(
     damping (mode,): 1/s.
     dt: s.
     """
-    A, g0, g1, decay, restoring = {"newmark": _newmark, "exact": _exact}[scheme](omega, damping, dt)
+    A, g0, g1, decay, restoring = SCHEMES[scheme](omega, damping, dt)
     S = np.stack([A[1, 1] * g0[0] - A[0, 1] * g0[1], A[0, 0] * g0[1] - A[1, 0] * g0[0]]) / decay
     velocity_weights = {
         "newmark": [2.0 / dt, -1.0, 2.0 / dt, -1.0],
@@ -92,6 +92,16 @@ def step_coefficients(
         A=A,
         S=S,
     )
+
+
+def step_matrices(
+    scheme: str, omega: np.ndarray, damping: np.ndarray, dt: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A (2, 2, mode), g0 and g1 (2, mode) of the step x1 = A x0 + g0 f0 + g1 f1, see the module.
+
+    scheme, omega, damping, dt: of step_coefficients.
+    """
+    return SCHEMES[scheme](omega, damping, dt)[:3]
 
 
 Scheme = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -123,3 +133,6 @@ def _exact(omega: np.ndarray, damping: np.ndarray, dt: float) -> Scheme:
     # -(1 - tr A + det A), without the cancellation
     restoring = -(np.expm1(poles * dt) * np.expm1(other * dt)).real
     return A, step[:2, 2] * unit * dt**2 - slope, slope, np.exp(-damping * dt), restoring
+
+
+SCHEMES = {"newmark": _newmark, "exact": _exact}

@@ -3,6 +3,7 @@
 The basis is compared as a whole, family by family, and with each family left out.
 """
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.structure.tube import build_structure
 
+from .model_accuracy import ModelAccuracyError
 from .ritz_basis import (
     FAMILIES,
     DofGroup,
@@ -88,6 +90,27 @@ def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
                     for mode in range(len(full))
                 ]
     return rows
+
+
+def require_complete(rows: Iterable[dict[str, Any]], basis: ConfigPart) -> None:
+    """Raise ModelAccuracyError where the basis as a whole lacks a mode that it should have.
+
+    Supports raise the frequencies of a structure: on them it has no more modes below the cut-off of
+    the free modes than without.
+
+    rows: of basis_frequency_errors.
+    basis: section of the configuration.
+    """
+    for row in rows:
+        if row["vectors"] != "all" or row["full_Hz"] > basis.free_modes_to_Hz:
+            continue
+        if np.isnan(row["relative_error"]):
+            raise ModelAccuracyError(
+                f"basis: the reduced model has no mode at {row['full_Hz']:.6g} Hz (number"
+                f" {row['mode']} with supports of {row['stiffness_N_per_m']:g} N/m), where the full"
+                " one has: raise basis.free_modes_to_Hz, and look for elements that are very short"
+                " beside the tube"
+            )
 
 
 def _relative_error(reduced: float, full: float) -> float:

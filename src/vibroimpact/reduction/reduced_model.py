@@ -19,6 +19,7 @@ from vibroimpact.excitation.force_vectors import (
 from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.memo import Memo, content_key
+from vibroimpact.structure.definiteness import require_definite
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
 from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.structure.tube import TubeStructure, build_structure
@@ -54,17 +55,9 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     equilibrium, or the initial state is not representable (see initial_state).
     """
     tube = config.structure.kind in TUBES
-    structure = build_structure(config) if tube else build_point_structure(config)
+    structure, local_rows = full_structure(config)
     point_rows = _point_rows(structure, config)
-    structure = with_point_masses(structure, config.masses, point_rows)
-    dampers = [] if tube else structure.dampers
-    local_rows = np.vstack(
-        [
-            element_rows(config.elements, point_rows, structure.dofs),
-            *(row[None] for row, _ in dampers),
-        ]
-    )
-    omega, shapes, full_frequencies = _modes(structure, local_rows, config.basis)
+    omega, shapes, full_frequencies = _modes(structure, local_rows, config)
     if tube:
         _refuse_false_rigid_modes(structure, omega, config)
     omega, order = with_frequency_factors(omega, config.mode_frequency_factors)
@@ -86,6 +79,37 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     model = ModalModel(**fields)
     _refuse_unheld_preload(model)
     return model
+
+
+def full_structure(config: ConfigPart, halved: bool = False) -> tuple[Any, np.ndarray]:
+    """Return (TubeStructure or PointStructure with its point masses, rows of the local elements).
+
+    The rows are (row, dof), relative displacements of the elements and of the dampers of a chain.
+
+    halved: with each element of a tube's mesh cut in two.
+
+    Raises ValueError, see build_model.
+    """
+    if config.structure.kind in TUBES:
+        structure: Any = build_structure(config, halved)
+    else:
+        structure = build_point_structure(config)
+    point_rows = _point_rows(structure, config)
+    dampers = getattr(structure, "dampers", [])
+    local_rows = np.vstack(
+        [
+            element_rows(config.elements, point_rows, structure.dofs),
+            *(row[None] for row, _ in dampers),
+        ]
+    )
+    return with_point_masses(structure, config.masses, point_rows), local_rows
+
+
+def reduced_basis(config: ConfigPart) -> tuple[np.ndarray, np.ndarray]:
+    """Return (omega (mode,) rad/s, shapes (dof, mode)) of the basis before any correction."""
+    structure, local_rows = full_structure(config)
+    omega, shapes, _ = _modes(structure, local_rows, config)
+    return omega, shapes
 
 
 def _refuse_false_rigid_modes(
@@ -201,25 +225,43 @@ def _point_rows(structure: Any, config: ConfigPart) -> Callable[[str], np.ndarra
 
 
 def _modes(
-    structure: Any, local_rows: np.ndarray, basis: ConfigPart
+    structure: Any, local_rows: np.ndarray, config: ConfigPart
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (omega (mode,) rad/s, shapes (dof, mode), full frequencies (mode,) Hz).
 
     A small point structure keeps all its modes; any other is reduced to the Ritz basis.
+
+    Raises IndefiniteMatrixError.
     """
+    basis = config.basis
     rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
     matrices = map(sparse.csr_array, (structure.mass, structure.stiffness))
     arrays = [array for each in matrices for array in (each.data, each.indices, each.indptr)]
     key = content_key(repr(basis), rows, *arrays)
-    return BASES.get(key, lambda: _modes_on(structure, rows, basis))
+    names = _matrix_names(config.structure)
+    return BASES.get(key, lambda: _modes_on(structure, rows, basis, names))
+
+
+def _matrix_names(structure: ConfigPart) -> tuple[str, str]:
+    """Return what the mass and the stiffness of a structure are named in messages."""
+    if structure.kind == "matrices":
+        return str(structure.mass), str(structure.stiffness)
+    return "structure.masses", "structure.springs"
+
+
+def keeps_all_modes(structure: Any) -> bool:
+    """Return whether a structure is so small that its model has all its modes."""
+    return isinstance(structure, PointStructure) and structure.dofs <= MAX_FULL_DOFS
 
 
 def _modes_on(
-    structure: Any, rows: np.ndarray, basis: ConfigPart
+    structure: Any, rows: np.ndarray, basis: ConfigPart, names: tuple[str, str]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return what _modes does, for rows (row, dof) of contacts and elements."""
     groups = uncoupled_groups(structure.mass, structure.stiffness, rows)
-    if not isinstance(structure, PointStructure) or structure.dofs > MAX_FULL_DOFS:
+    if isinstance(structure, PointStructure):
+        require_definite(((each.dofs, each.mass, each.stiffness) for each in groups), names)
+    if not keeps_all_modes(structure):
         omega, shapes = modal_basis(structure, groups, basis)
         free = [
             eigenmodes(group.stiffness, group.mass, basis.free_modes_to_Hz)[0] for group in groups
@@ -228,6 +270,7 @@ def _modes_on(
     omega, shapes = np.zeros(structure.dofs), np.zeros((structure.dofs, structure.dofs))
     for group in groups:
         squares, inside = linalg.eigh(group.stiffness, group.mass)
+        # The negative ones are round-off: require_definite has refused any other.
         squares[squares < ZERO_SQUARE * max(squares[-1], 1.0e-300)] = 0.0
         omega[group.dofs] = np.sqrt(squares)
         shapes[np.ix_(group.dofs, group.dofs)] = inside

@@ -100,7 +100,8 @@ def rigid_body_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
     one that raises the lowest eigenvalue, scaled to a unit diagonal, to DEFINITE_AT: a shift sized
     by the highest frequency would swallow bending modes where an element is short.
     """
-    scale = 1.0 / np.sqrt(np.diag(stiffness))
+    diagonal = np.diag(stiffness)
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))  # a dof may be free on its own
     scaled = stiffness * scale * scale[:, None]
     lowest = linalg.eigh(scaled, eigvals_only=True, subset_by_index=[0, 0])[0]
     if lowest >= SINGULAR_BELOW:

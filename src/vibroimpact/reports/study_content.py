@@ -95,6 +95,7 @@ class StudyContent:
     answers: empty for a study without identification.
     limits: {residual: largest accepted value}.
     unmoved: (group of supports, direction) that the force does not move.
+    warnings: sentences on what makes the numbers wrong as they stand.
     """
 
     config: Any
@@ -103,6 +104,7 @@ class StudyContent:
     limits: Mapping[str, float]
     provenance: Provenance
     unmoved: Sequence[tuple[str, str]] = ()
+    warnings: Sequence[str] = ()
 
     @property
     def name(self) -> str:

@@ -14,7 +14,7 @@ from vibroimpact.geometry.centreline import (
     build_centreline,
 )
 from vibroimpact.geometry.directions import transverse_directions, unit_vector
-from vibroimpact.geometry.mesh import mesh_arc_lengths
+from vibroimpact.geometry.mesh import halved_mesh, mesh_arc_lengths
 from vibroimpact.geometry.sections import ROUND, section_kind
 from vibroimpact.memo import Memo
 
@@ -164,8 +164,10 @@ def element_geometry(start: np.ndarray, end: np.ndarray) -> tuple[float, np.ndar
     return float(np.linalg.norm(chord)), np.array([tangent, np.cross(second, tangent), second])
 
 
-def build_structure(config: ConfigPart) -> TubeStructure:
+def build_structure(config: ConfigPart, halved: bool = False) -> TubeStructure:
     """Return the TubeStructure of a configuration (its parts `structure` and `supports`).
+
+    halved: with each element of the mesh cut in two.
 
     Raises ValueError when a support is off the tube, or no degree of freedom is left.
     """
@@ -176,11 +178,15 @@ def build_structure(config: ConfigPart) -> TubeStructure:
         contact.arc_length.tobytes(),
         contact.support.tobytes(),
         contact.pair.tobytes(),
+        halved,
     )
-    return replace(STRUCTURES.get(key, lambda: _built(config, line, contact)), contact=contact)
+    built = STRUCTURES.get(key, lambda: _built(config, line, contact, halved))
+    return replace(built, contact=contact)
 
 
-def _built(config: ConfigPart, line: Centreline, contact: ContactPoints) -> TubeStructure:
+def _built(
+    config: ConfigPart, line: Centreline, contact: ContactPoints, halved: bool
+) -> TubeStructure:
     """Return the TubeStructure on a mesh with nodes at contact points and at the ends of fluids."""
     structure = config.structure
     stretches = fluid_stretches(structure, line)
@@ -188,6 +194,8 @@ def _built(config: ConfigPart, line: Centreline, contact: ContactPoints) -> Tube
     groups = [contact.arc_length[owner == number] for number in np.unique(owner)]
     groups += [np.array([place]) for each in stretches for place in (each.begin, each.end)]
     node_arc_length = mesh_arc_lengths(line, structure.mesh, groups)
+    if halved:
+        node_arc_length = halved_mesh(node_arc_length)
     nodes = np.array([line.position(place) for place in node_arc_length])
     middles = 0.5 * (node_arc_length[1:] + node_arc_length[:-1])
     beam = section_beam(structure.section, structure.material, structure.theory)

@@ -1,0 +1,46 @@
+"""The page of reliability has the rows that the tests state, and no others."""
+
+import ast
+import re
+
+import pytest
+
+from tests.docs.markdown import ROOT
+from tests.reliability_page import HEADERS, TITLES
+
+PAGE = (ROOT / "docs" / "reliability.md").read_text(encoding="utf-8")
+METHODS = {"fault": "faults", "inputs": "inputs", "scale": "scale"}
+
+
+def stated(section):
+    """Return the first cells that the tests state in a section, those in plain quotes."""
+    texts = set()
+    for file in sorted((ROOT / "tests").rglob("test_*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Attribute)
+                and METHODS.get(node.func.attr) == section
+                and isinstance(node.func.value, ast.Name)
+                and node.func.value.id == "reliability"
+                and isinstance(node.args[0], ast.Constant)
+            ):
+                texts.add(node.args[0].value)
+    return texts
+
+
+def on_page(section):
+    """Return the first cells of the page's table of a section."""
+    part = re.search(rf"^## {TITLES[section]}\n+((?:\|.*\n)*)", PAGE, re.M)[1]
+    return {line.split(" | ")[0].removeprefix("| ") for line in part.splitlines()[2:]}
+
+
+@pytest.mark.parametrize("section", HEADERS)
+def test_the_page_has_what_the_tests_state(section):
+    assert stated(section) - on_page(section) == set(), "run `make reliability`"
+
+
+def test_at_least_two_thousand_inputs_were_tried():
+    part = re.search(rf"^## {TITLES['inputs']}\n+((?:\|.*\n)*)", PAGE, re.M)[1]
+    tried = [int(line.split(" | ")[1]) for line in part.splitlines()[2:]]
+    assert sum(tried) >= 2000
