@@ -16,6 +16,7 @@ from vibroimpact.reports.study_content import StudyContent, provenance
 from vibroimpact.reports.study_page import study_page
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.study.run_report import flag_sentences
 from vibroimpact.study.timing import timing_so_far
 
 redirect_output(snakemake.log[0])
@@ -39,6 +40,7 @@ content = StudyContent(
     limits(config.integration),
     provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
     unmoved(tables.get("equivalent")),
+    flag_sentences(tables.get("equivalent", [])),
 )
 model = read_model(given.model)
 files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_record)

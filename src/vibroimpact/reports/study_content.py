@@ -24,7 +24,14 @@ from .study_tables import (
     stress_table,
     timing_table,
 )
-from .study_words import contact_sentences, has_own_gaps, headline, load_unit, run_sentence
+from .study_words import (
+    contact_sentences,
+    energy_sentences,
+    has_own_gaps,
+    headline,
+    load_unit,
+    run_sentence,
+)
 
 MOST_LOADS = 8  # of a table of statistics, per gap
 
@@ -95,6 +102,7 @@ class StudyContent:
     answers: empty for a study without identification.
     limits: {residual: largest accepted value}.
     unmoved: (group of supports, direction) that the force does not move.
+    flags: sentences on values that are flagged in equivalent.csv.
     """
 
     config: Any
@@ -103,6 +111,7 @@ class StudyContent:
     limits: Mapping[str, float]
     provenance: Provenance
     unmoved: Sequence[tuple[str, str]] = ()
+    flags: Sequence[str] = ()
 
     @property
     def name(self) -> str:
@@ -130,7 +139,7 @@ class StudyContent:
         if self.unmoved:
             places = ", ".join(f"{group} in {direction}" for group, direction in self.unmoved)
             sentences.append(f"No answer where the force moves no support: {places}.")
-        return sentences
+        return [*energy_sentences(self.config, self.statistics), *sentences, *self.flags]
 
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""

@@ -54,6 +54,17 @@ def _short(value: float) -> str:
     return f"{value:.2g}".replace("e+0", "e").replace("e+", "e")
 
 
+def flag_sentences(rows: Sequence[dict]) -> list[str]:
+    """Return one sentence on the flagged rows of equivalent.csv, none where there are none."""
+    flags = [str(row["flag"]) for row in rows if row.get("flag")]
+    if not flags:
+        return []
+    return [
+        f"Doubtful: {len(flags)} of {len(rows)} rows of equivalent.csv have a flag, the first:"
+        f" {flags[0]}."
+    ]
+
+
 def success_text(folder: str | Path, rows: Sequence[dict]) -> str:
     """Return what a complete study says: its headline, and where its page and tables are.
 
@@ -63,6 +74,7 @@ def success_text(folder: str | Path, rows: Sequence[dict]) -> str:
     files = [folder / name for name in MENTIONED if (folder / name).is_file()]
     figures = [folder / "figures"] if (folder / "figures").is_dir() else []
     lines = [f"Study '{folder.name}': {headline(rows)}."] if rows else []
+    lines += flag_sentences(rows)
     return "\n".join([*lines, *(f"  {path.as_posix()}" for path in [*files, *figures])])
 
 
