@@ -71,7 +71,7 @@ def estimate_from_peak(method: str, fit: PeakFit | None, tube: ReferenceTube) ->
     estimate = estimate_from_pole(method, fit, tube)
     if fit is None:
         return estimate
-    return flagged(estimate, peak_not_crossed(method, fit, tube.seen_band_Hz))
+    return flagged(estimate, peak_not_crossed(fit, tube.seen_band_Hz))
 
 
 def estimate_from_operational_pole(pole: OperationalPole | None, tube: ReferenceTube) -> Estimate:

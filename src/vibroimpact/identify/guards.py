@@ -18,12 +18,13 @@ from vibroimpact.reduction.basis_accuracy import STIFFNESSES
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .estimate import PEAK_METHODS, Estimate, flagged, joined, unresolved
-from .peak import LEVELS, PeakFit
+from .peak import LEVELS, PeakFit, level_edges
 
 # Degrees of freedom of a spectral bin. The scatter of the segments has half of them less one, so
 # that a standard error from it is known within 40 % at 8, within 25 % at the 18 of the default.
 FEWEST_AVERAGES = 8.0
 STIFFEST_CHECKED = max(STIFFNESSES)  # N/m, of the comparison of reduced with full frequencies
+FLANKS = LEVELS["peak_25th"]  # the part of a peak that has a weight in every fit
 SAME_POLE = 1.0e-3  # relative; the inverse is exact, so that a larger difference is another mode
 FROM_POLES = (*PEAK_METHODS, "lscf")
 FROM_SPECTRA = (*FROM_POLES, "ods", "broadband")
@@ -90,21 +91,23 @@ def outside_search(frequency: float, search_Hz: Sequence[float]) -> str:
     return f"the pole at {frequency:.4g} Hz is outside peak_search_Hz, {low:g} to {high:g} Hz"
 
 
-def peak_not_crossed(method: str, fit: PeakFit, band_Hz: Sequence[float]) -> str:
-    """Return that a peak does not fall to its level inside the band, or an empty text.
+def peak_not_crossed(fit: PeakFit, band_Hz: Sequence[float]) -> str:
+    """Return that a peak does not fall to 1/FLANKS of its height inside the band, or nothing.
 
-    Its width is then the fit's, seen on one side only.
+    The fit then takes bins without power for a flank. It is asked of all levels, because such a fit
+    is too narrow: its own half-power points lie inside the band where the true ones do not.
 
     band_Hz: where the force has power and the spectrum has bins.
     """
     low, high = band_Hz
-    outside = [edge for edge in fit.edges_Hz if not low <= edge <= high]
+    edges = level_edges(fit.frequency, fit.damping_ratio, FLANKS)
+    outside = [edge for edge in edges if not low <= edge <= high]
     if not outside:
         return ""
     where = " and ".join(f"{edge:.3g} Hz" if edge > 0.0 else "no frequency" for edge in outside)
     return (
-        f"the fitted peak falls to 1/{LEVELS[method]:g} at {where}, outside the band of"
-        f" {low:g} to {high:g} Hz: the width was not seen on both sides"
+        f"the fitted peak falls to 1/{FLANKS:g} at {where}, outside the band of {low:g} to"
+        f" {high:g} Hz: its width was not seen on both sides"
     )
 
 

@@ -155,7 +155,7 @@ def estimates_of_supports(case: SupportsCase, result: SupportsResult) -> list[Es
     for method, fit in poles.items():
         estimates = _estimates_by_pole(case, result, method, fit)
         if isinstance(fit, PeakFit):
-            flag = peak_not_crossed(method, fit, case.tube.seen_band_Hz)
+            flag = peak_not_crossed(fit, case.tube.seen_band_Hz)
             estimates = [flagged(estimate, flag) for estimate in estimates]
         if method == "lscf" and result.pole is not None and not result.pole.stable:
             note = f"no single pole is stable from order to order; order {result.pole.order} taken"
