@@ -3,21 +3,28 @@ the response of a known linear tube or by a simulation, and a near case does not
 """
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from tests.linear_records import LinearRecords, statistics
+from tests.made_up_study import made_up_config
 from tests.tiny_study import tiny_values
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import check_config, load_config
+from vibroimpact.figures.study.checks import limits
 from vibroimpact.identify.estimate import Estimate, table_rows, unresolved
 from vibroimpact.identify.guards import beyond_checked, guarded
-from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.identify.identify_case import identify_case, reference_tube
+from vibroimpact.identify.reference_tube import STABLE_FRACTION
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.energy_limit import energy_flag
 from vibroimpact.linear.responses import frf
+from vibroimpact.records import write_table
+from vibroimpact.reports.study_statistics import StudyStatistics
+from vibroimpact.reports.study_words import energy_sentences
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case, all_cases
 from vibroimpact.study.equivalent_table import equivalent_rows
@@ -151,8 +158,6 @@ def test_a_stiffness_at_the_end_of_its_range_is_not_resolved(tube):
 @pytest.mark.parametrize(("share", "at_edge"), [(0.8, False), (0.95, True)])
 def test_a_damping_at_the_end_of_its_family_is_not_resolved(tube, share, at_edge):
     """The family ends at 0.9 of the negative c that makes a mode unstable."""
-    from vibroimpact.identify.identify_case import reference_tube
-    from vibroimpact.identify.reference_tube import STABLE_FRACTION
 
     config, model = tube
     spectra = LinearRecords(config, SENSORS, lambda f: np.ones((31, f.size))).exact("hann")
@@ -185,7 +190,10 @@ def test_the_flags_of_some_seeds_reach_the_tables_of_a_study():
     assert row["k_N_per_m"] == 1.0e5 and row["reason_k"] == ""
     (clean,) = equivalent_rows(summary_rows(consistency_rows(tables[:3])))
     assert clean["flag"] == ""
-    assert "Doubtful: 1 of 2 rows" in success_text("results/any", [row, clean])
+    other = clean | {"load_rms_N": 6.0}
+    assert "Doubtful: 1 of 2 cases have a flag in equivalent.csv" in success_text(
+        "results/any", [row, other]
+    )
     assert "Doubtful" not in success_text("results/any", [clean])
 
 
@@ -208,11 +216,13 @@ def tables_of(config):
     return statistics_rows(record), rows, equivalent_rows(summary_rows(rows))
 
 
-def test_a_step_too_coarse_for_the_contact_is_flagged(reliability):
+def test_a_step_too_coarse_for_the_contact_is_flagged(tmp_path, reliability):
     """The residual is of order 2 in the step: 10 % at 5120 steps per second, 4 % at 10240."""
     of_record, of_methods, (answer,) = tables_of(coarse(5120))
     assert all("energy balance is open by 0.1" in row["flag"] for row in of_record)
     assert {row["method"] for row in of_methods if not row["flag"]} == {"statistical_linearisation"}
+    write_table(of_record, tmp_path / "statistics.csv")
+    assert "Doubtful: 1 of 1 cases have a flag in statistics.csv" in success_text(tmp_path, [])
     assert np.isnan(answer["k_N_per_m"]) and "energy balance is open" in answer["reason_k"]
     assert "energy balance is open" in answer["flag"]
     of_record, of_methods, (answer,) = tables_of(coarse(10240))
@@ -246,3 +256,33 @@ def test_an_unresolved_estimate_keeps_its_first_reason():
     (found,) = guarded([lost], xr.Dataset({"energy_residual": 0.2}), 18.0, (8.0, 45.0))
     assert found.note.startswith("the energy balance is open by 0.2")
     assert found.note.endswith("no peak")
+
+
+def test_the_page_names_open_energy_balances():
+    config, cases = made_up_config(), all_cases(made_up_config().grid)
+    worst = {(case.gap_m, case.load_rms_N): 0.04 for case in cases} | {(2.0e-4, 10.0): 0.117}
+
+    def sentences(limit):
+        rows = [
+            {
+                "gap_m": case.gap_m,
+                "load_rms_N": case.load_rms_N,
+                "seed": case.seed,
+                "quantity": "potential_energy_residual",
+                "of": "",
+                "value": min(worst[case.gap_m, case.load_rms_N], limit),
+            }
+            for case in cases
+        ]
+        return energy_sentences(config, StudyStatistics(cases, rows))
+
+    (sentence,) = sentences(1.0)
+    assert sentence.startswith("Not to be used: in 1 of 6 pairs of load and gap the energy balance")
+    assert "(11.7 % at 10 N RMS and a gap of 0.2 mm)" in sentence
+    assert sentences(0.05) == []
+
+
+@pytest.mark.parametrize(("rate", "accepted"), [(5120, 0.05), (20480, 0.01875)])
+def test_no_step_makes_a_lost_energy_balance_acceptable(rate, accepted):
+    values = tiny_values()["integration"] | {"scheme": "exact", "steps_per_second": rate}
+    assert limits(SimpleNamespace(**values))["potential_energy_residual"] == accepted
