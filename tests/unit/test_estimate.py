@@ -86,6 +86,7 @@ def test_rows_have_the_columns_of_the_consistency_table():
         "damping_ratio",
         "quality",
         "reason",
+        "flag",
     ]
     assert (
         [row["method"] for row in rows] == list(METHODS)

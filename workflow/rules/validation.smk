@@ -1,6 +1,14 @@
 # Verification and validation: reference cases, convergence, claims of the paper, prediction.
 VALIDATION = "results/validation"
-REFERENCE_GROUPS = ("frequencies", "impacts", "tubes", "r11_stops_10", "r11_stops_100")
+REFERENCE_GROUPS = (
+    "frequencies",
+    "impacts",
+    "tubes",
+    "r11_stops_10",
+    "r11_stops_100",
+    "r11_stops_1000",
+    "r11_one_stop",
+)
 PREDICTION_CASES = ("left_out", "gaps", "second_tube")
 
 

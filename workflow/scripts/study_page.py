@@ -18,6 +18,7 @@ from vibroimpact.reports.study_page import study_page
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
+from vibroimpact.study.run_report import flag_sentences
 from vibroimpact.study.timing import timing_so_far
 
 redirect_output(snakemake.log[0])
@@ -41,7 +42,7 @@ content = StudyContent(
     limits(config.integration),
     provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
     unmoved(tables.get("equivalent")),
-    mesh_warnings(read_table(given.accuracy)),
+    [*mesh_warnings(read_table(given.accuracy)), *flag_sentences(tables.get("equivalent", []))],
 )
 model = read_model(given.model)
 files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_case)

@@ -44,6 +44,7 @@ class BroadbandFit:
     covariance: (2, 2) of (k, c).
     curve: (bin,) fitted PSD in the unit of the measured one.
     correlation_map: (k, damping), correlations on the FamilyMap.
+    c_at_edge: whether the search ended at the least c that leaves every member stable.
     """
 
     k: float
@@ -52,6 +53,7 @@ class BroadbandFit:
     covariance: np.ndarray
     curve: np.ndarray
     correlation_map: np.ndarray
+    c_at_edge: bool = False
 
 
 def family_map(
@@ -117,6 +119,7 @@ def identify_broadband(
         covariance=covariance * np.outer(scale, scale),
         curve=curve,
         correlation_map=correlations,
+        c_at_edge=bool(c <= lowest_stable_damping(k)),
     )
 
 

@@ -1,6 +1,7 @@
 """From what each method fitted to one case to graded estimates of the equivalent support."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -12,7 +13,16 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .broadband import BroadbandFit
 from .equivalent_support import equivalent_support
-from .estimate import FREQUENCY_ERROR, Estimate, grade, mark_weak, unresolved
+from .estimate import (
+    FREQUENCY_ERROR,
+    Estimate,
+    flagged,
+    grade,
+    joined,
+    mark_weak,
+    unresolved,
+)
+from .guards import other_mode, peak_not_crossed
 from .ods import DeflectionShape, ShapeMatch
 from .operational_pole import OperationalPole
 from .peak import PeakFit
@@ -27,6 +37,7 @@ DAMPING_RATIO_LIMIT = 0.5
 LOWEST_MAC = 0.9
 # Correlation below which the best spectrum of the family does not look like the measured one.
 LOWEST_CORRELATION = 0.8
+C_AT_EDGE = "c is at the edge of the family: with less, a mode of the linear tube would be unstable"
 
 
 def estimate_from_pole(
@@ -48,7 +59,19 @@ def estimate_from_pole(
     )
     model_error = abs(support.jacobian[0, 0]) * FREQUENCY_ERROR * fit.frequency
     limit = DAMPING_RATIO_LIMIT * fit.damping_ratio * abs(support.jacobian[1, 1])
-    return grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+    estimate = grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+    if np.isfinite(estimate.k):
+        pole = (fit.frequency, fit.damping_ratio)
+        estimate = flagged(estimate, other_mode(tube.model, support.k, support.c, pole))
+    return estimate
+
+
+def estimate_from_peak(method: str, fit: PeakFit | None, tube: ReferenceTube) -> Estimate:
+    """Return the Estimate of the width of the main peak at one level."""
+    estimate = estimate_from_pole(method, fit, tube)
+    if fit is None:
+        return estimate
+    return flagged(estimate, peak_not_crossed(fit, tube.seen_band_Hz))
 
 
 def estimate_from_operational_pole(pole: OperationalPole | None, tube: ReferenceTube) -> Estimate:
@@ -97,9 +120,17 @@ def estimate_from_broadband(fit: BroadbandFit | None, tube: ReferenceTube) -> Es
     )
     limit = DAMPING_RATIO_LIMIT * abs(ratio) / tube.damping_ratio_slope(fit.k)
     estimate = grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+    if fit.c_at_edge:
+        estimate = without_damping(estimate)
     if fit.correlation < LOWEST_CORRELATION:
         estimate = mark_weak(estimate, f"correlation only {fit.correlation:.2f}")
     return estimate
+
+
+def without_damping(estimate: Estimate) -> Estimate:
+    """Return the estimate without its c, which is that of the edge of the family."""
+    note = joined(estimate.note, C_AT_EDGE)
+    return flagged(replace(estimate, c=np.nan, c_standard_error=np.nan, note=note), C_AT_EDGE)
 
 
 def comparison_estimates(

@@ -21,6 +21,7 @@ FREQUENCY_ERROR = 0.003
 MODEL_SIGMAS, CHANCE_SIGMAS = 2.0, 4.0
 # Relative standard error of k, of the model and of chance together.
 WEAK_ABOVE, UNRESOLVED_ABOVE = 0.25, 0.5
+EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched is the edge's
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class Estimate:
     frequency, damping_ratio: of the pole behind the estimate (Hz, undamped); NaN for none.
     quality: ok, weak or unresolved. It judges k with the error of the model included.
     note: the reason for the quality.
+    flag: what makes the estimate doubtful beyond its standard error, see guards; mostly empty.
     group, direction: the supports that share k and c, and the direction that they act in.
     """
 
@@ -44,6 +46,7 @@ class Estimate:
     damping_ratio: float = np.nan
     quality: str = "ok"
     note: str = ""
+    flag: str = ""
     group: str = ""
     direction: str = ""
 
@@ -84,7 +87,7 @@ def grade(
     k, error = estimate.k, np.hypot(estimate.k_standard_error, model_error)
     pole = (estimate.frequency, estimate.damping_ratio)
     if not np.isfinite(k) or not np.isfinite(error):
-        note = _joined("no finite support has this feature", estimate.note)
+        note = joined("no finite support has this feature", estimate.note)
         return unresolved(estimate.method, note, *pole)
     # Both errors have the same sensitivity, so the statistical error near k = 0 scales as the
     # model's error does.
@@ -95,23 +98,40 @@ def grade(
         reason = f"k = {k:.3g} N/m does not differ from 0 (least {floor:.3g})"
     elif not stiffness_range[0] <= k <= stiffness_range[1]:
         reason = f"k = {k:.3g} N/m is outside the range"
+    elif edge := edge_of_range(k, stiffness_range):
+        reason = edge
     elif error > UNRESOLVED_ABOVE * k:
         reason = f"standard error {error / k:.0%} of k"
     if reason:
-        return unresolved(estimate.method, _joined(reason, estimate.note), *pole)
+        return unresolved(estimate.method, joined(reason, estimate.note), *pole)
     if error > WEAK_ABOVE * k:
         estimate = mark_weak(estimate, f"standard error {error / k:.0%} of k")
     if estimate.c_standard_error > c_error_limit:
         reason = f"c = {estimate.c:.3g} +- {estimate.c_standard_error:.2g} N s/m not resolved"
-        note = _joined(reason, estimate.note)
+        note = joined(reason, estimate.note)
         estimate = replace(estimate, c=np.nan, c_standard_error=np.nan, note=note)
     return estimate
+
+
+def edge_of_range(k: float, stiffness_range: Sequence[float]) -> str:
+    """Return that k (N/m) is not inside the range that was searched, or an empty text."""
+    low, high = stiffness_range
+    if k < low * np.exp(EDGE):
+        return f"k is at or below the lower end of the range, {low:.3g} N/m"
+    if k > high * np.exp(-EDGE):
+        return f"k is at or above the upper end of the range, {high:.3g} N/m"
+    return ""
+
+
+def flagged(estimate: Estimate, flag: str) -> Estimate:
+    """Return the estimate with one more flag; an empty one adds nothing."""
+    return replace(estimate, flag=joined(estimate.flag, flag))
 
 
 def mark_weak(estimate: Estimate, note: str) -> Estimate:
     """Return the estimate with quality weak and a note; an unresolved one stays unresolved."""
     quality = "weak" if estimate.quality == "ok" else estimate.quality
-    return replace(estimate, quality=quality, note=_joined(estimate.note, note))
+    return replace(estimate, quality=quality, note=joined(estimate.note, note))
 
 
 def reason_needed(estimate: Estimate) -> bool:
@@ -144,10 +164,12 @@ def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> 
                 "damping_ratio": values["damping_ratio"],
                 "quality": values["quality"],
                 "reason": values["note"] if reason_needed(estimate) else "",
+                "flag": values["flag"],
             }
         )
     return rows
 
 
-def _joined(*notes):
+def joined(*notes: str) -> str:
+    """Return notes as one text, without the empty ones."""
     return "; ".join(note for note in notes if note)

@@ -19,12 +19,12 @@ from .estimate import (
     UNRESOLVED_ABOVE,
     WEAK_ABOVE,
     Estimate,
+    edge_of_range,
     mark_weak,
 )
 from .information import what_is_known
 from .support_fit import SupportSearch
 
-EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched is the edge's
 # c is resolved when its standard error is below one of these: of its own size, and as a loss factor
 # omega c / k at the main peak.
 C_ERROR, LOSS_ERROR = 0.5, 0.15
@@ -97,14 +97,9 @@ def graded_supports(
 
 def _why_unresolved(k: float, error: float, search: SupportSearch) -> str:
     """Return why no method could tell this k, or an empty text."""
-    low, high = search.stiffness_range
     if not np.isfinite(k) or not np.isfinite(error):
         return "no finite support has this response"
-    if np.log(k / low) < EDGE:
-        return f"k is at or below the lower end of the range, {low:.3g} N/m"
-    if np.log(high / k) < EDGE:
-        return f"k is at or above the upper end of the range, {high:.3g} N/m"
-    return ""
+    return edge_of_range(k, search.stiffness_range)
 
 
 def _with_damping(estimate: Estimate, c: float, error: float, search: SupportSearch) -> Estimate:

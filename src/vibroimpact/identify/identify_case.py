@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.integration.energy_limit import ENERGY_RESIDUALS
 from vibroimpact.linear.support_groups import acts_on_all, reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.welch import complex_values, driven_axis
@@ -18,10 +19,11 @@ from .case_estimates import (
     comparison_estimates,
     estimate_from_broadband,
     estimate_from_operational_pole,
-    estimate_from_pole,
+    estimate_from_peak,
     estimate_from_shape,
 )
 from .estimate import Estimate
+from .guards import guarded
 from .identify_supports import SupportsCase, estimates_of_supports
 from .ods import DeflectionShape, ShapeMatch, deflection_shape, match_shape
 from .operational_pole import OperationalPole, PoleSearch, operational_pole
@@ -32,7 +34,7 @@ from .segment_scatter import effective_duration
 from .supports_tube import SupportsTube
 
 # Variables of the two files that identify_case uses.
-RECORD_READ = MOMENTS
+RECORD_READ = (*MOMENTS, *ENERGY_RESIDUALS)
 SPECTRA_READ = (
     "sensor_spectra_re",
     "sensor_spectra_im",
@@ -48,12 +50,23 @@ def identify_case(
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return (estimates, dataset of the curves behind them) of one case.
 
-    A method that cannot resolve the support returns an unresolved estimate with a note.
+    A method that cannot resolve the support returns an unresolved estimate with a note. So do all
+    where the energy balance of the record is open, see guards.
 
     config: with excitation, spectra and identification.
-    record: statistics of the case (secant.MOMENTS, attributes load_rms_N and gap_m).
+    record: statistics of the case (secant.MOMENTS, the residuals of the energy balance where it has
+        them, attributes load_rms_N and gap_m).
     spectra: dataset of study.case_spectra.
     """
+    estimates, curves = _identify(config, model, record, spectra)
+    averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
+    return guarded(estimates, record, averages, search_Hz), curves
+
+
+def _identify(
+    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+) -> tuple[list[Estimate], xr.Dataset]:
+    """Return what identify_case returns, before its guards."""
     directions, modes = reached_supports(model, config.identification.groups)
     if len(directions) > 1 or not acts_on_all(directions[0], model, modes):
         return _identify_each(config, model, record, spectra)
@@ -66,7 +79,7 @@ def identify_case(
     pole = case.operational_pole(config.identification)
     shape = case.shape(peaks["peak_25th"])
     broad = case.broadband()
-    estimates = [estimate_from_pole(method, fit, tube) for method, fit in peaks.items()]
+    estimates = [estimate_from_peak(method, fit, tube) for method, fit in peaks.items()]
     estimates += [
         estimate_from_operational_pole(pole, tube),
         estimate_from_shape(shape, tube, case.averages),

@@ -14,9 +14,10 @@ import xarray as xr
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.spectra.welch import complex_values
 
-from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC
-from .estimate import Estimate, mark_weak, unresolved
+from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, without_damping
+from .estimate import Estimate, flagged, mark_weak, unresolved
 from .graded_supports import MethodResult, graded_supports
+from .guards import peak_not_crossed
 from .ods import DeflectionShape, deflection_shape
 from .operational_pole import OperationalPole, PoleSearch, operational_pole
 from .peak import LEVELS, PeakFit, find_peak, fit_peak
@@ -153,6 +154,9 @@ def estimates_of_supports(case: SupportsCase, result: SupportsResult) -> list[Es
     poles: dict[str, Any] = {**result.peaks, "lscf": result.pole}
     for method, fit in poles.items():
         estimates = _estimates_by_pole(case, result, method, fit)
+        if isinstance(fit, PeakFit):
+            flag = peak_not_crossed(fit, case.tube.seen_band_Hz)
+            estimates = [flagged(estimate, flag) for estimate in estimates]
         if method == "lscf" and result.pole is not None and not result.pole.stable:
             note = f"no single pole is stable from order to order; order {result.pole.order} taken"
             estimates = [mark_weak(estimate, note) for estimate in estimates]
@@ -215,7 +219,14 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     if fit is None:
         return _unresolved(case, "broadband", "the force has no power in the band")
     found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
-    estimates = graded_supports(found, case.tube.structure, case.search)
+    estimates = [
+        without_damping(estimate) if at_edge else estimate
+        for estimate, at_edge in zip(
+            graded_supports(found, case.tube.structure, case.search),
+            fit.values.c_at_edge,
+            strict=True,
+        )
+    ]
     if fit.correlation < LOWEST_CORRELATION:
         note = f"smallest correlation of a sensor only {fit.correlation:.2f}"
         estimates = [mark_weak(item, note) for item in estimates]

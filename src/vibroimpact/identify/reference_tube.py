@@ -73,6 +73,12 @@ def compared_bins(
     )
 
 
+def seen_band_Hz(force_band_Hz: Sequence[float], bins: Bins) -> tuple[float, float]:
+    """Return the part of the band of the force in which the spectra have bins, Hz."""
+    low, high = force_band_Hz
+    return max(low, bins.spacing_Hz), min(high, bins.highest * bins.spacing_Hz)
+
+
 class ReferenceTube:
     """Responses of the linear tube with any (k, c) at the sensors and along the shape line."""
 
@@ -107,6 +113,11 @@ class ReferenceTube:
         )
         self.excited = (self.frequency >= force_band_Hz[0]) & (self.frequency <= force_band_Hz[1])
         self.broadband = compared_bins(self.frequency, bins, force_band_Hz, broadband_Hz)
+
+    @property
+    def seen_band_Hz(self) -> tuple[float, float]:
+        """Return the band in Hz where the force has power and the spectra have bins."""
+        return seen_band_Hz(self.force_band_Hz, self.bins)
 
     @cached_property
     def at_broadband(self) -> FamilyResponse:

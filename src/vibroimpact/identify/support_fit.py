@@ -39,12 +39,14 @@ class SupportValues:
     k, c: (direction,) N/m and N s/m.
     jacobian: (residual, 2 direction), derivatives by (ln k, c) of all directions.
     residual: (residual,).
+    c_at_edge: (direction,) whether the search ended at the least c of a stable structure.
     """
 
     k: np.ndarray
     c: np.ndarray
     jacobian: np.ndarray
     residual: np.ndarray
+    c_at_edge: np.ndarray
 
 
 def inverse_information(jacobian: np.ndarray) -> np.ndarray:
@@ -177,4 +179,4 @@ class SupportSearch:
         )
         k, c = np.exp(found.x[:count]), found.x[count:] * unit
         residual, jacobian = evaluate(k, c)
-        return SupportValues(k, c, jacobian, residual)
+        return SupportValues(k, c, jacobian, residual, found.active_mask[count:] < 0)

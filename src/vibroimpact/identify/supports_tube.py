@@ -16,7 +16,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.window_leakage import spectral_kernel
 
 from .peak import resonance
-from .reference_tube import STABLE_FRACTION, Bins, Sensors, compared_bins
+from .reference_tube import STABLE_FRACTION, Bins, Sensors, compared_bins, seen_band_Hz
 
 
 class SupportsTube:
@@ -88,6 +88,11 @@ class SupportsTube:
     def line_frequency(self) -> np.ndarray:
         """Return (frequency,) Hz, the bins of the shape line."""
         return np.arange(self.bins.line_first, self.bins.line_last + 1) * self.bins.spacing_Hz
+
+    @property
+    def seen_band_Hz(self) -> tuple[float, float]:
+        """Return the band in Hz where the force has power and the spectra have bins."""
+        return seen_band_Hz(self.force_band_Hz, self.bins)
 
     def force_psd(self, frequency: np.ndarray) -> np.ndarray:
         """Return (frequency,) 1 where the force has power, else 0."""

@@ -24,7 +24,14 @@ from .study_tables import (
     stress_table,
     timing_table,
 )
-from .study_words import contact_sentences, has_own_gaps, headline, load_unit, run_sentence
+from .study_words import (
+    contact_sentences,
+    energy_sentences,
+    has_own_gaps,
+    headline,
+    load_unit,
+    run_sentence,
+)
 
 MOST_LOADS = 8  # of a table of statistics, per gap
 
@@ -95,7 +102,7 @@ class StudyContent:
     answers: empty for a study without identification.
     limits: {residual: largest accepted value}.
     unmoved: (group of supports, direction) that the force does not move.
-    warnings: sentences on what makes the numbers wrong as they stand.
+    warnings: sentences on what makes numbers wrong or doubtful as they stand.
     """
 
     config: Any
@@ -132,7 +139,7 @@ class StudyContent:
         if self.unmoved:
             places = ", ".join(f"{group} in {direction}" for group, direction in self.unmoved)
             sentences.append(f"No answer where the force moves no support: {places}.")
-        return sentences
+        return [*energy_sentences(self.config, self.statistics), *sentences]
 
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibroimpact.integration.energy_limit import ENERGY_LIMIT, ENERGY_RESIDUALS
 from vibroimpact.study.cases import Case, case_from_id
 from vibroimpact.study.statistics_table import statistics_rows
 
@@ -25,7 +26,7 @@ SUPPORT_QUANTITIES = (
 )
 ELEMENT_QUANTITIES = ("element_power", "slip_power", "slip_work")
 STRESSES = ("stress_rms", "stress_peak")
-RESIDUALS = ("energy_residual", "potential_energy_residual", "fixed_point_residual")
+RESIDUALS = (*ENERGY_RESIDUALS, "fixed_point_residual")
 READ = (*SUPPORT_QUANTITIES, *ELEMENT_QUANTITIES, *STRESSES, "stress_flag", *RESIDUALS)
 SEVERAL = "all"  # the place of a largest value over supports, sections or the whole case
 
@@ -92,6 +93,18 @@ class StudyStatistics:
             if name == quantity
         ]
         return max(found, default=(math.nan, math.nan, math.nan))
+
+    def open_balances(self) -> list[tuple[float, float, float]]:
+        """Return (worst residual, gap in m, load), worst first, of each gap and load with a seed
+        whose energy balance is open beyond ENERGY_LIMIT.
+        """
+        worst: dict[tuple[float, float], float] = {}
+        for (name, gap, load), by_seed in self._largest.items():
+            if name in ENERGY_RESIDUALS:
+                values = [value for value in by_seed.values() if value > ENERGY_LIMIT]
+                if values:
+                    worst[gap, load] = max(worst.get((gap, load), 0.0), *values)
+        return sorted(((value, *place) for place, value in worst.items()), reverse=True)
 
     def flagged(self) -> list[tuple[float, float]]:
         """Return (gap in m, load) of the cases with a seed above the stress limit."""

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from vibroimpact.integration.energy_limit import ENERGY_LIMIT
+
 from .equivalent_answer import AGREEMENT, ALL_SUPPORTS, Answer, Value
 from .number_text import digits
 from .study_statistics import StudyStatistics
@@ -160,6 +162,22 @@ def place_in_words(gap_m: float, group: str, direction: str, several: bool | Non
     named = group != ALL_SUPPORTS if several is None else several
     place = f", {group}, direction {direction}" if named else ""
     return f"gap {digits(1e3 * gap_m)} mm{place}"
+
+
+def energy_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
+    """Return that energy balances are open so far that numbers are of no use, or nothing."""
+    found = statistics.open_balances()
+    if not found:
+        return []
+    worst, gap, load = found[0]
+    pairs = len(statistics.gaps) * len(statistics.loads)
+    return [
+        f"Not to be used: in {len(found)} of {pairs} pairs of load and gap the energy balance is"
+        f" open by more than {100 * ENERGY_LIMIT:g} % of the input work"
+        f" ({digits(100 * worst)} % {_where(config, gap, load)}). Nothing is identified from these"
+        " records; do not trust their levels, forces and stresses: raise"
+        " integration.steps_per_second."
+    ]
 
 
 def contact_sentences(config: Any, statistics: StudyStatistics) -> list[str]:

@@ -7,7 +7,7 @@ beside them as a check.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -31,6 +31,7 @@ EQUIVALENT_COLUMNS = (
     "agreement_c",
     "reason_k",
     "reason_c",
+    "flag",
 )
 FEWEST_METHODS = 2  # of the stiffness; a single reading is not confirmed
 NOT_MOVED = "the force does not move the supports in this direction"
@@ -43,7 +44,7 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
     supports the pole only corrects what the spectra say, so that the two are one reading: the shape
     must then resolve the stiffness too, if it does so at any load. low and high are the smallest
     and largest value of these methods over all seeds. Where a value is not resolved, it is NaN and
-    the reason says why.
+    the reason says why. flag: what makes the values of the compared methods doubtful.
 
     unreached: (group, direction) that the force does not move; they get rows without values.
     """
@@ -97,6 +98,8 @@ def _row(place: tuple, methods: dict[str, dict], shape_needed: bool) -> dict:
         if np.isfinite(values["c_N_s_per_m"])
         else values["reason_k"] or _reasons(methods, "c_median", COMPARED_DAMPING)
     )
+    flags = {name: methods[name].get("flag", "") for name in COMPARED if name in methods}
+    values["flag"] = _stated(flags)
     return values
 
 
@@ -106,7 +109,7 @@ def _empty(place: tuple, reason: str) -> dict:
     row: dict = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
     row.update(gap_m=gap_m, load_rms_N=load_rms_N, load_over_gap=load_rms_N / gap_m)
     row.update(group=group, direction=direction, reason_k=reason, reason_c=reason)
-    row.update(agreement_k="unresolved", agreement_c="unresolved")
+    row.update(agreement_k="unresolved", agreement_c="unresolved", flag="")
     return row
 
 
@@ -127,8 +130,19 @@ def _recommended(
 
 def _reasons(methods: dict[str, dict], column: str, compared: Sequence[str]) -> str:
     """Return the reasons of the compared methods that give no value, each once."""
+    return _stated(
+        {
+            name: methods[name]["reason"] or "no value"
+            for name in compared
+            if name in methods and not np.isfinite(methods[name][column])
+        }
+    )
+
+
+def _stated(texts: Mapping[str, str]) -> str:
+    """Return texts of methods as one, each text once with the methods that say it."""
     parts: dict[str, list[str]] = {}
-    for name in compared:
-        if name in methods and not np.isfinite(methods[name][column]):
-            parts.setdefault(methods[name]["reason"] or "no value", []).append(name)
+    for name, text in texts.items():
+        if text:
+            parts.setdefault(text, []).append(name)
     return "; ".join(f"{', '.join(names)}: {reason}" for reason, names in parts.items())

@@ -36,6 +36,7 @@ SUMMARY_COLUMNS = (
     "verdict_k",
     "verdict_c",
     "reason",
+    "flag",
 )
 COLLAPSE_COLUMNS = (
     "group",
@@ -79,6 +80,7 @@ def summary_rows(rows: list[dict]) -> list[dict]:
         of the smaller.
     A verdict stands in the rows of the methods that were compared, and is empty in all others.
     reason: why k or c is not resolved; empty where both are, or where the method never tells c.
+    flag: what makes the values of one or more seeds doubtful, and in how many, see identify.guards.
     """
     summary = []
     for place, methods in _by_place(rows).items():
@@ -106,6 +108,7 @@ def summary_rows(rows: list[dict]) -> list[dict]:
                 verdict_k if method in COMPARED else "",
                 verdict_c if method in COMPARED_DAMPING else "",
                 _reason(methods[method], span),
+                _flag(methods[method]),
             )
             summary.append(dict(zip(SUMMARY_COLUMNS, values, strict=True)))
     return summary
@@ -166,6 +169,12 @@ def _reason(cases: list[dict], span: dict[str, tuple]) -> str:
     if len(missing) == len(cases):
         return stated
     return f"not resolved in {len(missing)} of {len(cases)} seeds: {stated}"
+
+
+def _flag(cases: list[dict]) -> str:
+    """Return the first flag of the seeds and in how many there is one."""
+    flags = [str(row["flag"]) for row in cases if row.get("flag")]
+    return f"{len(flags)} of {len(cases)} seeds: {flags[0]}" if flags else ""
 
 
 def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:

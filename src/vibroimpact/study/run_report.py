@@ -8,13 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.records import read_table
+
 from .equivalent_table import NOT_MOVED
 
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
 STARTED = re.compile(r"^Job (?P<job>\d+): (?P<message>.*)$", flags=re.M)
 LAST_LINES = 6
-MENTIONED = ("index.html", "summary.pdf", "equivalent.csv", "consistency.csv", "statistics.csv")
+STATISTICS = "statistics.csv"
+MENTIONED = ("index.html", "summary.pdf", "equivalent.csv", "consistency.csv", STATISTICS)
+CASE_KEYS = ("gap_m", "load_rms_N", "seed", "group", "direction")
 
 
 def headline(rows: Sequence[dict]) -> str:
@@ -54,6 +58,24 @@ def _short(value: float) -> str:
     return f"{value:.2g}".replace("e+0", "e").replace("e+", "e")
 
 
+def flag_sentences(rows: Sequence[dict], table: str = "equivalent.csv") -> list[str]:
+    """Return one sentence on the cases that have a flag in a table, none where there are none.
+
+    rows: of equivalent.csv, or of statistics.csv, which has many per case.
+    """
+    flags: dict[tuple, str] = {}
+    for row in rows:
+        case = tuple(row.get(key) for key in CASE_KEYS)
+        flags[case] = flags.get(case, "") or str(row.get("flag", ""))
+    found = [flag for flag in flags.values() if flag]
+    if not found:
+        return []
+    return [
+        f"Doubtful: {len(found)} of {len(flags)} cases have a flag in {table}, the first:"
+        f" {found[0]}."
+    ]
+
+
 def success_text(folder: str | Path, rows: Sequence[dict]) -> str:
     """Return what a complete study says: its headline, and where its page and tables are.
 
@@ -63,6 +85,9 @@ def success_text(folder: str | Path, rows: Sequence[dict]) -> str:
     files = [folder / name for name in MENTIONED if (folder / name).is_file()]
     figures = [folder / "figures"] if (folder / "figures").is_dir() else []
     lines = [f"Study '{folder.name}': {headline(rows)}."] if rows else []
+    lines += flag_sentences(rows)
+    if not rows and (folder / STATISTICS).is_file():
+        lines += flag_sentences(read_table(folder / STATISTICS), STATISTICS)
     return "\n".join([*lines, *(f"  {path.as_posix()}" for path in [*files, *figures])])
 
 

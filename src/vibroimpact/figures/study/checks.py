@@ -20,6 +20,7 @@ from vibroimpact.figures.style import (
     gap_label,
 )
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.integration.energy_limit import ENERGY_LIMIT
 from vibroimpact.study.cases import case_from_id
 
 from .cases_of_gap import CasesOnDemand
@@ -31,7 +32,8 @@ RESIDUALS = {
     "energy_residual": ("with the work of the contact forces", BLUE, "o"),
     "fixed_point_residual": ("contact iteration (bound)", GREY, "x"),
 }
-# Largest accepted residual with the potential energy, at the paper's step; of order 2 in the step.
+# Largest accepted residual with the potential energy, at the paper's step; of order 2 in the step,
+# up to the limit beyond which the numbers of a run are of no use.
 PAPER_RATE, PAPER_LOSS = 51200, 3.0e-3
 # With the work: an identity of Newmark's scheme; trapezoidal sums with the exact step.
 ROUND_OFF, SUMS = 1.0e-9, 3.0e-4
@@ -58,7 +60,7 @@ def limits(integration):
     steps = integration.steps_per_second
     work = ROUND_OFF if integration.scheme == "newmark" else SUMS
     return {
-        "potential_energy_residual": PAPER_LOSS * (PAPER_RATE / steps) ** 2,
+        "potential_energy_residual": min(PAPER_LOSS * (PAPER_RATE / steps) ** 2, ENERGY_LIMIT),
         "energy_residual": work,
     }
 

@@ -1,4 +1,4 @@
-"""R1 to R5: small systems with closed forms or exact published values, from records of every step.
+"""R1 to R6: small systems with closed forms or exact published values, from records of every step.
 
 Numbers: code_aster validation tests (EDF, published with their reference values), recomputed. Each
 function takes the record dataset of one run (record.every_step) and returns Checks.
@@ -27,6 +27,9 @@ FORCED_CONTACT_S = (
     (0.259783891, 0.260177191),
 )
 FORCED_PEAKS_N = (105794.34, 133098.19, 122220.14)
+# Contacts later in the same run, and the peak forces of the fourth to the sixth.
+LATE_CONTACT_S = ((1.015647709, 1.016038835), (3.886525493, 3.886916559))
+LATE_PEAKS_N = {4: 127595.9, 5: 220953.1, 6: 224392.2}
 BASE_DRIVEN_M = {
     0.05: -3.580041e-4,
     0.156: -1.221167e-4,
@@ -36,7 +39,15 @@ BASE_DRIVEN_M = {
     1.0: -1.085591e-4,
 }
 WEAR_W = {15.0: 15.2671, 1.5: 0.409062, 1.01: 2.26164e-4, 0.99: 0.0}  # base acceleration m/s² -> W
+FREE_VIBRATION_HZ = {  # energy J -> frequency
+    1.0e-3: 0.55688928,
+    2.0e-3: 0.59865096,
+    6.50108e-3: 0.64663104,
+    1.0e-2: 0.65895614,
+    0.1: 0.69622115,
+}
 SDND100, SDND101, SDND121 = "closed form (SDND100)", "closed form (SDND101)", "exact (SDND121)"
+SDND122 = "exact (SDND122)"
 SDND102, SDND104 = "exact (SDND102)", "published (SDND104)"
 
 
@@ -205,6 +216,58 @@ def forced_impact_checks(record):
         )
     )
     return checks
+
+
+def late_impact_checks(record):
+    """Return the Checks of R3 up to 3.9 s, about 70 impacts: contact times and peak forces.
+
+    Tolerance of the times: 0.5 % of a contact's duration.
+    """
+    ours = contact_times(record)
+    duration = FORCED_CONTACT_S[0][1] - FORCED_CONTACT_S[0][0]
+    checks = []
+    for reference in LATE_CONTACT_S:
+        found = ours[np.argmin(np.abs(ours[:, 0] - reference[0]))]
+        checks += [
+            Check("R3", f"contact near {t:.4g} s, {side}", "s", t, SDND121, at, 5e-3, duration)
+            for side, t, at in zip(("in", "out"), reference, found, strict=True)
+        ]
+    time, force = record["step_time"].values, np.abs(record["contact_force"].values[0, 0])
+    for number, peak in LATE_PEAKS_N.items():
+        begin, end = ours[number - 1]
+        inside = (time > begin - 1e-4) & (time < end + 1e-4)
+        top = _summit(time[inside], force[inside])[0]
+        checks.append(Check("R3", f"peak force {number}, long run", "N", peak, SDND121, top, 1e-4))
+    return checks
+
+
+def free_vibration_checks(record):
+    """Return the Checks of R6: frequency of a mass on a spring against one stop, by its energy.
+
+    Each mass of the run has one of the energies. The frequency is that of its passages through 0
+    towards the stop.
+    """
+    time, displacement = record["step_time"].values, record["contact_displacement"].values[:, 0]
+    return [
+        Check(
+            "R6",
+            f"frequency at {energy:g} J",
+            "Hz",
+            reference,
+            SDND122,
+            _frequency(time, displacement[number]),
+            1e-6,
+        )
+        for number, (energy, reference) in enumerate(FREE_VIBRATION_HZ.items())
+    ]
+
+
+def _frequency(time, displacement):
+    """Return the mean frequency in Hz of the passages through 0 upwards, linear between steps."""
+    before = np.flatnonzero((displacement[:-1] < 0.0) & (displacement[1:] >= 0.0))
+    share = displacement[before] / (displacement[before] - displacement[before + 1])
+    passages = time[before] + share * (time[1] - time[0])
+    return (len(passages) - 1) / (passages[-1] - passages[0])
 
 
 def _elastic_scale(record):

@@ -13,7 +13,7 @@ from vibroimpact.validation.check import Check
 
 from . import cases as reference_cases
 from .frequencies import frequency_checks
-from .random_stops import law_checks
+from .random_stops import StopCase, law_checks, linearisation_check
 from .tubes import LAUNCHED_MM, cantilever_checks, launched_beam_checks
 
 STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
@@ -21,7 +21,12 @@ STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
 ORDER_TOLERANCE = 0.3
 ORDER_COLUMNS = ("steps_per_second", "step_s", "contact_time_error_s")
 # s0 of the loads of each configuration.
-WHITE_SIGMA = {"r11_stops_10": (0.5, 1.0), "r11_stops_100": (1.0, 2.0)}
+WHITE_SIGMA = {
+    "r11_stops_10": (0.5, 1.0, 2.0),
+    "r11_stops_100": (1.0, 2.0, 4.0),
+    "r11_stops_1000": (1.0,),
+    "r11_one_stop": (1.0, 2.0),
+}
 
 
 def run(config) -> list:
@@ -31,7 +36,7 @@ def run(config) -> list:
 
 
 def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
-    """Return (Checks of R1 to R5, rows {steps_per_second, contact_time_error_s} of R3).
+    """Return (Checks of R1 to R6, rows {steps_per_second, contact_time_error_s} of R3).
 
     folder: of the reference configurations.
     """
@@ -42,7 +47,9 @@ def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
             "r2_launch_on_stop",
             "r3_forced_impact",
             "r4_base_driven",
+            "r3_late_impacts",
             "r5_wear",
+            "r6_free_vibration",
         )
     }
     checks = reference_cases.slide_checks(run(configs["r1_friction_slide"])[0])
@@ -55,6 +62,8 @@ def impact_checks(folder: Path) -> tuple[list[Check], list[dict]]:
         for rate in STEPS
     ]
     checks += reference_cases.forced_impact_checks(forced[-1])
+    checks += reference_cases.late_impact_checks(run(configs["r3_late_impacts"])[0])
+    checks += reference_cases.free_vibration_checks(run(configs["r6_free_vibration"])[0])
     steps, errors, order = reference_cases.contact_time_order(forced)
     checks.append(
         Check(
@@ -89,29 +98,29 @@ def tube_checks(folder: Path) -> list[Check]:
 
 
 def random_stop_checks(folder: Path, name: str) -> list[Check]:
-    """Return the Checks of one configuration of R11, "r11_stops_10" or "r11_stops_100"."""
+    """Return the Checks of one configuration of R11, a name of WHITE_SIGMA."""
     config = load_config(folder / f"{name}.yaml")
-    omega = 2.0 * np.pi * build_model(config).full_mode_frequencies[0]
+    model = build_model(config)
+    omega = 2.0 * np.pi * model.full_mode_frequencies[0]
     support = config.supports[0]
     assert support.gap_m is not None, "the stops of R11 have a gap"
+    ratio, sides = support.stiffness_N_per_m / omega**2, len(model.contact_laws.land_normal)
     records = run(config)
     checks = []
     for sigma, load in zip(WHITE_SIGMA[name], load_values(config.grid), strict=True):
+        case = StopCase(sigma, ratio, omega, support.gap_m, sides)
         seeds = [record for record in records if record.attrs["load_rms_N"] == load]
-        checks += law_checks(
-            seeds,
-            sigma,
-            support.stiffness_N_per_m / omega**2,
-            omega,
-            support.gap_m,
-        )
+        checks += law_checks(seeds, case, model)
+        if sides == 2:
+            rate = config.integration.steps_per_second
+            checks.append(linearisation_check(case, load, rate, model))
     return checks
 
 
 def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[dict]]:
     """Return (Checks, rows of R3's order) of one group of reference cases.
 
-    group: "frequencies", "impacts", "tubes", "r11_stops_10" or "r11_stops_100".
+    group: "frequencies", "impacts", "tubes", or a name of WHITE_SIGMA.
     study: the configuration of the stand-in tube.
     folder: of the reference configurations.
     """

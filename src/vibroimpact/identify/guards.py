@@ -1,0 +1,143 @@
+"""What makes an estimate doubtful beyond its standard error: the texts of the column `flag`.
+
+A flag does not change a value, but for a run whose energy balance is open: what was identified from
+it is not resolved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.integration.energy_limit import energy_flag
+from vibroimpact.linear.poles import first_pole, pole_of
+from vibroimpact.reduction.basis_accuracy import STIFFNESSES
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .estimate import PEAK_METHODS, Estimate, flagged, joined, unresolved
+from .peak import LEVELS, PeakFit, level_edges
+
+# Degrees of freedom of a spectral bin. The scatter of the segments has half of them less one, so
+# that a standard error from it is known within 40 % at 8, within 25 % at the 18 of the default.
+FEWEST_AVERAGES = 8.0
+STIFFEST_CHECKED = max(STIFFNESSES)  # N/m, of the comparison of reduced with full frequencies
+FLANKS = LEVELS["peak_25th"]  # the part of a peak that has a weight in every fit
+SAME_POLE = 1.0e-3  # relative; the inverse is exact, so that a larger difference is another mode
+FROM_POLES = (*PEAK_METHODS, "lscf")
+FROM_SPECTRA = (*FROM_POLES, "ods", "broadband")
+
+
+def guarded(
+    estimates: Iterable[Estimate],
+    record: xr.Dataset,
+    averages: float,
+    search_Hz: Sequence[float],
+) -> list[Estimate]:
+    """Return the estimates of one case with the flags that any method can have.
+
+    record: with the residuals of the energy balance, where it has them.
+    averages: effective degrees of freedom of a bin.
+    search_Hz: where the main peak was looked for.
+    """
+    energy = energy_flag(record)
+    few = few_averages(averages)
+    found = []
+    for estimate in estimates:
+        if estimate.method in FROM_SPECTRA:
+            estimate = flagged(estimate, few)
+        if estimate.method in FROM_POLES:
+            estimate = flagged(estimate, outside_search(estimate.frequency, search_Hz))
+        if estimate.method != "statistical_linearisation":  # it does not see the record
+            estimate = _without_value(estimate, energy)
+        found.append(flagged(estimate, beyond_checked(estimate.k)))
+    return found
+
+
+def _without_value(estimate: Estimate, reason: str) -> Estimate:
+    """Return the estimate flagged and without k and c, or as it is for an empty reason."""
+    if not reason:
+        return estimate
+    note = joined(reason, estimate.note)
+    empty = unresolved(estimate.method, note, estimate.frequency, estimate.damping_ratio)
+    return replace(
+        empty,
+        group=estimate.group,
+        direction=estimate.direction,
+        flag=joined(estimate.flag, reason),
+    )
+
+
+def few_averages(averages: float) -> str:
+    """Return why a spectrum of so many degrees of freedom is flagged, or an empty text."""
+    if averages >= FEWEST_AVERAGES:
+        return ""
+    return (
+        f"{averages:.2g} degrees of freedom of a spectral bin, fewer than {FEWEST_AVERAGES:g}: the"
+        " scatter of the segments does not confirm the standard errors"
+    )
+
+
+def outside_search(frequency: float, search_Hz: Sequence[float]) -> str:
+    """Return that a pole lies outside the band in which the main peak was looked for, or nothing.
+
+    frequency: Hz, NaN for no pole.
+    """
+    low, high = search_Hz
+    if np.isnan(frequency) or low < frequency < high:
+        return ""
+    return f"the pole at {frequency:.4g} Hz is outside peak_search_Hz, {low:g} to {high:g} Hz"
+
+
+def peak_not_crossed(fit: PeakFit, band_Hz: Sequence[float]) -> str:
+    """Return that a peak does not fall to 1/FLANKS of its height inside the band, or nothing.
+
+    The fit then takes bins without power for a flank. It is asked of all levels, because such a fit
+    is too narrow: its own half-power points lie inside the band where the true ones do not.
+
+    band_Hz: where the force has power and the spectrum has bins.
+    """
+    low, high = band_Hz
+    edges = level_edges(fit.frequency, fit.damping_ratio, FLANKS)
+    outside = [edge for edge in edges if not low <= edge <= high]
+    if not outside:
+        return ""
+    where = " and ".join(f"{edge:.3g} Hz" if edge > 0.0 else "no frequency" for edge in outside)
+    return (
+        f"the fitted peak falls to 1/{FLANKS:g} at {where}, outside the band of {low:g} to"
+        f" {high:g} Hz: its width was not seen on both sides"
+    )
+
+
+def other_mode(model: ModalModel, k: float, c: float, pole: tuple[float, float]) -> str:
+    """Return that a pole belongs to another mode than the first of the linear tube, or nothing.
+
+    The first mode is followed from c = 0. Where modes cross on the way, k and c have the pole, but
+    not for the mode that they were sought for.
+
+    k, c: N/m and N s/m.
+    pole: undamped frequency in Hz and damping ratio.
+    """
+    wanted = pole_of(*pole)
+    try:
+        first = first_pole(model, k, c)
+    except ValueError as error:
+        return f"mode crossing: {error}"
+    if abs(first - wanted) <= SAME_POLE * abs(wanted):
+        return ""
+    return (
+        f"mode crossing: with this k and c the first mode is at {abs(first) / (2 * np.pi):.4g} Hz,"
+        f" the pole of {pole[0]:.4g} Hz is that of another mode"
+    )
+
+
+def beyond_checked(k: float) -> str:
+    """Return that k is stiffer than any support at which the basis was checked, or nothing."""
+    if np.isnan(k) or k <= STIFFEST_CHECKED:
+        return ""
+    return (
+        f"k is beyond {STIFFEST_CHECKED:.2g} N/m, the stiffest support at which the reduced model"
+        " was compared with the full one"
+    )
