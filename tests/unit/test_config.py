@@ -4,12 +4,15 @@ key is used.
 
 import ast
 import copy
+import datetime
+import re
 from pathlib import Path
 
 import pytest
 import yaml
 
 from vibroimpact.config.reading import Config, ConfigError, check_config, load_config
+from vibroimpact.config.reserved_names import reserved_names
 from vibroimpact.config.stage_keys import STAGE_KEYS, select, stage_params
 from vibroimpact.config.stage_settings import StageSettings
 
@@ -460,7 +463,7 @@ def test_bend_along_its_own_tangent_is_refused(other_kinds):
     )
     put(other_kinds, "structure.start_direction", [0, 0, 0])
     assert any(
-        "structure.start_direction = [0.0, 0.0, 0.0] is not a direction" in line
+        "structure.start_direction = [0, 0, 0] is not a direction" in line
         for line in problems(other_kinds)
     )
 
@@ -567,3 +570,69 @@ def test_every_declared_key_exists():
     assert {key.split(".")[0] for keys in STAGE_KEYS.values() for key in keys} <= set(
         Config.model_fields
     )
+
+
+FOLDERS_OF_TARGETS = re.compile(r"\bresults/([A-Za-z0-9_-]+)")
+
+
+def test_a_study_can_not_have_the_folder_of_a_target(study):
+    # Every folder in results/ that a rule names; {study}, {suite} and the like are wildcards.
+    rules = [*(ROOT / "workflow" / "rules").glob("*.smk"), *(ROOT / "examples").glob("*/*.smk")]
+    found = {name for file in rules for name in FOLDERS_OF_TARGETS.findall(file.read_text())}
+    assert reserved_names() == found >= {"validation", "suite_check"}
+    for name in (*found, "Validation", "suite_7", "suite_12_49s_draw1"):
+        (line,) = problems({**study, "study": name})
+        assert line.startswith(
+            f"config/mine.yaml: study = '{name}' is the folder of another target"
+        )
+    check_config({**study, "study": "suites"}, "mine")
+
+
+@pytest.mark.parametrize("name", ["", "a/b", "../x", ".", "a b", "é", "-a", "a\n", "a" * 101, 7])
+def test_a_study_name_is_a_short_name_of_a_folder(study, name):
+    (line,) = problems({**study, "study": name})
+    assert "study = " in line
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "part"),
+    [
+        ("supports.0.stiffness_N_per_m", 1e30, "is beyond any quantity in SI units"),
+        ("supports.0.stiffness_N_per_m", -4e6, "must be > 0"),
+        ("supports.0.stiffness_N_per_m", "nan", "must be a finite number"),
+        ("supports.0.gap_m", 0.2, "is larger than half the diameter"),
+        ("supports.0.damping_N_s_per_m", float("inf"), "must be a finite number"),
+        ("points.apex", [0, 0, 10**400], "points.apex"),
+        ("excitation.direction", [0, 0.0, 0], "is not a direction"),
+        ("excitation.band_Hz", [40.0, 40.0], "is not in ascending order"),
+        ("identification.stiffness_range_N_per_m", [1e8, 1e3], "is not in ascending order"),
+        ("record.duration_s", 1e-12, "is 2.05e-09 samples"),
+        ("grid.load_rms_N", {"first": 1.0, "last": 1.0001, "count": 1000}, "equal to 6 digits"),
+        ("grid.seeds", 10000, "cases, at most 1000000"),
+        ("seed", datetime.date(2012, 1, 1), "seed = 2012-01-01 must be a whole number"),
+        ("overlay.campaign", 5000 * "a", "is not a file"),
+    ],
+)
+def test_values_that_no_study_has_are_refused(study, place, value, part):
+    put(study, "grid.load_rms_N.count", 40)
+    put(study, place, value)
+    assert part in "\n".join(problems(study))
+
+
+@pytest.mark.parametrize("kind", ["supports", "elements", "masses"])
+def test_names_of_parts_are_given_once(study, kind):
+    entry = {"name": "one", "point": "apex"}
+    entries = {
+        "supports": study["supports"][:1],
+        "elements": [{**entry, "direction": [1.0, 0.0, 0.0], "stiffness_N_per_m": 1.0}],
+        "masses": [{**entry, "mass_kg": 0.1}],
+    }[kind]
+    study[kind] = entries
+    check_config(study, "mine")
+    study[kind] = [*entries, *entries]
+    assert any(f"names 2 {kind}: give each a name" in line for line in problems(study))
+
+
+def test_a_key_that_is_no_text_is_named(study):
+    study["record"][7] = 1
+    assert "config/mine.yaml: the key 7 of record must be a text" in problems(study)

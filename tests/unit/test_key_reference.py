@@ -112,7 +112,7 @@ def test_the_reference_states_unit_range_and_default():
     assert [cell.strip() for cell in row.split("|")[2:6]] == [
         "list of numbers",
         "m",
-        "> 0",
+        "> 0, ≤ 10",
         "required",
     ]
 

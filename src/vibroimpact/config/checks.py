@@ -9,12 +9,10 @@ from __future__ import annotations
 
 import inspect
 import math
+import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from . import (
     geometry_checks,
@@ -35,6 +33,9 @@ FILTER_RATIO = 5  # kernels.RATIO, which only what integrates may import
 # In rad. The exact scheme has no error in a mode alone; below pi, a mode is not aliased.
 LARGEST_OMEGA_STEP = {"newmark": 1.0, "exact": 2.8}
 MOST_STEPS_KEPT = 2e6
+MOST_SAMPLES = 1e8  # of a record: 0.8 GB for each channel
+MOST_CASES = 10**6
+LEAST_LOG_STEP = 2e-5  # of loads spaced in logarithm, which are rounded to 6 digits
 TOLERANCE = 1e-9
 
 
@@ -71,11 +72,31 @@ def _repeated_values(grid: Grid) -> Problems:
                     f"stands {times} times: a value names a case, give each once",
                 )
     loads = grid.load_rms_N
-    if not isinstance(loads, tuple) and loads.last <= loads.first and loads.count > 1:
+    if isinstance(loads, tuple):
+        return
+    if loads.last <= loads.first and loads.count > 1:
         yield (
             "grid.load_rms_N.last",
             loads.last,
             f"must be above first = {loads.first}, or the count 1",
+        )
+    elif math.log(loads.last / loads.first) < LEAST_LOG_STEP * (loads.count - 1):
+        yield (
+            "grid.load_rms_N.count",
+            loads.count,
+            f"loads between {loads.first} and {loads.last} are equal to 6 digits: give fewer",
+        )
+
+
+def _number_of_cases(grid: Grid) -> Problems:
+    loads = grid.load_rms_N
+    counts = (len(loads) if isinstance(loads, tuple) else loads.count, len(grid.gap_m), grid.seeds)
+    if math.prod(counts) > MOST_CASES:
+        yield (
+            "grid",
+            " x ".join(map(str, counts)),
+            f"loads, gaps and seeds are {math.prod(counts)} cases, at most {MOST_CASES}: split the"
+            " study",
         )
 
 
@@ -99,13 +120,7 @@ def _every_step(record: RecordKeys, integration: Integration) -> Problems:
 
 
 def _force(excitation: Excitation) -> Problems:
-    if hasattr(excitation, "direction") and not np.any(excitation.direction):
-        yield (
-            "excitation.direction",
-            list(excitation.direction),
-            "is not a direction: give three components that are not all 0",
-        )
-    if excitation.kind == "measured" and not Path(excitation.file).is_file():
+    if excitation.kind == "measured" and not os.path.isfile(excitation.file):
         yield (
             "excitation.file",
             excitation.file,
@@ -114,7 +129,7 @@ def _force(excitation: Excitation) -> Problems:
 
 
 def _overlay(overlay: Overlay, grid: Grid) -> Problems:
-    if overlay.campaign is not None and not Path(overlay.campaign).is_file():
+    if overlay.campaign is not None and not os.path.isfile(overlay.campaign):
         yield (
             "overlay.campaign",
             overlay.campaign,
@@ -126,20 +141,6 @@ def _overlay(overlay: Overlay, grid: Grid) -> Problems:
             overlay.seed,
             f"is a seed of the study, which has 0 to {grid.seeds - 1}: give a larger one",
         )
-
-
-def _bands_in_order(excitation: Excitation, identification: Identification) -> Problems:
-    bands = {
-        "identification.peak_search_Hz": identification.peak_search_Hz,
-        "identification.lscf.band_Hz": identification.lscf.band_Hz,
-        "identification.broadband.band_Hz": identification.broadband.band_Hz,
-        "identification.stiffness_range_N_per_m": identification.stiffness_range_N_per_m,
-    }
-    if excitation.kind == "band_limited":
-        bands["excitation.band_Hz"] = excitation.band_Hz
-    for key, (low, high) in bands.items():
-        if low >= high:
-            yield key, [low, high], "is not in ascending order: give the lower end first"
 
 
 def _bands_below_nyquist(record: RecordKeys, identification: Identification) -> Problems:
@@ -305,6 +306,13 @@ def _whole_samples(record: RecordKeys, integration: Integration) -> Problems:
                     " whole number of samples"
                 ),
             )
+    samples = record.duration_s * record.sampling_frequency_Hz
+    if not 0.5 < samples <= MOST_SAMPLES:
+        yield (
+            "record.duration_s",
+            record.duration_s,
+            f"is {samples:.3g} samples of every channel, from 1 to {MOST_SAMPLES:g}: in seconds?",
+        )
 
 
 TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
@@ -337,6 +345,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     profile_checks.profile_normals,
     names.names_twice,
     _repeated_values,
+    _number_of_cases,
     names.known_points,
     names.drag_partners,
     names.identified_points,
@@ -349,7 +358,6 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     turbulence_checks.band,
     _force,
     _overlay,
-    _bands_in_order,
     _bands_below_nyquist,
     _broadband_is_excited,
     _main_peak_is_excited,

@@ -33,13 +33,6 @@ def path_directions(structure: Tube) -> Problems:
     """Yield a problem unless start and bends of a path have directions."""
     if structure.kind != "path":
         return
-    if not np.any(structure.start_direction):
-        yield (
-            "structure.start_direction",
-            list(structure.start_direction),
-            "is not a direction: give three components that are not all 0",
-        )
-        return
     tangent = np.array(structure.start_direction) / np.linalg.norm(structure.start_direction)
     for index, segment in enumerate(structure.segments):
         if segment.kind != "bend":
@@ -218,13 +211,19 @@ def support_lists(supports: Sequence[Support]) -> Problems:
                 )
 
 
-def gaps(structure: Tube, grid: Grid) -> Problems:
+def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless gaps are clearances."""
     radius = outer_width(structure.section) / 2
-    for index, gap in enumerate(grid.gap_m):
-        if gap > radius:
+    stated = [(f"grid.gap_m[{index}]", gap) for index, gap in enumerate(grid.gap_m)]
+    stated += [
+        (f"supports[{index}].gap_m", support.gap_m)
+        for index, support in enumerate(supports)
+        if support.gap_m is not None
+    ]
+    for place, gap in stated:
+        if abs(gap) > radius:
             yield (
-                f"grid.gap_m[{index}]",
+                place,
                 gap,
                 (
                     f"is larger than half the diameter, {radius:g} m: give the radial clearance in"

@@ -14,18 +14,21 @@ import numpy as np
 from .excitation import Excitation
 from .schema import Identification, RecordKeys
 from .structure import Structure
-from .supports import LocalElement, Support
+from .supports import LocalElement, PointMass, Support
 
 Problems = Iterator[tuple[str, Any, str]]
 
 TUBES = ("u_tube", "path")
 
 
-def names_twice(supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless supports have names of their own."""
-    for name, times in Counter(support.name for support in supports).items():
-        if times > 1:
-            yield "supports", name, f"names {times} supports: give each a name of its own"
+def names_twice(
+    supports: Sequence[Support], elements: Sequence[LocalElement], masses: Sequence[PointMass]
+) -> Problems:
+    """Yield a problem unless supports, elements and masses have names of their own."""
+    for kind, entries in (("supports", supports), ("elements", elements), ("masses", masses)):
+        for name, times in Counter(entry.name for entry in entries).items():
+            if times > 1:
+                yield kind, name, f"names {times} {kind}: give each a name of its own"
 
 
 def drag_partners(elements: Sequence[LocalElement]) -> Problems:

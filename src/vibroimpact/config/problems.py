@@ -5,6 +5,7 @@ and what to do.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from datetime import date
 from difflib import get_close_matches
 from typing import Any, get_args
 
@@ -27,7 +28,6 @@ PLAIN_WORDS = {
     "bool_parsing": "must be true or false",
     "finite_number": "must be a finite number",
     "too_short": "must not be empty",
-    "invalid_key": "must be a text",
 }
 
 
@@ -53,6 +53,10 @@ def sentence(error: Mapping[str, Any], data: Any) -> str:
         return f"unknown key '{error['loc'][-1]}'{f' in {parent}' if parent else ''}: {remedy}"
     if error["type"] == "missing":
         return f"{place} is missing: config/study.yaml shows it with its unit"
+    if error["type"] == "invalid_key":
+        return (
+            f"the key {shown(error['loc'][-1])} of {_place(path[:-1]) or 'the file'} must be a text"
+        )
     if error["type"] == NOT_GIVEN:
         return f"{place} {error['msg']}"
     if error["type"] == "union_tag_not_found":
@@ -70,7 +74,8 @@ def sentence(error: Mapping[str, Any], data: Any) -> str:
 
 def shown(value: Any) -> str:
     """Return a value as a reader of YAML would write it, at most 60 characters."""
-    text = repr(list(value) if isinstance(value, tuple) else value)
+    plain = isinstance(value, date)
+    text = str(value) if plain else repr(list(value) if isinstance(value, tuple) else value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 

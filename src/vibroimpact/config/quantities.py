@@ -7,9 +7,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -22,6 +24,11 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from .reserved_names import is_reserved
+
+LARGEST = 1e20
+SHORTEST = 1e-9  # length of a direction, any unit
+LONGEST_NAME = 100  # characters of a study's name; with the name of a case it names files
 NOT_GIVEN = "not_given"  # type of the error of a key that another key makes necessary
 
 
@@ -40,7 +47,14 @@ def _refuse_bool(value: Any) -> Any:
     return value
 
 
-Number = Annotated[float, BeforeValidator(_refuse_bool)]
+def _refuse_huge(value: float) -> float:
+    """Return the value; one that no quantity in SI units reaches is an error."""
+    if abs(value) > LARGEST:
+        raise PydanticCustomError("number", "is beyond any quantity in SI units: check its power")
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_refuse_bool), AfterValidator(_refuse_huge)]
 Whole = Annotated[int, BeforeValidator(_refuse_bool)]
 
 
@@ -162,15 +176,74 @@ class Pattern(Checked):
         return {"pattern": f"^(?:{self.expression})$"}
 
 
+@dataclass(frozen=True)
+class NotZero(Checked):
+    """The components of a direction, of which one at least is not 0."""
+
+    def check(self, value: tuple) -> tuple:
+        """Return the value. Raises PydanticCustomError for a direction without length."""
+        if all(abs(component) < SHORTEST for component in value):
+            raise PydanticCustomError(
+                "direction", "is not a direction: {remedy}", {"remedy": self.remedy}
+            )
+        return value
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return that not all items are 0."""
+        return {"not": {"items": {"const": 0}}}
+
+
+@dataclass(frozen=True)
+class Ascending(Checked):
+    """Numbers of which each is above the one before."""
+
+    def check(self, value: tuple) -> tuple:
+        """Return the value. Raises PydanticCustomError for another order."""
+        if any(after <= before for before, after in pairwise(value)):
+            raise PydanticCustomError(
+                "order", "is not in ascending order: {remedy}", {"remedy": self.remedy}
+            )
+        return value
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return {}: a JSON schema can not compare numbers."""
+        return {}
+
+
+@dataclass(frozen=True)
+class OwnFolder(Checked):
+    """A name of a folder in results/ that no target of the workflow writes to."""
+
+    def check(self, value: str) -> str:
+        """Return the value. Raises PydanticCustomError for a reserved or a long name."""
+        if is_reserved(value):
+            raise PydanticCustomError(
+                "name",
+                "is the folder of another target in results/: {remedy}",
+                {"remedy": self.remedy},
+            )
+        if len(value) > LONGEST_NAME:
+            raise PydanticCustomError(
+                "name",
+                "has {length} characters, at most {most}: {remedy}",
+                {"length": len(value), "most": LONGEST_NAME, "remedy": self.remedy},
+            )
+        return value
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return the greatest length."""
+        return {"maxLength": LONGEST_NAME}
+
+
 Diameter_m = Annotated[Number, Range("in metres? 22.22 mm is 0.02222", above=0, at_most=2)]
 Wall_m = Annotated[Number, Range("in metres? 1.27 mm is 0.00127", above=0, at_most=1)]
 Length_m = Annotated[Number, Range("give the length in metres", above=0, at_most=1000)]
 Height_m = Annotated[Number, Range("in metres? 30 mm is 0.030", above=0, at_most=5)]
-Gap_m = Annotated[Number, Range("give the radial clearance in metres", above=0)]
+Gap_m = Annotated[Number, Range("give the radial clearance in metres", above=0, at_most=10)]
 Youngs_modulus_Pa = Annotated[
     Number, Range("in Pa? 202 GPa is 2.02e11", at_least=1e6, at_most=1e13)
 ]
-Stress_Pa = Annotated[Number, Range("in Pa? 240 MPa is 240.0e6", at_least=1e4)]
+Stress_Pa = Annotated[Number, Range("in Pa? 240 MPa is 240.0e6", at_least=1e4, at_most=1e13)]
 Poisson_ratio = Annotated[Number, Range("0.3 for most metals", at_least=0, below=0.5), Unit("1")]
 Density = Annotated[Number, Range("in kg/m3? 8.33 g/cm3 is 8330", at_least=10, at_most=3e4)]
 Shear_coefficient = Annotated[
@@ -187,10 +260,14 @@ Fluid_density = Annotated[
 Viscosity = Annotated[
     Number, Range("in Pa s? 1 mPa s is 1.0e-3, 0 for no damping", at_least=0, at_most=100)
 ]
-Stiffness = Annotated[Number, Range("give the stiffness in N/m", above=0)]
-Rotation_stiffness = Annotated[Number, Range("give the stiffness in N m/rad", above=0)]
-Mass_kg = Annotated[Number, Range("give the mass in kg", above=0)]
-Positive_factor = Annotated[Number, Range("give a positive factor", above=0), Unit("1")]
+Stiffness = Annotated[Number, Range("give the stiffness in N/m", above=0, at_most=1e15)]
+Rotation_stiffness = Annotated[
+    Number, Range("give the stiffness in N m/rad", above=0, at_most=1e15)
+]
+Mass_kg = Annotated[Number, Range("give the mass in kg", above=0, at_most=1e9)]
+Positive_factor = Annotated[
+    Number, Range("give a positive factor", above=0, at_most=1e6), Unit("1")
+]
 Coefficient = Annotated[Number, Range("a damping coefficient is not negative", at_least=0)]
 Non_negative = Annotated[Number, Range("give 0 for none", at_least=0)]
 Damping_ratio = Annotated[
@@ -221,11 +298,13 @@ Name = Annotated[
     Pattern("a name of letters, digits and _ that begins with a letter", "[A-Za-z][A-Za-z0-9_]*"),
 ]
 Study_name = Annotated[
-    str, Pattern("a folder name of letters, digits, _ and -", "[A-Za-z0-9][A-Za-z0-9_-]*")
+    str,
+    Pattern("a folder name of letters, digits, _ and -", "[A-Za-z0-9][A-Za-z0-9_-]*"),
+    OwnFolder("give the study a short name of its own, as in my_tube"),
 ]
 Axis = Literal["x", "y", "z"]
 Vector = Annotated[tuple[Number, ...], Length("give three, along x, y and z", 3)]
-Direction = Annotated[Vector, Unit("1")]
+Direction = Annotated[Vector, NotZero("give three components that are not all 0"), Unit("1")]
 Position = Annotated[Vector, Unit("m")]
 Pair = Annotated[
     tuple[Number, ...], Length("give two, along the support's transverse directions", 2)
@@ -234,10 +313,12 @@ Two_axes = Length("give two, of the section's first and second axis", 2)
 Band_Hz = Annotated[
     tuple[Lowest_frequency_Hz, ...],
     Length("give two, the lower end and the upper end in Hz", 2),
+    Ascending("give the lower end first"),
 ]
 Stiffness_range = Annotated[
     tuple[Stiffness, ...],
     Length("give two, the lowest and the highest stiffness in N/m", 2),
+    Ascending("give the lower end first"),
 ]
 Not_empty = Field(min_length=1)
 By_kind = Field(discriminator="kind")

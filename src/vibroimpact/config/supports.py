@@ -56,6 +56,9 @@ class Plate(Section):
     )
 
 
+Preload_N = Annotated[Number, Range("give the force in newtons", above=0, at_most=1e9)]
+
+
 class PointMass(Section):
     """A mass added at a named point of the structure. It has no rotary inertia."""
 
@@ -131,7 +134,7 @@ class Support(Section):
         " stops it may be 0 or negative: the support then touches or presses at rest.",
         examples=[1.0e-3],
     )
-    preload_N: Annotated[Number, Range("give the force in newtons", above=0)] | None = Field(
+    preload_N: Preload_N | None = Field(
         None,
         description="Force with which each flat land of the support presses the structure at rest,"
         " before constant forces; null for the gap. It is shared by the contact points as the"

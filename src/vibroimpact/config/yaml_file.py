@@ -7,10 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from yaml.nodes import MappingNode
 from yaml.reader import ReaderError
 
 from .problems import ConfigError
+from .yaml_loader import PlainLoader
+
+MOST_BYTES = 10**7
+TEMPLATES = "__use_yte__"  # with this key, Snakemake runs the expressions in a file as Python
+# How text begins that has 16 or 32 bits per character.
+WIDE_TEXT = (b"\xff\xfe", b"\xfe\xff", b"\0\0\xfe\xff")
 
 OPENED = {
     "while parsing a flow sequence": ("list", "[", "]"),
@@ -36,6 +41,13 @@ PLAIN_WORDS = (
         "a quote is not closed before the end of the file: close it",
     ),
     ("is given twice", "{problem}: keep one of the two"),
+    ("holds more than", "{problem}"),
+    ("nested in more than", "{problem}"),
+    ("an alias inside", "{problem}"),
+    ("is a tag", "{problem}"),
+    ("is ambiguous", "{problem}"),
+    ("can not be read", "{problem}"),
+    ("found unhashable key", "a list or a block as a key: write a text before the colon"),
     ("found undefined alias", "an alias (*name) without its anchor: write &name where it is meant"),
     (
         "cannot start any token",
@@ -50,20 +62,28 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the mapping in a YAML file.
 
     Raises ConfigError when the file can not be read, is no UTF-8 text, is not YAML, holds a key
-    twice or no keys at all. The sentence gives the line and the column where there is one.
+    twice or no keys at all, is larger than a configuration can be (see yaml_loader), or asks for
+    templates, which run code. The sentence gives the line and the column where there is one.
     """
-    data = _parsed(path, _text(path))
+    data = _parsed(path, _text(path, _content(path)))
     if not isinstance(data, dict):
         raise ConfigError([f"{path}: holds no keys: start from a copy of config/study.yaml"])
+    if TEMPLATES in data:
+        raise ConfigError(
+            [f"{path}: {TEMPLATES} would run what the file holds as a program: remove the key"]
+        )
     return data
 
 
-def _text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a file. Raises ConfigError."""
+def _content(path: str | os.PathLike[str]) -> bytes:
+    """Return the bytes of a file. Raises ConfigError."""
+    if Path(path).is_dir():
+        raise ConfigError([f"{path}: is a folder: give the path of a file in it"])
+    if Path(path).exists() and not Path(path).is_file():
+        raise ConfigError([f"{path}: is a pipe or a device: save the configuration to a file"])
     try:
-        raw = Path(path).read_bytes()
-    except IsADirectoryError as error:
-        raise ConfigError([f"{path}: is a folder: give the path of a file in it"]) from error
+        with open(path, "rb") as file:
+            raw = file.read(MOST_BYTES + 1)
     except OSError as error:
         raise ConfigError(
             [
@@ -71,9 +91,28 @@ def _text(path: str | os.PathLike[str]) -> str:
                 " as config/study.yaml"
             ]
         ) from error
+    if len(raw) > MOST_BYTES:
+        raise ConfigError(
+            [
+                f"{path}: is larger than {MOST_BYTES // 10**6} MB, which no configuration is: give"
+                " the path of a configuration, such as config/study.yaml"
+            ]
+        )
+    return raw
+
+
+def _text(path: str | os.PathLike[str], raw: bytes) -> str:
+    """Return the text that bytes of a file are in UTF-8. Raises ConfigError."""
+    if raw.startswith(WIDE_TEXT):
+        raise ConfigError(
+            [f"{path}: is text with 16 or 32 bits per character: save the file as UTF-8"]
+        )
     if b"\0" in raw:
         raise ConfigError(
-            [f"{path}: is a binary file: give a configuration as text, such as config/study.yaml"]
+            [
+                f"{path}: is a binary file or no text in UTF-8: give a configuration as text in"
+                " UTF-8, such as config/study.yaml"
+            ]
         )
     try:
         return raw.decode("utf-8")
@@ -87,16 +126,27 @@ def _text(path: str | os.PathLike[str]) -> str:
 def _parsed(path: str | os.PathLike[str], text: str) -> Any:
     """Return what a YAML text holds. Raises ConfigError."""
     try:
-        return yaml.load(text, Loader=_UniqueKeys)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise ConfigError([f"{path}: {place}{_in_plain_words(error)}"]) from error
+        loader = PlainLoader(text)
     except ReaderError as error:
         place = _line_and_column(text[: error.position])
         raise ConfigError(
             [f"{path}: {place}: a character that YAML does not allow: remove it"]
         ) from error
+    try:
+        return loader.get_single_data()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        raise ConfigError([f"{path}: {place}{_in_plain_words(error)}"]) from error
+    except (ValueError, OverflowError) as error:  # an escape such as "\UFFFFFFFF"
+        raise ConfigError(
+            [
+                f"{path}: line {loader.get_mark().line + 1}: an escape that is no character: write"
+                " the character itself"
+            ]
+        ) from error
+    finally:
+        loader.dispose()
 
 
 def _line_and_column(before: str) -> str:
@@ -118,24 +168,3 @@ def _in_plain_words(error: yaml.MarkedYAMLError) -> str:
         if part in f"{problem} {context}":
             return words.replace("{problem}", problem)
     return f"is not valid YAML ({', '.join(filter(None, [problem, context]))}): {ELSE}"
-
-
-class _UniqueKeys(yaml.SafeLoader):
-    """YAML's safe loader, except that a key given twice is an error. PyYAML would keep the last."""
-
-    def construct_mapping(self, node: MappingNode, deep: bool = False) -> dict:
-        """Return the mapping of a node. Raises ConstructorError."""
-        given: list[Any] = []
-        for key_node, _ in node.value:
-            if key_node.tag == "tag:yaml.org,2002:merge":
-                continue
-            key = self.construct_object(key_node, deep=True)
-            if key in given:
-                raise yaml.constructor.ConstructorError(
-                    None,
-                    None,
-                    f"key '{key}' is given twice",
-                    key_node.start_mark,
-                )
-            given.append(key)
-        return super().construct_mapping(node, deep)
