@@ -98,7 +98,7 @@ def rows_of(loads: int, seconds: float, run: bool, cores: int) -> list[dict]:
             measure(folder, f"-j{cores}", "--until", "_basis")  # compiles nothing that is timed
             done = measure(folder, f"-j{cores}")
             files = sum(file.is_file() for file in (folder / "results").rglob("*"))
-            kept = [file for file in (folder / ".snakemake" / "metadata").rglob("*")]
+            kept = (folder / ".snakemake" / "metadata").rglob("*")
             size = sum(file.stat().st_size for file in kept if file.is_file())
             rows.append({"loads": loads, "what": "run", "jobs": jobs, **done, "files": files})
             rows[-1]["metadata_MB"] = size / 1e6
