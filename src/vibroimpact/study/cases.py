@@ -89,7 +89,7 @@ def batches(
     """Return {name of a batch: its cases}, the cases of a job each, ascending in load.
 
     A decade of loads is cut into `bins_per_decade` bins at fixed places. The cases of a bin are a
-    batch; one of more than `cases_per_job` cases is halved, and its halves again. Seeds are taken in
+    batch; one of more than `cases_per_job` is halved, and its halves again. Seeds are taken in
     blocks of SEEDS_PER_JOB. An added load or seed thus changes the batch that it falls into, and no
     other, and the number of jobs grows with the grid only where jobs would become too long.
 
