@@ -119,5 +119,5 @@ def test_workflow_is_planned_as_a_module_of_another(tmp_path):
     )
     told = run.stdout + run.stderr
     assert run.returncode == 0, told
-    assert len(re.findall(r"^_simulate_from_[0-9.]+ +1$", told, re.M)) == 3
+    assert len(set(re.findall(r"^_simulate_from_\S+ +1$", told, re.M))) == 3
     assert re.search(r"^all +1$", told, re.M)

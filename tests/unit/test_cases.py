@@ -103,6 +103,11 @@ def test_an_added_load_changes_the_batch_it_falls_into(count):
     assert len(changed) == 1 and 0.777 in [case.load_rms_N for case in after[changed[0]]]
 
 
+def test_a_batch_holds_no_more_cases_than_a_job_may_take():
+    whole = grid(tuple(np.geomspace(0.05, 20.0, 2400)), (1e-4,), 1)
+    assert max(len(cases) for cases in batches(whole, 2, 100).values()) <= 100
+
+
 def test_an_added_seed_changes_the_last_block_of_seeds():
     before, after = (batches(grid((0.5, 4.0), (1e-4,), seeds), 10) for seeds in (100, 101))
     changed = {name for name, cases in after.items() if before[name] != cases}

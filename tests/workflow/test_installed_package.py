@@ -115,7 +115,7 @@ def planned(output):
     _simulate_from_0.5, count as one.
     """
     counts = Counter()
-    for rule, count in re.findall(r"^([\w.]+) +(\d+)$", output, flags=re.M):
+    for rule, count in dict(re.findall(r"^([\w.]+) +(\d+)$", output, flags=re.M)).items():
         counts[rule.split("_from_")[0]] += int(count)
     counts.pop("total", None)
     return dict(counts)

@@ -40,9 +40,10 @@ CASES = [case.id for case in all_cases(STUDY.grid)]
 KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
 # The cases that a job simulates: of the default study, those of one load. A job of the
 # identification takes those of half a decade, because it needs longer to start and to prepare the
-# linear tube than for the cases of one load.
+# linear tube than for the cases of one load. It takes 100 at most: Snakemake notes all inputs of a
+# job for each of its outputs.
 SIMULATED = batches(STUDY.grid, 10)
-IDENTIFIED = batches(STUDY.grid, 2)
+IDENTIFIED = batches(STUDY.grid, 2, 100)
 # By what the simulation writes beside its records.
 TO_SERIES = SIMULATED if KEPT or STUDY.identification is None else {}
 TO_SPECTRA = {} if TO_SERIES else SIMULATED

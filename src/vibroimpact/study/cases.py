@@ -83,11 +83,13 @@ def load_values(grid: Any) -> list[float]:
     return [float(f"{load:.{SIGNIFICANT_DIGITS}g}") for load in spaced]
 
 
-def batches(grid: Any, bins_per_decade: int) -> dict[str, list[Case]]:
+def batches(
+    grid: Any, bins_per_decade: int, cases_per_job: int = CASES_PER_JOB
+) -> dict[str, list[Case]]:
     """Return {name of a batch: its cases}, the cases of a job each, ascending in load.
 
     A decade of loads is cut into `bins_per_decade` bins at fixed places. The cases of a bin are a
-    batch; one of more than CASES_PER_JOB cases is halved, and its halves again. Seeds are taken in
+    batch; one of more than `cases_per_job` is halved, and its halves again. Seeds are taken in
     blocks of SEEDS_PER_JOB. An added load or seed thus changes the batch that it falls into, and no
     other, and the number of jobs grows with the grid only where jobs would become too long.
 
@@ -98,7 +100,7 @@ def batches(grid: Any, bins_per_decade: int) -> dict[str, list[Case]]:
     found: dict[str, list[Case]] = {}
     for first in range(0, grid.seeds, SEEDS_PER_JOB):
         seeds = range(first, min(first + SEEDS_PER_JOB, grid.seeds))
-        most = max(CASES_PER_JOB // (len(grid.gap_m) * len(seeds)), 1)
+        most = max(cases_per_job // (len(grid.gap_m) * len(seeds)), 1)
         block = f"_seed_{first}" if grid.seeds > SEEDS_PER_JOB else ""
         for together in loads_by_bin(loads, bins_per_decade, most):
             name = f"from_{value_text(together[0])}{block}"
