@@ -45,7 +45,7 @@ localrules:
 
 
 onstart:
-    write_files_of_run()
+    begin_run()
 
 
 onsuccess:
