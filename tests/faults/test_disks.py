@@ -2,6 +2,7 @@
 file; once there is room, a rerun gives the same bits.
 """
 
+import os
 import shutil
 import subprocess
 import sys
@@ -11,13 +12,14 @@ import pytest
 import xarray as xr
 
 from tests.faults.runs import Runs, bits
-from tests.tiny_study import TinyStudy, tiny_values
+from tests.tiny_study import ROOT, TinyStudy, tiny_values
 from vibroimpact.discrepancy import store
 from vibroimpact.records import RecordError, RecordFile, write_cells, write_record, write_text
 from vibroimpact.study.run_owner import take_folder
 from vibroimpact.whole_file import problem_of, whole_file
 
 RECORD = "results/tiny/records/load_20_gap_0.0001_seed_0.nc"
+REDIRECT = "from vibroimpact.job_log import redirect_output as to"
 MILLION = np.random.default_rng(1).normal(size=10**6)
 SERIES = xr.Dataset({"force": ("time", MILLION)})
 
@@ -89,24 +91,25 @@ def test_a_read_only_folder_is_named(kind, small_disk, reliability):
     reliability.fault("a read-only result folder", "one sentence: file, folder, remedy")
 
 
+def python(program, folder):
+    """Run a program in a folder; returns the finished process."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
+    command = [sys.executable, "-c", program]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+
+
 @pytest.mark.parametrize("content", ["print('word')", "raise KeyError('unforeseen')"])
 def test_a_log_on_a_read_only_disk_is_named(content, small_disk):
     disk = small_disk("size=1m")
     subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
-    program = (
-        f"from vibroimpact.job_log import redirect_output as to; to('{disk}/a.log'); {content}"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    done = python(f"{REDIRECT}; to('{disk}/a.log'); {content}", disk)
     assert done.returncode == 1 and "Traceback" not in done.stderr
     assert f"{disk}/a.log: cannot be written: {disk} is read-only" in done.stderr
 
 
 def test_an_error_with_a_sentence_ends_a_log_without_traceback(tmp_path):
-    program = (
-        "from vibroimpact.job_log import redirect_output as to; to('a.log'); print('begun')\n"
-        "from vibroimpact.records import read_table; read_table('none.csv')"
-    )
-    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path)
+    read = "from vibroimpact.records import read_table as read; read('none.csv')"
+    done = python(f"{REDIRECT}; to('a.log'); print('begun'); {read}", tmp_path)
     assert done.returncode == 1
     assert (tmp_path / "a.log").read_text().splitlines() == [
         "begun",
