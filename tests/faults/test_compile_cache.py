@@ -71,7 +71,13 @@ DAMAGES = {
 }
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
+QUICK = ("cut", "one bit")
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [pytest.param(name, marks=[] if name in QUICK else pytest.mark.slow) for name in DAMAGES],
+)
 def test_a_damaged_cache_is_built_again_by_itself(filled, cache, damage, reliability):
     files = [file for file in cache.rglob("*") if file.suffix in (".nbi", ".nbc")]
     assert {file.suffix for file in files} == {".nbi", ".nbc"}
