@@ -47,7 +47,7 @@ localrules:
 
 onstart:
     start_no_timers()
-    write_files_of_run()
+    begin_run()
 
 
 onsuccess:

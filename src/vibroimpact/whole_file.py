@@ -48,8 +48,17 @@ def whole_file(path: str | Path) -> Iterator[Path]:
             raise
         raise RecordError(f"{path}: cannot be written: {reason}") from error
     finally:
-        with suppress(OSError):  # a folder that is read-only holds none
-            temporary.unlink(missing_ok=True)
+        _remove(temporary)
+
+
+def _remove(temporary: Path) -> None:
+    """Remove a temporary file, if it is there, and free its space at once.
+
+    A library that failed to write it may keep it open; a full disk would then stay full.
+    """
+    with suppress(OSError):
+        os.truncate(temporary, 0)
+        temporary.unlink()
 
 
 def _flush(path: Path) -> None:
@@ -119,14 +128,15 @@ def remove_left_over(folders: Iterable[str | Path]) -> list[Path]:
     for folder in map(Path, folders):
         for entry in os.scandir(folder) if folder.is_dir() else ():
             match = TEMPORARY.fullmatch(entry.name)
-            if match and match["host"] == HOST and not _alive(int(match["process"])):
+            if match and match["host"] == HOST and not process_lives(int(match["process"])):
                 with suppress(OSError):
                     os.unlink(entry.path)
                     found.append(Path(entry.path))
     return found
 
 
-def _alive(process: int) -> bool:
+def process_lives(process: int) -> bool:
+    """Return whether a process of this machine is alive."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:

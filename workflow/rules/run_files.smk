@@ -3,7 +3,12 @@
 from snakemake.logging import logger
 from vibroimpact.records import read_table, read_text
 from vibroimpact.study.run_files import write_run_files
-from vibroimpact.study.run_report import failure_text, success_text
+from vibroimpact.study.run_owner import FolderTaken, start_text, take_folder
+from vibroimpact.study.run_report import failure_text, success_text, warnings_text
+from vibroimpact.whole_file import RecordError, remove_left_over
+
+# Whose this folder is. The lock that goes with it takes the place of Snakemake's, see the profile.
+MARK = ".snakemake/vibroimpact_run.json"
 
 
 def planned_jobs():
@@ -15,6 +20,21 @@ def result_folders():
     """The folders in results/ that the jobs of this run write to."""
     files = [Path(file) for job in planned_jobs() for file in job.output]
     return {Path(*file.parts[:2]) for file in files if file.parts[0] == "results"}
+
+
+def begin_run():
+    """Take the folder, clean up after a killed run, and write the files of this one.
+
+    Exits with a sentence where another run is at work in it or it cannot be written.
+    """
+    try:
+        killed = take_folder(MARK, sys.argv) if workflow.is_main_process else None
+        folders = {Path(file).parent for job in planned_jobs() for file in job.output}
+        for line in start_text(killed, remove_left_over(folders)):
+            logger.info(line)
+        write_files_of_run()
+    except (FolderTaken, RecordError) as error:
+        sys.exit(str(error))
 
 
 def write_files_of_run():
@@ -30,8 +50,9 @@ def write_files_of_run():
 
 
 def say_success():
-    """Say the headline of the study where this run has completed it."""
+    """Say the headline of the study where this run has completed it, and which jobs warned."""
     table = Path(RESULTS, "equivalent.csv")
+    say_warnings()
     if "all" in {job.rule.name for job in workflow.dag.finished_jobs}:
         rows = read_table(table) if table.is_file() else []
         logger.info(success_text(RESULTS, rows))
@@ -45,3 +66,12 @@ def say_failure(logs):
     text = failure_text("".join(read_text(file) for file in logs if Path(file).is_file()))
     if text:
         logger.error(text)
+    say_warnings()
+
+
+def say_warnings():
+    """Say which logs of this run hold warnings."""
+    logs = [str(file) for job in workflow.dag.finished_jobs for file in job.log]
+    text = warnings_text(logs)
+    if text:
+        logger.warning(text)

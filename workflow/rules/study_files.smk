@@ -5,7 +5,7 @@ from snakemake.logging import logger
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.provenance import library_digest
 from vibroimpact.reports.captions import read_caption
-from vibroimpact.study.cases import all_cases, batches
+from vibroimpact.study.cases import all_cases, batches, case_from_id
 
 FIGURES = {
     "model": (
@@ -177,12 +177,30 @@ def jobs_of_study():
     return [*jobs, "study_page"]
 
 
+def missing_files():
+    """Of the files per case that a study lacks, one of each load and kind: its job makes them all.
+
+    A file that was deleted is made again, although what was made from it is there. To name every
+    file that is there would cost time at each start.
+    """
+    kinds = ["records/*.nc", "spectra/*.nc", "estimates/*.nc", "estimates/*.csv"]
+    missing = {}
+    for kind in kinds if STUDY.identification is not None else kinds[:1]:
+        there = {file.name for file in Path(RESULTS).glob(kind)}
+        for case in CASES:
+            path = Path(RESULTS, kind.replace("*", case))
+            if path.name not in there:
+                missing.setdefault((kind, case_from_id(case).load_rms_N), path.as_posix())
+    return list(missing.values())
+
+
 def targets():
     """The files of a complete study: page, tables, figures, and time series where they are kept.
 
+    Files per case are among them where they are missing.
     Without an identification: page, statistics of every case, and time series where they are kept.
     """
-    series = files_of_study("timeseries") if KEPT else []
+    series = [*(files_of_study("timeseries") if KEPT else []), *missing_files()]
     pages = [f"{RESULTS}/index.html", f"{RESULTS}/summary.pdf"]
     if STUDY.identification is None:
         return [f"{RESULTS}/statistics.csv", *pages, *series]

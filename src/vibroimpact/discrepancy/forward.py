@@ -107,7 +107,7 @@ def simulate_records(model, schedule, forces, runs, kinds):
                 break
             except IntegrationError as error:  # again, with no force on what was thrown off
                 if error.case is None or error.case in lost or len(lost) + 1 > LOST * len(batch):
-                    raise
+                    raise error.of([f"run {run} of record {at}" for at, _, run in batch]) from error
                 lost.add(error.case)
         out[[first + case for case in lost]] = np.nan
     return out

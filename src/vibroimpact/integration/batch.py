@@ -384,13 +384,13 @@ class _Run:
 
     def fail(self, steps: int) -> None:
         """Raise IntegrationError with the time and place at which the run diverged."""
-        displacement = np.abs(self.state.row_displacement)
+        displacement = np.abs(self.state.row_displacement[:, : self.cases])
         displacement[~np.isfinite(displacement)] = np.inf
         row, lane = np.unravel_index(np.argmax(displacement), displacement.shape)
         points = np.flatnonzero((self.contact.row_1 == row) | (self.contact.row_2 == row))
         raise IntegrationError(
             f"diverged at t = {(self.done + steps - 1) * self.dt - self.schedule.start_up:.4f} s of"
-            f" the record, case {lane} of the batch, contact point"
+            " the record, contact point"
             f" {points[0] if points.size else row}: raise integration.steps_per_second (now"
             f" {self.schedule.steps_per_second:g}, highest mode kept"
             f" {self.model.omega.max() / (2 * np.pi):.0f} Hz) or check the contact stiffness and"

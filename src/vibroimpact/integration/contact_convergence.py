@@ -1,5 +1,9 @@
 """Convergence of the contact iteration of a step, and the error raised where it is too slow."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
@@ -18,6 +22,12 @@ class IntegrationError(Exception):
     def __init__(self, message: str, case: int | None = None):
         super().__init__(message)
         self.case = case
+
+    def of(self, cases: Sequence[object]) -> IntegrationError:
+        """Return the error with the name of its case, of those of the batch, before the message."""
+        if self.case is None:
+            return self
+        return IntegrationError(f"{cases[self.case]}: {self}", self.case)
 
 
 def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -> float:

@@ -83,9 +83,12 @@ def integrate_every_step(
         modal, contact, laws, state, tally, output, trace, work, np.ascontiguousarray(force[1:])
     )
     if done < ticks * RATIO:
+        moved = np.abs(state.row_displacement[:, :cases])
+        moved[~np.isfinite(moved)] = np.inf
         raise IntegrationError(
             f"diverged at t = {done / steps_per_second:.4f} s: raise integration.steps_per_second"
-            " or check forces and stiffnesses"
+            " or check forces and stiffnesses",
+            case=int(np.argmax(np.max(moved, axis=0))),
         )
     displacement, force_on_rows = (
         np.concatenate([first[:, None], rest], axis=1)[..., :cases].transpose(2, 0, 1)

@@ -39,6 +39,9 @@ class Case:
     gap_m: float
     seed: int
 
+    def __str__(self) -> str:
+        return f"load {self.load_rms_N:g} N RMS, gap {1e3 * self.gap_m:.4g} mm, seed {self.seed}"
+
     @property
     def id(self) -> str:
         """The name of the case's files, e.g. load_0.5_gap_0.00028886_seed_0."""

@@ -15,6 +15,7 @@ import xarray as xr
 from vibroimpact.excitation.force_channels import force_channels
 from vibroimpact.excitation.force_stream import normalised_force
 from vibroimpact.integration.batch import Schedule, rest_state
+from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.every_step import Traces, integrate_every_step
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
@@ -57,7 +58,10 @@ def trace_cases(
             schedule = Schedule(rate, rate / RATIO, 0.0, 1.0, scheme)
             offset, rest = seated(model, schedule, gap, offset)
             rest = rest_state(model, schedule, gap, offset, rest)
-        traces = integrate_every_step(model, rate, steps, gap, offset, drive, scheme, rest)
+        try:
+            traces = integrate_every_step(model, rate, steps, gap, offset, drive, scheme, rest)
+        except IntegrationError as error:
+            raise error.of(batch) from error
         for lane, case in enumerate(batch):
             yield case, _dataset(config, model, traces, lane, case)
 

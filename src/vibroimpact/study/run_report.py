@@ -9,13 +9,20 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.records import read_table
+from vibroimpact.whole_file import problem_of
 
 from .equivalent_table import NOT_MOVED
 
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
 STARTED = re.compile(r"^Job (?P<job>\d+): (?P<message>.*)$", flags=re.M)
-LAST_LINES = 6
+# A warning as Python prints it: file, line, kind and text.
+WARNED = re.compile(r"^\S.*:\d+: (?P<warning>\w*Warning: .*)$", flags=re.M)
+NO_WORD = (
+    "see the lines above. A job that is stopped from outside, as for lack of memory, leaves no"
+    " word: run fewer jobs at a time (-j1)"
+)
+LAST_LINES, MOST_WARNINGS = 6, 5
 STATISTICS = "statistics.csv"
 MENTIONED = ("index.html", "summary.pdf", "equivalent.csv", "consistency.csv", STATISTICS)
 CASE_KEYS = ("gap_m", "load_rms_N", "seed", "group", "direction")
@@ -112,6 +119,30 @@ def failure_text(log: str) -> str:
     )
 
 
+def warnings_text(logs: Iterable[str | Path]) -> str:
+    """Return which logs hold warnings, as of a division by zero, and the first of each; "" for
+    none.
+    """
+    found = {}
+    for path in logs:
+        if Path(path).is_file():
+            text = Path(path).read_text(encoding="utf-8", errors="replace")
+            found[path] = WARNED.findall(text)
+    warned = {path: warnings for path, warnings in found.items() if warnings}
+    if not warned:
+        return ""
+    lines = [f"  {path}: {warnings[0]}" for path, warnings in warned.items()]
+    more = len(lines) - MOST_WARNINGS
+    return "\n".join(
+        [
+            f"{len(lines)} {'jobs' if len(lines) > 1 else 'job'} warned; look at the numbers in"
+            " question before you use them:",
+            *lines[:MOST_WARNINGS],
+            *([f"  and {more} more"] if more > 0 else []),
+        ]
+    )
+
+
 def _failed_job(match: re.Match, messages: dict[str, str]) -> dict[str, str]:
     """Return {rule, message, log} of a failed job; messages: of the started jobs by number."""
     about = dict(re.findall(r"^    (\w+): (.*)$", match["about"], flags=re.M))
@@ -135,7 +166,6 @@ def _about(job: dict[str, str]) -> list[str]:
     if not last:
         return [
             *lines,
-            f"    {job['log']} is empty: see the lines above. A job that is stopped from outside,"
-            " as for lack of memory, leaves no word: run fewer jobs at a time (-j1)",
+            f"    {job['log']} is empty: {problem_of(path.parent) or NO_WORD}",
         ]
     return [*lines, f"    {job['log']} ends with", *(f"      {line}" for line in last)]

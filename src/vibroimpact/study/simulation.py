@@ -18,6 +18,7 @@ from vibroimpact.integration.batch import (
     integrate_batch,
     rest_state,
 )
+from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
@@ -52,7 +53,7 @@ def simulate_cases(
     stopwatch: measures the CPU time of kernel, output filter and force.
 
     With record.every_step the records are those of every_step_records; writer is not used.
-    Raises IntegrationError, ForceError.
+    Raises IntegrationError with load, gap and seed of a case that diverges, ForceError.
     """
     stopwatch = Stopwatch() if stopwatch is None else stopwatch
     if config.record.every_step:
@@ -79,19 +80,22 @@ def simulate_cases(
         if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
             rest = rest_state(model, schedule, gap, offset, rest)
         with nullcontext() if writer is None else writer(schedule, batch) as put:
-            lanes = integrate_batch(
-                model,
-                schedule,
-                gap=gap,
-                imperfection=offset,
-                drive=_drive(batch, forces, stopwatch),
-                receive=(
-                    None
-                    if put is None
-                    else lambda at, *pieces, put=put: put(at, time_series(model, *pieces))
-                ),
-                initial=rest,
-            )
+            try:
+                lanes = integrate_batch(
+                    model,
+                    schedule,
+                    gap=gap,
+                    imperfection=offset,
+                    drive=_drive(batch, forces, stopwatch),
+                    receive=(
+                        None
+                        if put is None
+                        else lambda at, *pieces, put=put: put(at, time_series(model, *pieces))
+                    ),
+                    initial=rest,
+                )
+            except IntegrationError as error:
+                raise error.of(batch) from error
         stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):
             yield case, record_dataset(config, model, schedule, lanes, lane, case)

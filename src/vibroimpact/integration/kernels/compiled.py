@@ -2,18 +2,23 @@
 
 numba keys its cache on the file that holds the entry point. It does not see an edit in another file
 and would then return the old physics. The cache folder is therefore named by a digest of all files
-of this folder: an edit in any of them starts from an empty cache. Nothing in this folder may import
-from the rest of the library.
+of this folder: an edit in any of them starts from an empty cache. A file of the cache that is
+damaged counts as none: it is compiled and written again. Nothing in this folder may import from the
+rest of the library.
 """
 
 import hashlib
+import io
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
 from numba import njit
 from numba.core import config as numba_config
+from numba.core.caching import IndexDataCacheFile
 
 config: Any = numba_config  # its settings are made at run time
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -22,6 +27,13 @@ SOURCES = Path(__file__).parent
 # Without numba's reference counts: counting each array of a table at each use costs five times the
 # arithmetic. No compiled function allocates; work space is handed in.
 WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
+DIGEST_BYTES = hashlib.sha256().digest_size
+# Said once, where every process has to compile.
+NO_CACHE = (
+    "vibroimpact: the compiled kernels can not be kept ({reason}): every job compiles them again;"
+    " set NUMBA_CACHE_DIR to a folder that can be written"
+)
+_said: set[str] = set()
 
 
 def source_digest(folder: Path = SOURCES) -> str:
@@ -52,7 +64,14 @@ def entry_point(function: Function) -> Function:
             compiled = _compiled_with_cache(function, place / f"kernels-{IMPORTED_SOURCES}")
             if compiled is not None:
                 return compiled
+        _say_once(", ".join(f"no writing in {place}" for place in cache_places()))
     return njit(**WITHOUT_REFERENCE_COUNTS)(function)
+
+
+def _say_once(reason: str) -> None:
+    if not _said:
+        _said.add(reason)
+        print(NO_CACHE.format(reason=reason), file=sys.stderr)
 
 
 def cache_places() -> list[Path]:
@@ -75,4 +94,49 @@ def _compiled_with_cache(function, folder):
     finally:
         config.CACHE_DIR = setting
     # numba falls back on a folder of its own choice, which sees edits of one file only.
-    return compiled if Path(compiled.stats.cache_path).is_relative_to(folder) else None
+    if not Path(compiled.stats.cache_path).is_relative_to(folder):
+        return None
+    cache: Any = compiled._cache
+    cache._cache_file = CheckedCacheFile(
+        cache.cache_path, cache._impl.filename_base, cache._impl.locator.get_source_stamp()
+    )
+    return compiled
+
+
+class CheckedCacheFile(IndexDataCacheFile):
+    """The files of numba's cache, each with a digest of its content behind it.
+
+    Without one, numba fails on a damaged file until someone deletes it, or runs damaged code.
+    """
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
+        with super()._open_for_write(filepath) as file:
+            content = io.BytesIO()
+            yield content
+            file.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+
+    def _load_index(self) -> dict:
+        # unpickling ends before the digest
+        return super()._load_index() if _is_whole(self._index_path) else {}
+
+    def _load_data(self, name: str) -> Any:
+        if not _is_whole(self._data_path(name)):
+            raise OSError("damaged")  # which numba takes for a file that is not there
+        return super()._load_data(name)
+
+    def save(self, key: Any, data: Any) -> None:
+        """Save machine code; a disk that is full or read-only is no reason to stop."""
+        try:
+            super().save(key, data)
+        except OSError as error:
+            _say_once(str(error))
+
+
+def _is_whole(path: str) -> bool:
+    """Return whether a file of the cache is there and ends with the digest of its content."""
+    try:
+        content = Path(path).read_bytes()
+    except OSError:
+        return False
+    return hashlib.sha256(content[:-DIGEST_BYTES]).digest() == content[-DIGEST_BYTES:]
