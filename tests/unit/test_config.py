@@ -460,7 +460,7 @@ def test_bend_along_its_own_tangent_is_refused(other_kinds):
     )
     put(other_kinds, "structure.start_direction", [0, 0, 0])
     assert any(
-        "structure.start_direction = [0.0, 0.0, 0.0] is not a direction" in line
+        "structure.start_direction = [0, 0, 0] is not a direction" in line
         for line in problems(other_kinds)
     )
 

@@ -114,7 +114,7 @@ def test_springs_alone_can_feed_a_mode_near_half_a_turn(tmp_path):
         require_stable_step(near, 1.0 / step, "exact")
 
 
-def test_a_structure_that_runs_away_by_itself_is_no_fault_of_the_step():
+def test_an_unstable_structure_is_no_fault_of_the_step():
     """A negative element of -2 k on a spring k: the motion grows with sqrt(k / m), as it should."""
     from tests.oscillator import oscillator
 

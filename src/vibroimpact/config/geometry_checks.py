@@ -30,15 +30,8 @@ TOLERANCE = 1e-9
 
 
 def path_directions(structure: Tube) -> Problems:
-    """Yield a problem unless start and bends of a path have directions."""
+    """Yield a problem unless the bends of a path have directions."""
     if structure.kind != "path":
-        return
-    if not np.any(structure.start_direction):
-        yield (
-            "structure.start_direction",
-            list(structure.start_direction),
-            "is not a direction: give three components that are not all 0",
-        )
         return
     tangent = np.array(structure.start_direction) / np.linalg.norm(structure.start_direction)
     for index, segment in enumerate(structure.segments):

@@ -91,9 +91,6 @@ def _across(
 
     at_m: position of the support on the centreline.
     """
-    if not np.any(normal):
-        yield place, list(normal), "is not a direction: give three components that are not all 0"
-        return
     tangent = np.array([0.0, 0.0, 1.0])  # a structure that is no tube has contact along x and y
     if centreline is not None:
         if at_m is None or any(off_the_tube(centreline, place, at_m)):

@@ -162,6 +162,40 @@ class Pattern(Checked):
         return {"pattern": f"^(?:{self.expression})$"}
 
 
+@dataclass(frozen=True)
+class NotZero(Checked):
+    """A vector that has a direction."""
+
+    def check(self, value: tuple) -> tuple:
+        """Return the value. Raises PydanticCustomError when all components are 0."""
+        if not any(value):
+            raise PydanticCustomError(
+                "direction", "is not a direction: {remedy}", {"remedy": self.remedy}
+            )
+        return value
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return nothing: JSON schema can not state it plainly."""
+        return {}
+
+
+@dataclass(frozen=True)
+class Ascending(Checked):
+    """Two values, the lower one first."""
+
+    def check(self, value: tuple) -> tuple:
+        """Return the value. Raises PydanticCustomError when they are equal or the other way."""
+        if value[0] >= value[1]:
+            raise PydanticCustomError(
+                "ascending", "is not in ascending order: {remedy}", {"remedy": self.remedy}
+            )
+        return value
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return nothing: JSON schema can not compare values."""
+        return {}
+
+
 Diameter_m = Annotated[Number, Range("in metres? 22.22 mm is 0.02222", above=0, at_most=2)]
 Wall_m = Annotated[Number, Range("in metres? 1.27 mm is 0.00127", above=0, at_most=1)]
 Length_m = Annotated[Number, Range("give the length in metres", above=0, at_most=1000)]
@@ -225,7 +259,8 @@ Study_name = Annotated[
 ]
 Axis = Literal["x", "y", "z"]
 Vector = Annotated[tuple[Number, ...], Length("give three, along x, y and z", 3)]
-Direction = Annotated[Vector, Unit("1")]
+Direction = Annotated[Vector, NotZero("give three components that are not all 0"), Unit("1")]
+LOWER_FIRST = Ascending("give the lower end first")
 Position = Annotated[Vector, Unit("m")]
 Pair = Annotated[
     tuple[Number, ...], Length("give two, along the support's transverse directions", 2)
@@ -234,10 +269,12 @@ Two_axes = Length("give two, of the section's first and second axis", 2)
 Band_Hz = Annotated[
     tuple[Lowest_frequency_Hz, ...],
     Length("give two, the lower end and the upper end in Hz", 2),
+    LOWER_FIRST,
 ]
 Stiffness_range = Annotated[
     tuple[Stiffness, ...],
     Length("give two, the lowest and the highest stiffness in N/m", 2),
+    LOWER_FIRST,
 ]
 Not_empty = Field(min_length=1)
 By_kind = Field(discriminator="kind")

@@ -124,6 +124,8 @@ def _refuse_false_rigid_modes(
     found = int(np.sum(omega == 0.0))
     if found <= allowed:
         return
+    ends = [getattr(config.structure, name, None) for name in ("root", "start", "end")]
+    soft = any(end is not None and end.kind == "springs" for end in ends)
     lengths = np.diff(structure.node_arc_length)
     shortest = int(np.argmin(lengths))
     raise ValueError(
@@ -132,6 +134,7 @@ def _refuse_false_rigid_modes(
         f" {structure.node_arc_length[shortest]:.4f} m, is too short beside the tube of"
         f" {structure.centreline.length:.4g} m: give the support there fewer points or more"
         " height_m, move it, or use structure.theory: timoshenko"
+        + (", or give the ends springs that are not so soft" if soft else "")
     )
 
 
