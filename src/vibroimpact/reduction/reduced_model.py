@@ -51,13 +51,18 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     motion_only: leave out the shape line and the stresses.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
-    unknown, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload has no static
-    equilibrium, or the initial state is not representable (see initial_state).
+    unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload
+    has no static equilibrium, or the initial state is not representable (see initial_state).
     """
     tube = config.structure.kind in TUBES
     structure, local_rows = full_structure(config)
     point_rows = _point_rows(structure, config)
     omega, shapes, full_frequencies = _modes(structure, local_rows, config)
+    if not len(omega):
+        raise ValueError(
+            f"basis.free_modes_to_Hz = {config.basis.free_modes_to_Hz:g}: the structure has no mode"
+            " up to there, and no contact: raise it"
+        )
     if tube:
         _refuse_false_rigid_modes(structure, omega, config)
     omega, order = with_frequency_factors(omega, config.mode_frequency_factors)
