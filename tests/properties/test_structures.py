@@ -20,7 +20,7 @@ from vibroimpact.reduction.reduced_model import build_model, full_structure
 from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.study.model_checks import check_model
 
-STIFFENS_ONLY = -1.0e-6  # relative: the round-off of short elements beside a long tube
+EPSILON = float(np.finfo(float).eps)
 # Words of numerical libraries, which are no sentence for a user.
 LIBRARY_WORDS = ("leading minor", "converge", "infs or NaNs", "ingular matrix", "zero-size")
 ENDS = st.sampled_from(
@@ -154,17 +154,20 @@ def require_right_tube(config):
     line = build_centreline(config.structure)
     allowed = free_rigid_motions(config.structure, line)
     assert np.sum(model.omega == 0.0) <= allowed
+    # The round-off of a bending stiffness grows with the cube of the tube over its elements.
+    ratio = line.length / np.diff(structure.node_arc_length).min()
+    round_off = 1.0e-6 + EPSILON * ratio**3
     for row in model_accuracy(config):
         assert np.isfinite(row["full_Hz"])
         if np.isfinite(row["reduced_Hz"]) and row["full_Hz"] > 0.0:
-            assert row["basis_error"] > STIFFENS_ONLY, row
+            assert row["basis_error"] > -round_off, row
     rows = structure.contact_rows().reshape(-1, structure.dofs)
     if allowed == 0 and len(rows) and config.basis.attachment_shapes:
         moved = spsolve(structure.stiffness.tocsc(), rows.T).reshape(rows.T.shape)
         full = np.sum(rows * moved.T, axis=1)
         shapes = model.contact_shapes.reshape(model.modes, -1)
         reduced = np.sum((shapes / model.omega[:, None]) ** 2, axis=0)
-        assert np.allclose(reduced, full, rtol=1e-4, atol=1e-6 * full.max())
+        assert np.allclose(reduced, full, rtol=1e-4 + round_off, atol=1e-6 * full.max())
 
 
 def test_generated_tubes_are_refused_or_right(reliability):
