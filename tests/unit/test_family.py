@@ -145,3 +145,25 @@ def test_errors_of_the_model_near_the_free_tube(tube):
     # 3500 N/m.
     assert 450.0 < tube.pole_error_at_zero < 700.0
     assert 2.0e3 < tube.shape_error_at_zero < 5.0e3
+
+
+def test_a_stiff_support_may_lift_every_mode_above_the_spectra(study_model):
+    """Spectra to 20 Hz, of a tube at 16 Hz free and above 25 Hz on stiff supports."""
+    sensors = Sensors(("apex.y", "bend_45.y"), 0, 1, (0, 1))
+    narrow = ReferenceTube(
+        study_model,
+        Bins(0.1, 200, 80, 190, "hann"),
+        sensors,
+        (5.0, 20.0),
+        (6.0, 19.0),
+        (1.0e3, 1.0e8),
+    )
+    assert narrow.frequency[-1] == 20.0
+    for k in (1.0e3, 1.0e8):
+        first = natural_frequencies(study_model, k, 1)[0]
+        assert narrow.first_frequency(k) == pytest.approx(first, rel=2e-2)
+        # c = -least takes the first mode's own damping, to first order
+        least = narrow.lowest_stable_damping(k)
+        lost = narrow.first_damping_ratio(k) + least * narrow.damping_ratio_slope(k)
+        assert 0.0 < lost < narrow.first_damping_ratio(k)
+    assert np.isfinite(narrow.broadband_map.c).all()

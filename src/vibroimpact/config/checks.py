@@ -120,6 +120,13 @@ def _every_step(record: RecordKeys, integration: Integration) -> Problems:
 
 
 def _force(excitation: Excitation) -> Problems:
+    for index, load in enumerate(getattr(excitation, "distributed", ())):
+        if load.from_m == load.to_m:
+            yield (
+                f"excitation.distributed[{index}].to_m",
+                list(load.to_m),
+                "is from_m again, the load has no length: give the other end of the stretch",
+            )
     if excitation.kind == "measured" and not os.path.isfile(excitation.file):
         yield (
             "excitation.file",
@@ -218,7 +225,7 @@ def _bands_resolved(spectra: Spectra, identification: Identification) -> Problem
     }
     for key, (low, high) in bands.items():
         lines = (high - low) * spectra.segment_s
-        if 0 < lines < 8:
+        if lines < 8:
             yield (
                 f"identification.{key}",
                 [low, high],

@@ -30,7 +30,7 @@ TOLERANCE = 1e-9
 
 
 def path_directions(structure: Tube) -> Problems:
-    """Yield a problem unless start and bends of a path have directions."""
+    """Yield a problem unless the bends of a path have directions."""
     if structure.kind != "path":
         return
     tangent = np.array(structure.start_direction) / np.linalg.norm(structure.start_direction)

@@ -191,6 +191,12 @@ def chain_names(structure: Structure) -> Problems:
         if times > 1:
             yield "structure.masses", name, f"names {times} masses: give each a name of its own"
     for index, spring in enumerate(structure.springs):
+        if len(set(spring.between)) == 1:
+            yield (
+                f"structure.springs[{index}].between",
+                list(spring.between),
+                "joins one place to itself, it has no effect: give two masses, or one and ground",
+            )
         for end in spring.between:
             if end not in (*names, "ground"):
                 yield (

@@ -23,6 +23,7 @@ from .quantities import (
     Length_m,
     Mass_kg,
     Name,
+    Non_negative,
     Not_empty,
     Number,
     Range,
@@ -176,7 +177,7 @@ class Spring(Section):
     between: Annotated[tuple[Name, ...], Length("give two names: masses, or ground", 2)] = Field(
         description="The two ends: names of masses, or `ground`.", examples=[["ground", "mass"]]
     )
-    stiffness_N_per_m: Coefficient = Field(0.0, description="Stiffness.", examples=[6.3e4])
+    stiffness_N_per_m: Non_negative = Field(0.0, description="Stiffness.", examples=[6.3e4])
     damping_N_s_per_m: Coefficient = Field(0.0, description="Damping coefficient.", examples=[12.0])
 
 

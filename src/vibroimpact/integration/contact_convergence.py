@@ -11,6 +11,10 @@ from vibroimpact.reduction.modal_model import ModalModel
 from .kernel_layout import ModalLayout
 
 CONTRACTION_LIMIT = 0.5
+LARGEST_TURN = 1.0e6  # rad of a mode in a step; beyond, its phase has lost half of its digits
+# damping x step of a mode under the exact scheme, whose shifted state (see modal_step) grows with
+# exp(damping step / 2): at 40 it has lost half of its digits.
+LARGEST_DECAY = 40.0
 
 
 class IntegrationError(Exception):
@@ -72,20 +76,44 @@ def checked_contraction(
 ) -> float:
     """The contraction factor of the contact iteration.
 
-    Raises IntegrationError above CONTRACTION_LIMIT, with the steps per second that are needed.
+    Raises IntegrationError above CONTRACTION_LIMIT, with the steps per second that are needed, and
+    for a mode without a phase or with too much damping.
     """
+    _require_digits(model, steps_per_second, scheme)
     contraction = contact_contraction(model, 1.0 / steps_per_second, scheme)
-    if contraction > CONTRACTION_LIMIT:
+    if not contraction <= CONTRACTION_LIMIT:  # NaN where the step has no numbers for a mode
         largest = max(
             model.contact_stiffness.max(initial=0.0),
             np.abs(model.local_laws.stiffness).max(initial=0.0),
         )
         raise IntegrationError(
-            f"contact stiffness {largest:.3g} N/m, of a point of supports.stiffness_N_per_m or of"
-            f" an element, is too stiff for a step of {1 / steps_per_second:.3g} s: the contact"
-            f" iteration contracts by {contraction:.2g} only"
-            f" (limit {CONTRACTION_LIMIT}; dampers and friction springs count too): raise"
+            f"contact stiffness {largest:.3g} N/m is too stiff for a step of"
+            f" {1 / steps_per_second:.3g} s: the contact iteration contracts by {contraction:.2g}"
+            f" only (limit {CONTRACTION_LIMIT}; the stiffness is that of a point of"
+            " supports.stiffness_N_per_m or of an element; dampers, friction springs and light"
+            " plates count too): raise"
             " integration.steps_per_second to at least"
             f" {steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
         )
     return contraction
+
+
+def _require_digits(model: ModalModel, steps_per_second: float, scheme: str) -> None:
+    """Raise IntegrationError for a mode whose step has no digits left."""
+    highest = model.omega.max(initial=0.0)
+    if highest > LARGEST_TURN * steps_per_second:
+        raise IntegrationError(
+            f"integration.steps_per_second = {steps_per_second:g}: a mode of"
+            f" {highest / (2.0 * np.pi):.3g} Hz turns by {highest / steps_per_second:.3g} rad in a"
+            f" step, at most {LARGEST_TURN:g}: make it softer or heavier (a support's plate, a"
+            " mode_frequency_factor, the matrices)"
+        )
+    strongest = model.damping.max(initial=0.0)
+    if scheme == "exact" and strongest > LARGEST_DECAY * steps_per_second:
+        mode = model.omega[np.argmax(model.damping)] / (2.0 * np.pi)
+        raise IntegrationError(
+            f"integration.steps_per_second = {steps_per_second:g}: the mode at {mode:.3g} Hz decays"
+            f" by exp(-{strongest / steps_per_second:.3g}) in a step of the exact scheme, at most"
+            f" exp(-{LARGEST_DECAY:g}): give at least {int(np.ceil(strongest / LARGEST_DECAY))},"
+            " less damping (modal in place of rayleigh), or integration.scheme: newmark"
+        )

@@ -95,12 +95,15 @@ def require_accurate(rows: Iterable[dict[str, Any]]) -> None:
     """
     for row in rows:
         if row["flag"] == "basis":
+            found = (
+                "is missing"
+                if np.isnan(row["reduced_Hz"])
+                else f"has {row['reduced_Hz']:.6g} Hz (at most {100 * LARGEST_ERROR:g} % off)"
+            )
             raise ModelAccuracyError(
-                f"basis: the reduced model has mode {row['mode']} {row['condition']} at"
-                f" {row['reduced_Hz']:.6g} Hz, the full one at {row['full_Hz']:.6g} Hz: off by"
-                f" {abs(row['basis_error']):.2g}, at most {LARGEST_ERROR:g}: raise"
-                " basis.free_modes_to_Hz or basis.constrained_modes_to_Hz, or set"
-                " basis.attachment_shapes: true"
+                f"basis: mode {row['mode']} {row['condition']}, {row['full_Hz']:.6g} Hz of the full"
+                f" model, {found} in the reduced one: raise basis.free_modes_to_Hz or"
+                " basis.constrained_modes_to_Hz, or set basis.attachment_shapes: true"
             )
 
 
@@ -115,7 +118,7 @@ def mesh_warnings(rows: Iterable[dict[str, Any]]) -> list[str]:
     worst = max(flagged, key=lambda row: abs(row["mesh_error"]))
     return [
         f"structure.mesh is coarse: the frequency of mode {worst['mode']} {worst['condition']},"
-        f" {worst['full_Hz']:.4g} Hz, is off by {100.0 * abs(worst['mesh_error']):.2g} % (at most"
+        f" {worst['full_Hz']:.4g} Hz, is off by {100.0 * abs(worst['mesh_error']):.3g} % (at most"
         f" {100.0 * LARGEST_ERROR:g} %): give more elements_per_span or elements_per_bend"
     ]
 

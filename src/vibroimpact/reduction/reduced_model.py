@@ -51,13 +51,18 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
     motion_only: leave out the shape line and the stresses.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
-    unknown, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload has no static
-    equilibrium, or the initial state is not representable (see initial_state).
+    unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload
+    has no static equilibrium, or the initial state is not representable (see initial_state).
     """
     tube = config.structure.kind in TUBES
     structure, local_rows = full_structure(config)
     point_rows = _point_rows(structure, config)
     omega, shapes, full_frequencies = _modes(structure, local_rows, config)
+    if not len(omega):
+        raise ValueError(
+            f"basis.free_modes_to_Hz = {config.basis.free_modes_to_Hz:g}: the structure has no mode"
+            " up to there, and no contact: raise it"
+        )
     if tube:
         _refuse_false_rigid_modes(structure, omega, config)
     omega, order = with_frequency_factors(omega, config.mode_frequency_factors)
@@ -124,6 +129,8 @@ def _refuse_false_rigid_modes(
     found = int(np.sum(omega == 0.0))
     if found <= allowed:
         return
+    ends = [getattr(config.structure, name, None) for name in ("root", "start", "end")]
+    soft = any(end is not None and end.kind == "springs" for end in ends)
     lengths = np.diff(structure.node_arc_length)
     shortest = int(np.argmin(lengths))
     raise ValueError(
@@ -132,6 +139,7 @@ def _refuse_false_rigid_modes(
         f" {structure.node_arc_length[shortest]:.4f} m, is too short beside the tube of"
         f" {structure.centreline.length:.4g} m: give the support there fewer points or more"
         " height_m, move it, or use structure.theory: timoshenko"
+        + (", or give the ends springs that are not so soft" if soft else "")
     )
 
 

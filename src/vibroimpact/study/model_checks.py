@@ -14,6 +14,7 @@ from vibroimpact.reduction.model_accuracy import (
     model_accuracy,
     require_accurate,
 )
+from vibroimpact.reduction.model_effects import runaway, without_effect
 from vibroimpact.reduction.reduced_model import (
     MAX_FULL_DOFS,
     build_model,
@@ -53,14 +54,12 @@ def check_model(config: Config) -> ModelChecks:
             f" {structure.dofs} degrees of freedom keeps all its modes, as every one that is no"
             f" tube does up to {MAX_FULL_DOFS}: leave basis out, or reduce the matrices"
         )
-    accuracy = model_accuracy(config)
-    try:
-        require_accurate(accuracy)
-    except ModelAccuracyError as error:
-        problems.append(str(error))
+    problems += [*without_effect(model, config.excitation), *runaway(model)]
     try:
         checked_contraction(model, step.steps_per_second, step.scheme)
         require_stable_step(model, step.steps_per_second, step.scheme)
-    except IntegrationError as error:
-        problems.append(str(error))
+        accuracy = model_accuracy(config)
+        require_accurate(accuracy)
+    except (IntegrationError, ModelAccuracyError) as error:
+        return ModelChecks((*problems, str(error)))
     return ModelChecks(tuple(problems), tuple(mesh_warnings(accuracy)))

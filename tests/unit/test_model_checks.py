@@ -1,0 +1,144 @@
+"""What the checks of a study say of its model before anything runs."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from vibroimpact.cli import main
+from vibroimpact.config.reading import check_config
+from vibroimpact.study.model_checks import check_model
+
+ROOT = Path(__file__).parents[2]
+SMOKE = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
+SPRING = {"name": "spring", "point": "apex", "direction": [0.0, 1.0, 0.0]}
+FORCE = {"kind": "harmonic", "point": "a", "direction": [0.0, 1.0, 0.0], "frequency_Hz": 2.0}
+CHAIN = {
+    "study": "chain",
+    "structure": {
+        "kind": "chain",
+        "masses": [{"name": "a", "mass_kg": 1.0}],
+        "springs": [{"between": ["ground", "a"], "stiffness_N_per_m": 1.0e4}],
+    },
+    "excitation": {"kind": "none"},
+    "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1},
+    "record": {"duration_s": 1.0, "sampling_frequency_Hz": 2048},
+}
+
+
+def smoke(place="", value=None):
+    """The smoke study with the value at a dotted place changed."""
+    data = copy.deepcopy(SMOKE)
+    *parts, last = place.split(".") if place else [None]
+    level = data
+    for part in parts:
+        level = level[int(part)] if part.isdigit() else level.setdefault(part, {})
+    if last:
+        level[last] = value
+    return data
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "words"),
+    [
+        ("supports.0.stiffness_N_per_m", 1.0e12, ["contact stiffness 2e+11", "steps_per_second"]),
+        ("supports.1.damping_N_s_per_m", 1.0e6, ["contracts by", "dampers"]),
+        ("elements", [SPRING | {"stiffness_N_per_m": -1.0e6}], ["'spring'", "-1e+06 N/m", "cubic"]),
+        ("elements", [SPRING | {"other_point": "apex", "stiffness_N_per_m": 1.0}], ["no effect"]),
+        ("mode_frequency_factors", [1.0] * 500, ["mode_frequency_factors has 500 values"]),
+        (
+            "supports.0.plate",
+            {"mass_kg": 1.0e-12, "stiffness_N_per_m": 1.0e12, "damping_ratio": 0.01},
+            ["rad in a step", "plate"],
+        ),
+        (
+            "structure.root",
+            {"kind": "springs", "translation_N_per_m": 1e-6, "rotation_N_m_per_rad": 1e-6},
+            ["modes without stiffness", "springs that are not so soft"],
+        ),
+        (
+            "basis",
+            {"free_modes_to_Hz": 20.0, "constrained_modes_to_Hz": 1.0, "attachment_shapes": False},
+            ["basis: mode 2 free, 28.98", "is missing", "raise basis.free_modes_to_Hz"],
+        ),
+    ],
+)
+def test_a_model_that_can_not_run_is_refused(place, value, words):
+    (problem,) = check_model(check_config(smoke(place, value), "mine")).problems
+    assert [word for word in words if word not in problem] == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"excitation": FORCE}, "excitation: the force has no effect"),
+        ({"basis": {"free_modes_to_Hz": 30.0}}, "keeps all its modes"),
+        (
+            {
+                "structure": {
+                    "kind": "identified",
+                    "modes": [
+                        {"frequency_Hz": 1.0, "damping_ratio": 0.01, "shape": {"a": {"z": 1.0}}}
+                    ],
+                },
+                "supports": [{"name": "stop", "point": "a", "stiffness_N_per_m": 1.0}],
+            },
+            "supports[0]: 'stop' has no effect",
+        ),
+    ],
+)
+def test_keys_without_effect_are_refused(changes, words):
+    (problem,) = check_model(check_config(CHAIN | changes, "mine")).problems
+    assert words in problem
+
+
+def test_a_negative_spring_that_stiffens_is_allowed():
+    spring = SPRING | {"stiffness_N_per_m": -1.0e6, "cubic_N_per_m3": 1.0e12}
+    assert check_model(check_config(smoke("elements", [spring]), "mine")).problems == ()
+
+
+def test_the_study_has_no_problem_and_no_warning(study_config):
+    found = check_model(study_config)
+    assert (found.problems, found.warnings) == ((), ())
+
+
+def test_check_says_what_the_model_can_not_do(tmp_path, capsys, reliability):
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(smoke("supports.0.stiffness_N_per_m", 1.0e12)))
+    assert main(["check", str(path)]) == 1
+    assert f"{path}: contact stiffness 2e+11 N/m is too stiff" in capsys.readouterr().err
+    reliability.fault(
+        "a contact too stiff for the step", "refused by the checks, with the steps that are needed"
+    )
+
+
+def test_check_warns_of_a_coarse_mesh(tmp_path, capsys, reliability):
+    path = tmp_path / "mine.yaml"
+    mesh = {"elements_per_span": 1, "elements_per_bend": 1}
+    path.write_text(yaml.safe_dump(smoke("structure.mesh", mesh)))
+    assert main(["check", str(path)]) == 0
+    shown = capsys.readouterr()
+    assert (
+        f"{path}: warning: structure.mesh is coarse" in shown.err and "study 'smoke'" in shown.out
+    )
+    reliability.fault(
+        "a mesh that is too coarse", "a warning in the checks, in the tables and on the page"
+    )
+
+
+def test_check_names_the_file_of_a_negative_stiffness(tmp_path, capsys, reliability):
+    for name, matrix in (("mass", np.eye(2)), ("stiffness", -1.0e4 * np.eye(2))):
+        np.savez(tmp_path / f"{name}.npz", **{name: matrix})
+    structure = {
+        "kind": "matrices",
+        "mass": str(tmp_path / "mass.npz"),
+        "stiffness": str(tmp_path / "stiffness.npz"),
+        "points": {"tip": {"x": 0}},
+    }
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(CHAIN | {"structure": structure}))
+    assert main(["check", str(path)]) == 1
+    assert f"{tmp_path / 'stiffness.npz'}: has a negative eigenvalue" in capsys.readouterr().err
+    reliability.fault("matrices with a negative eigenvalue", "refused with file and frequency")

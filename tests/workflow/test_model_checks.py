@@ -1,0 +1,48 @@
+"""A model that can not run ends a dry run with its sentence; a coarse mesh warns."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SMOKE = (ROOT / "config" / "smoke.yaml").read_text()
+
+
+def dry_run(folder, text, *arguments):
+    """The finished dry run of a configuration."""
+    (folder / "mine.yaml").write_text(text)
+    command = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", "--dry-run"]
+    return subprocess.run(
+        [str(part) for part in (*command, *arguments, "--configfile", "mine.yaml")],
+        cwd=folder,
+        env=os.environ,
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_a_too_stiff_contact_ends_the_dry_run(tmp_path):
+    run = dry_run(tmp_path, SMOKE.replace("4.0e+6", "1.0e+12"))
+    assert run.returncode == 1
+    assert "mine.yaml: contact stiffness 2e+11 N/m is too stiff" in run.stderr
+    assert "Traceback" not in run.stderr and "Job stats" not in run.stderr + run.stdout
+
+
+@pytest.mark.slow
+def test_a_coarse_mesh_warns_in_the_dry_run(tmp_path):
+    run = dry_run(tmp_path, SMOKE.replace("elements_per_span: 8", "elements_per_span: 1"))
+    assert run.returncode == 0
+    assert (run.stderr + run.stdout).count("mine.yaml: structure.mesh is coarse") == 1
+
+
+@pytest.mark.slow
+def test_what_needs_no_model_of_the_study_checks_none(tmp_path):
+    """A campaign is compared with the model that is given for it."""
+    model = ROOT / "config" / "smoke.yaml"
+    values = ("--config", f"model={model}", "campaign=mine.yaml")
+    run = dry_run(tmp_path, SMOKE.replace("4.0e+6", "1.0e+12"), "_discrepancy_prepare", *values)
+    assert run.returncode == 0, run.stderr
+    assert "too stiff" not in run.stderr + run.stdout
