@@ -25,6 +25,7 @@ from vibroimpact.linear.responses import frf
 from vibroimpact.records import write_table
 from vibroimpact.reports.study_statistics import StudyStatistics
 from vibroimpact.reports.study_words import energy_sentences
+from vibroimpact.study.agreement_dataset import consistency_dataset
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case, all_cases
 from vibroimpact.study.equivalent_table import equivalent_rows
@@ -188,6 +189,8 @@ def test_the_flags_of_some_seeds_reach_the_tables_of_a_study():
     (row,) = equivalent_rows(summary)
     assert row["flag"].startswith("lscf, ods, broadband: " + expected)
     assert row["k_N_per_m"] == 1.0e5 and row["reason_k"] == ""
+    flagged = consistency_dataset(consistency_rows(tables), summary)["flagged"]
+    assert flagged.sum() == 3 and flagged.isel(seed=3).sum() == 3
     (clean,) = equivalent_rows(summary_rows(consistency_rows(tables[:3])))
     assert clean["flag"] == ""
     other = clean | {"load_rms_N": 6.0}
