@@ -19,12 +19,14 @@ from vibroimpact.identify.estimate import Estimate, table_rows, unresolved
 from vibroimpact.identify.guards import beyond_checked, guarded
 from vibroimpact.identify.identify_case import identify_case, reference_tube
 from vibroimpact.identify.reference_tube import STABLE_FRACTION
+from vibroimpact.identify.support_fit import Start, SupportSearch
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.energy_limit import energy_flag
 from vibroimpact.linear.responses import frf
 from vibroimpact.records import write_table
 from vibroimpact.reports.study_statistics import StudyStatistics
 from vibroimpact.reports.study_words import energy_sentences
+from vibroimpact.study.agreement_dataset import consistency_dataset
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case, all_cases
 from vibroimpact.study.equivalent_table import equivalent_rows
@@ -159,13 +161,40 @@ def test_a_stiffness_at_the_end_of_its_range_is_not_resolved(tube):
 def test_a_damping_at_the_end_of_its_family_is_not_resolved(tube, share, at_edge):
     """The family ends at 0.9 of the negative c that makes a mode unstable."""
 
-    config, model = tube
-    spectra = LinearRecords(config, SENSORS, lambda f: np.ones((31, f.size))).exact("hann")
-    least = reference_tube(config, model, spectra).lowest_stable_damping(STIFFNESS)
-    row = rows_of(tube, c=share * least / STABLE_FRACTION)["broadband"]
+    row = rows_of(tube, c=share * least_damping(tube))["broadband"]
     assert np.isnan(row["c_N_s_per_m"]) == at_edge
     assert ("c is at the edge of the family" in row["flag"]) == at_edge
     assert row["k_N_per_m"] == pytest.approx(STIFFNESS, rel=0.02)
+
+
+def test_several_supports_have_the_same_guards(tube):
+    each = {"identification.groups": "each"}
+    flags = flags_of(tube, force_from(20.8) | each)
+    assert {"peak_half", "peak_quarter", "peak_25th"} == set(flags)
+    assert flags_of(tube, each) == {}
+
+
+@pytest.mark.parametrize(("best", "at_edge"), [(-10.0, True), (-4.0, False)])
+def test_a_search_says_where_its_bound_of_the_damping_holds_it(best, at_edge):
+    """Two supports, the first of which would have a c of `best`; no c may be below -5 N s/m."""
+    wanted = np.array([best, 3.0])
+
+    def evaluate(k, c):
+        return np.concatenate([np.log(k / STIFFNESS), c - wanted]), np.eye(4)
+
+    search = SupportSearch((1.0e3, 1.0e8), 130.0)
+    start = Start(np.log([2.0e5, 2.0e5]), 0.01)
+    found = search.minimise(evaluate, start, lambda k: np.full(2, -5.0))
+    assert list(found.c_at_edge) == [at_edge, False]
+    assert found.c[1] == pytest.approx(3.0, abs=1e-3)
+
+
+def least_damping(tube):
+    """The negative c in N s/m that takes all damping of a mode of the smoke tube."""
+    config, model = tube
+    spectra = LinearRecords(config, SENSORS, lambda f: np.ones((31, f.size))).exact("hann")
+    reference = reference_tube(config, model, spectra)
+    return reference.lowest_stable_damping(STIFFNESS) / STABLE_FRACTION
 
 
 def test_a_stiffness_beyond_the_checked_basis_is_flagged():
@@ -188,6 +217,8 @@ def test_the_flags_of_some_seeds_reach_the_tables_of_a_study():
     (row,) = equivalent_rows(summary)
     assert row["flag"].startswith("lscf, ods, broadband: " + expected)
     assert row["k_N_per_m"] == 1.0e5 and row["reason_k"] == ""
+    flagged = consistency_dataset(consistency_rows(tables), summary)["flagged"]
+    assert flagged.sum() == 3 and flagged.isel(seed=3).sum() == 3
     (clean,) = equivalent_rows(summary_rows(consistency_rows(tables[:3])))
     assert clean["flag"] == ""
     other = clean | {"load_rms_N": 6.0}

@@ -79,6 +79,7 @@ def _estimates(rows: list[dict], axes: dict) -> dict[str, tuple]:
         for name, unit, long_name in ESTIMATES.values()
     }
     quality = np.full(shape, len(QUALITIES) - 1, np.int8)
+    flagged = np.zeros(shape, np.int8)
     for row in rows:
         index = (
             *_place(row, axes),
@@ -88,7 +89,12 @@ def _estimates(rows: list[dict], axes: dict) -> dict[str, tuple]:
         for column, (name, _, _) in ESTIMATES.items():
             data[name][1][index] = row[column]
         quality[index] = QUALITIES.index(row["quality"])
-    return data | {"quality": (tuple(axes), quality, _flags(QUALITIES, "quality of the estimate"))}
+        flagged[index] = bool(row.get("flag"))
+    doubt = "1 where consistency.csv has a flag: doubtful beyond the standard error"
+    return data | {
+        "quality": (tuple(axes), quality, _flags(QUALITIES, "quality of the estimate")),
+        "flagged": (tuple(axes), flagged, {"units": "1", "long_name": doubt}),
+    }
 
 
 def _summary(summary: list[dict], axes: dict) -> dict[str, tuple]:

@@ -20,6 +20,7 @@ ABOUT = {
     "damping_ratio": ("1", "damping ratio of the pole behind the estimate"),
     "quality": (None, "ok, weak or unresolved"),
     "note": (None, "reason for the quality"),
+    "flag": (None, "what makes the estimate doubtful beyond its standard error"),
 }
 
 
@@ -111,7 +112,8 @@ def _line(estimate: Estimate) -> str:
     """Return one line of the table: values with standard errors, a dash for what is not there."""
     k = _with_error(estimate.k, estimate.k_standard_error)
     c = _with_error(estimate.c, estimate.c_standard_error)
-    return f"{estimate.method:<26} {k:>18} {c:>16}  {estimate.quality}"
+    quality = estimate.quality + (f", flagged: {estimate.flag}" if estimate.flag else "")
+    return f"{estimate.method:<26} {k:>18} {c:>16}  {quality}"
 
 
 def _with_error(value: float, error: float) -> str:
