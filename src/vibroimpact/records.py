@@ -3,6 +3,7 @@
 import csv
 import math
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -289,8 +290,10 @@ def read_numeric_variables(
                 for name, variable in file.variables.items()
                 if isinstance(variable.datatype, np.dtype) and variable.datatype.kind in "fiu"
             }
-            packing = MOST_PACKED if file.data_model.startswith("NETCDF4") else 1
-            _refuse_size(path, numeric, packing)
+            classic = file.data_model.startswith("NETCDF3")
+            _refuse_size(path, numeric, 1 if classic else MOST_PACKED)
+            if classic:
+                _refuse_cut(path)
             values = {
                 name: np.ma.filled(np.ma.asarray(variable[...]).astype(float), np.nan)
                 for name, variable in numeric.items()
@@ -339,11 +342,15 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
 def _foreign(path: str | Path, kind: str) -> Iterator[None]:
     """Turn whatever a library raises on a damaged file into a RecordError."""
     try:
-        yield
+        with warnings.catch_warnings():
+            # netCDF4 warns where it leaves out an attribute that would change the values.
+            warnings.simplefilter("error", UserWarning)
+            yield
     except RecordError:
         raise
     except Exception as error:
-        why = (str(error).splitlines() or [type(error).__name__])[0]
+        cause = error.__cause__ or error
+        why = (str(cause).splitlines() or [type(cause).__name__])[0]
         raise RecordError(
             f"{path}: can not be read as {kind} ({why}): the file is damaged or of another kind,"
             " export it again"
@@ -380,6 +387,14 @@ def _refuse_references(path: str | Path) -> None:
     with h5py.File(path, "r") as file:
         file.visititems_links(inspect_link)
         file.visititems(inspect_item)
+
+
+def _refuse_cut(path: str | Path) -> None:
+    """Raise an exception for a netCDF-3 file that is cut short; the netCDF library reads zeros."""
+    from scipy.io import netcdf_file  # imported here: half a second that other files save
+
+    if Path(path).read_bytes()[:4] != b"CDF\5":  # the one kind that scipy does not read
+        netcdf_file(path, mmap=False).close()
 
 
 def _refuse_size(path: str | Path, arrays: Mapping[str, Any], packing: int) -> None:

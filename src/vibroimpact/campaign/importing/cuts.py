@@ -97,9 +97,7 @@ def _odd_values(sensor: ResolvedSensor, signal: Signal, cut: Cut) -> Iterator[st
     """
     values, unit = cut.of(signal), sensor.channel.units
     size = np.abs(values)
-    wrong = np.flatnonzero(
-        (size > MOST_STORED) | (size * si_factor(unit, sensor.unit_kind) > MOST_SI)
-    )
+    wrong = np.flatnonzero(size > min(MOST_STORED, MOST_SI / si_factor(unit, sensor.unit_kind)))
     if wrong.size:
         more = f" and {wrong.size - 1} others" if wrong.size > 1 else ""
         yield (

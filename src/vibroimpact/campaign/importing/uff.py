@@ -32,7 +32,6 @@ TIME_TYPES = (UNKNOWN, TIME)
 MARK = re.compile(rb"    -1(?= {74}|[\r\n]|\Z)")  # of the begin and the end of a dataset
 ORDINATE_LINE, UNIT_LABEL = 10, slice(46, 66)  # of the unit of the ordinate, from the first mark
 HEADER = 2000  # bytes, more than the header of a dataset 58 has
-BINARY_REST = 1  # samples
 SHORTEST_STEP = 1e-9  # s
 AGAIN = "export it again"
 
@@ -126,19 +125,17 @@ def _signal(data, path, nodes, units):
     name = f"{node}:{_axis_text(axis)}"
     place = f"{path}, {name}"
     values, stated = np.asarray(data["data"], float), int(data["num_pts"])
-    # The end of the line after a binary part may be read as a sample.
-    if not 1 < stated <= values.size <= stated + (BINARY_REST if data.get("binary") else 0):
+    if not 1 < stated == values.size:
         raise ImportProblem(
             f"{place}: {values.size} of {stated} samples can be read: the file is damaged or cut"
             f" short, or its binary part was changed by a text transfer: {AGAIN}"
         )
-    values = values[:stated]
     second = _second(data, place)
     if data["abscissa_spacing"] == 1:
         step = data["abscissa_inc"] * second
         rate, note = whole_rate(1.0 / step) if SHORTEST_STEP < step < np.inf else None, ""
     else:
-        time = np.asarray(data["x"], float)[:stated] * second
+        time = np.asarray(data["x"], float) * second
         values, rate, note = even_samples(time, values, place)
     type_ = int(data["ordinate_spec_data_type"])
     unit, unit_from = _unit(data, type_, units)
