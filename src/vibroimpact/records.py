@@ -283,7 +283,7 @@ def read_numeric_variables(
     """
     with _foreign(path, "netCDF"):
         if is_hdf5(path):
-            _refuse_references(path)
+            _inspect_hdf5(path)
         with netCDF4.Dataset(path) as file:
             numeric = {
                 name: variable
@@ -331,7 +331,7 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
         found[label] = item
 
     with _foreign(path, "HDF5"):
-        _refuse_references(path)
+        _inspect_hdf5(path)
         with h5py.File(path, "r") as file:
             file.visititems(collect)
             _refuse_size(path, found, MOST_PACKED)
@@ -364,8 +364,10 @@ def is_hdf5(path: str | Path) -> bool:
     return any(head.startswith(HDF5_SIGNATURE, place) for place in HDF5_PLACES)
 
 
-def _refuse_references(path: str | Path) -> None:
-    """Raise RecordError where an HDF5 file refers to another file, which would be read instead."""
+def _inspect_hdf5(path: str | Path) -> None:
+    """Raise RecordError where an HDF5 file refers to another file, which would be read instead, or
+    where the type of its numbers is none that numpy has, as after damage: the values would differ.
+    """
     import h5py
 
     def refuse(name, what):
@@ -383,6 +385,12 @@ def _refuse_references(path: str | Path) -> None:
             refuse(name, f"'{item.external[0][0]}'")
         if isinstance(item, h5py.Dataset) and item.is_virtual:
             refuse(name, "virtual sources")
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu":
+            if not item.id.get_type().equal(h5py.h5t.py_create(item.dtype)):
+                raise RecordError(
+                    f"{path}: '{name}' holds numbers of an unknown type: the file is damaged,"
+                    " export it again"
+                )
 
     with h5py.File(path, "r") as file:
         file.visititems_links(inspect_link)

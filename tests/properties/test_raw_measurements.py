@@ -1,7 +1,5 @@
 """Folders of raw measurements, damaged: the import refuses them with a sentence, or is right."""
 
-from collections import defaultdict
-
 import h5py
 import netCDF4
 import numpy as np
@@ -17,6 +15,7 @@ from vibroimpact.campaign.file import (
     channel_signal,
     force_signal,
     read_campaign,
+    valid_count,
     write_campaign,
 )
 from vibroimpact.campaign.importing.assemble import import_folder
@@ -38,8 +37,6 @@ VALUES = {
 }
 UNITS = ("lbf", "mm/s²", "g")
 SI = (4.4482216152605, 1e-3, 9.80665)
-
-TRIED = defaultdict(Tried)
 
 
 def described(suffix, **changes):
@@ -176,10 +173,8 @@ HEADERS = [
 ENCODINGS = ["utf-8", "utf-8-sig", "cp1252", "utf-16", "utf-16-le", "cp850", "iso8859-15"]
 
 
-@given(st.data())
-def test_damaged_csv_files_are_refused_or_right(data):
+def damaged_csv_files(data, tried):
     """Any byte, cell, header, encoding and end of line."""
-    tried = TRIED["CSV files"]
     with folder_of_example() as folder:
         kind = data.draw(st.sampled_from(["bytes", "cell", "header", "text"]))
         if kind == "bytes":
@@ -259,10 +254,8 @@ ELSEWHERE = ["link", "storage", "virtual", "size"]
 RATES = [RATE, np.nan, -1.0, 0.0, np.inf, np.arange(3.0), "fast", 1000.0]
 
 
-@given(st.data())
-def test_damaged_mat_files_are_refused_or_right(data):
+def damaged_mat_files(data, tried):
     """Any byte of v5 and v7.3, odd values and sampling, references to other files, huge sizes."""
-    tried = TRIED["MATLAB files"]
     with folder_of_example() as outside, folder_of_example() as folder:
         version = data.draw(st.sampled_from([5, 7]))
         compressed, structure = data.draw(st.booleans()), data.draw(st.booleans())
@@ -331,10 +324,8 @@ EXTRAS = [
 ]
 
 
-@given(st.data())
-def test_damaged_netcdf_files_are_refused_or_right(data):
+def damaged_netcdf_files(data, tried):
     """Any byte, odd units of time, odd attributes and values, references to other files."""
-    tried = TRIED["netCDF files of raw measurements"]
     with folder_of_example() as outside, folder_of_example() as folder:
         form = data.draw(st.sampled_from(FORMS))
         units, extra, force = "s", {}, None
@@ -424,10 +415,8 @@ LABELS = [
 ]
 
 
-@given(st.data())
-def test_damaged_universal_files_are_refused_or_right(data):
+def damaged_universal_files(data, tried):
     """Any byte of ASCII and binary files, labels in other encodings, odd headers."""
-    tried = TRIED["universal files"]
     with folder_of_example() as folder:
         kind = data.draw(st.sampled_from(["bytes", "bytes", "header", "none"]))
         binary, even = data.draw(st.integers(0, 1)), data.draw(st.booleans())
@@ -448,3 +437,167 @@ def test_damaged_universal_files_are_refused_or_right(data):
             assert lost == 0 and (
                 changed <= 2 * (kind == "bytes") or "interpolated" in told(result[1])
             )
+
+
+WORDS = [
+    "",
+    " ",
+    "tip",
+    "shaker",
+    "low",
+    "m/s²",
+    "a\nb",
+    "\ud800",
+    "x" * 300,
+    "../low.csv",
+    "/etc/passwd",
+]
+ANYTHING = st.one_of(
+    st.sampled_from([None, True, -1, 0, 1, 2, 0.1, 0.2, 1e30, -1e-9, np.nan, np.inf, 10**40]),
+    st.sampled_from(WORDS),
+    st.sampled_from([[], {}, [1e-4], [1e-4, 2e-4], [0, 0, 0], [1, 2, "3"], {"tip": "middle"}]),
+)
+KEYS = [
+    ("sampling_frequency_Hz",),
+    ("antialias",),
+    ("start_up",),
+    ("period_samples",),
+    ("transient_periods",),
+    ("source",),
+    ("voltage",),
+    ("surprise",),
+    *[("forces", 0, key) for key in ("name", "variable", "unit", "point_m", "direction")],
+    *[("channels", 1, key) for key in ("name", "variable", "unit", "kind", "direction")],
+    *[("records", 1, key) for key in ("name", "file", "files", "split", "repeat", "variables")],
+    *[("records", 1, key) for key in ("gap_m", "support_gap_m", "from_s", "to_s")],
+    ("records", 0, "support_gap_m"),
+    ("records",),
+]
+USUAL = {
+    "from_s": [0, 0.05, 0.1, 0.3],
+    "to_s": [0.1, 0.2, 0.25, 0.3],
+    "gap_m": [0, 1e-4, 2e-4, 0.2],
+    "name": ["low", "tip", "à b", "third"],
+    "file": ["low.csv", "high.csv"],
+    "variable": ["tip", "middle", "shaker"],
+    "variables": [{"tip": "middle", "middle": "tip"}, {"tip": "middle"}, {"tpi": "middle"}],
+    "unit": ["m s-2", "N", "g", "degC"],
+    "direction": ["-x", [0, 3, 4], [0, 0, 0]],
+    "point_m": [[0, 0, 1], [0, 0]],
+    "split": ["holdout", "train"],
+    "repeat": [0, 3],
+    "period_samples": [16, 64, 128, 500],
+    "transient_periods": [0, 1, 50],
+    "source": ["a bench"],
+    "support_gap_m": [[1e-4], [1e-4, 2e-4]],
+    "sampling_frequency_Hz": [512, 500],
+}
+TEXTS = [
+    lambda text: text.encode("cp1252"),
+    lambda text: text.encode("utf-16"),
+    lambda text: text.encode("utf-8-sig"),
+    lambda text: text.replace("source:", "\tsource:").encode(),
+    lambda text: (text + "source: again\n").encode(),
+    lambda text: (text + "voltage: !!python/object/apply:os.getcwd []\n").encode(),
+    lambda text: (text + "voltage: !!python/name:os.system\n").encode(),
+    lambda text: (text + "voltage: &a {variable: *a, unit: V}\n").encode(),
+    lambda text: b"",
+]
+
+
+def set_at(content, keys, value):
+    """Set a value inside nested lists and mappings."""
+    for key in keys[:-1]:
+        content = content[key]
+    content[keys[-1]] = value
+
+
+def cut_as_described(content, record):
+    """(3, time) what a record of a valid campaign.yaml holds, in SI units: an oracle."""
+    stated = content["records"][record]
+    rate = content["sampling_frequency_Hz"] or RATE
+    first = round((stated.get("from_s") or 0) * rate)
+    last = round(stated["to_s"] * rate) if stated.get("to_s") else SAMPLES
+    level = (stated.get("file") or stated["files"][0]).removesuffix(".csv")
+    rows = {"shaker": 0, "tip": 1, "middle": 2}
+    sensors = [*content["forces"], *content["channels"]]
+    chosen = [
+        rows[
+            (stated.get("variables") or {}).get(sensor["name"], sensor.get("variable"))
+            or sensor["name"]
+        ]
+        for sensor in sensors
+    ]
+    return VALUES[level][chosen, first:last], [sensor["unit"] for sensor in sensors]
+
+
+def damaged_campaign_yaml(data, tried):
+    """Any value of any key, encodings, tags that would run code, links out of the folder."""
+    with folder_of_example() as outside, folder_of_example() as folder:
+        write_csv(folder)
+        content = described("csv")
+        kind = data.draw(st.sampled_from(["keys", "keys", "keys", "text", "bytes", "link"]))
+        write_sidecar(folder, content)
+        file = folder / "campaign.yaml"
+        if kind == "keys":
+            for keys in data.draw(st.lists(st.sampled_from(KEYS), min_size=1, max_size=3)):
+                if len(keys) == 1 or isinstance(content.get(keys[0]), list):
+                    usual = st.sampled_from(USUAL.get(keys[-1], [None]))
+                    value = data.draw(st.one_of(usual, usual, ANYTHING))
+                    if len(keys) == 1 or len(content[keys[0]]) > keys[1]:
+                        set_at(content, keys, value)
+            file.write_text(yaml.safe_dump(content, allow_unicode=False), encoding="utf-8")
+        elif kind == "text":
+            change = data.draw(st.sampled_from(TEXTS))
+            file.write_bytes(change(file.read_text(encoding="utf-8")))
+        elif kind == "bytes":
+            apply(data.draw(DAMAGES), file)
+        else:
+            moved = folder / data.draw(st.sampled_from(["low.csv", "campaign.yaml"]))
+            moved.rename(outside / moved.name)
+            moved.symlink_to(outside / moved.name)
+        outcome, result = outcome_of(folder, tried)
+        assert outcome == "refused" or kind != "link"
+        if outcome == "right" and kind == "keys":
+            campaign = result[0]
+            names = campaign["record_name"].values.tolist()
+            assert len({*names}) == len(names) == len(content["records"])
+            gaps = [record.get("gap_m") for record in content["records"]]
+            assert all(
+                np.isnan(found) if stated is None else found == stated
+                for found, stated in zip(campaign["gap"].values, gaps, strict=True)
+            )
+            for record in range(len(names)):
+                expected, units = cut_as_described(content, record)
+                stored = [*campaign["force"].values[record], *campaign["response"].values[record]]
+                count = valid_count(campaign, record)
+                assert units == [
+                    *campaign["force_channel_units"].values,
+                    *campaign["channel_units"].values,
+                ]
+                np.testing.assert_allclose(
+                    np.array(stored)[:, :count], expected.astype(np.float32), rtol=1e-6
+                )
+
+
+FORMATS = {
+    "CSV files of raw measurements": damaged_csv_files,
+    "MATLAB files of raw measurements": damaged_mat_files,
+    "netCDF files of raw measurements": damaged_netcdf_files,
+    "universal files of raw measurements": damaged_universal_files,
+    "campaign.yaml of raw measurements": damaged_campaign_yaml,
+}
+
+
+@pytest.mark.parametrize("what", FORMATS)
+def test_damaged_raw_measurements_are_refused_or_right(what, reliability):
+    """Each starts from a valid folder and damages it at one place."""
+    tried = Tried()
+
+    @given(st.data())
+    def example(data):
+        FORMATS[what](data, tried)
+
+    example()
+    assert min(tried.outcomes["refused"], tried.outcomes["right"]) > 1
+    reliability.inputs(what, tried)
