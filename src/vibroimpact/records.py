@@ -342,9 +342,8 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
 def _foreign(path: str | Path, kind: str) -> Iterator[None]:
     """Turn whatever a library raises on a damaged file into a RecordError."""
     try:
-        with warnings.catch_warnings():
-            # netCDF4 warns where it leaves out an attribute that would change the values.
-            warnings.simplefilter("error", UserWarning)
+        # netCDF4 warns where it leaves out an attribute that would change the values.
+        with warnings.catch_warnings(action="error", category=UserWarning):
             yield
     except RecordError:
         raise
