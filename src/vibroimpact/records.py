@@ -3,8 +3,11 @@
 import csv
 import io
 import json
+import math
+import os
 import sys
-from collections.abc import Iterable, Iterator
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -22,6 +25,11 @@ LABEL = "_name"
 # Seconds from the start of a record are no date, which is what a dimension `time` stands for
 # (CF 4.4).
 TIME, TIME_IN_FILE = "time", "elapsed_time"
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+HDF5_PLACES = (0, 512, 1024, 2048)
+# Limits of foreign files: a damaged one may claim any size, and memory is taken before it is read.
+MOST_PACKED = 1100  # deflate makes zeros 1032 times smaller
+MOST_READ, FLOAT_BYTES = 10**9, 8
 
 # What to do with a file that cannot be read: with a result, and with one that a user gave.
 MAKE_AGAIN = "delete it and run again"
@@ -269,48 +277,159 @@ def read_dataset(path: str | Path, remedy: str = GIVE_AGAIN) -> xr.Dataset:
         raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
 
 
-def read_numeric_variables(path: str | Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Return (numeric variables by name, global attributes) of any netCDF file.
+def read_numeric_variables(
+    path: str | Path,
+) -> tuple[dict[str, np.ndarray], dict[str, str], dict[str, Any]]:
+    """Return (numbers, units, global attributes) of any netCDF file: its variables of the root.
 
-    Masked values become NaN. Raises RecordError.
+    numbers {name: array of float}: scaled; masked values are NaN.
+    units {name: text}: of the variables that state one, a time as it is written.
+
+    Raises RecordError for a file that is damaged, refers to another file or claims more numbers
+    than it can hold.
     """
-    try:
+    with _foreign(path, "netCDF"):
+        if is_hdf5(path):
+            _inspect_hdf5(path)
         with netCDF4.Dataset(path) as file:
-            values = {
-                name: np.ma.filled(variable[:], np.nan)
+            numeric = {
+                name: variable
                 for name, variable in file.variables.items()
-                if variable.dtype != str and variable.dtype.kind in "fiu"
+                if isinstance(variable.datatype, np.dtype) and variable.datatype.kind in "fiu"
             }
-            return values, {name: file.getncattr(name) for name in file.ncattrs()}
-    except OSError as error:
-        raise RecordError(f"{path}: cannot be read as netCDF ({error})") from error
+            classic = file.data_model.startswith("NETCDF3")
+            _refuse_size(path, numeric, 1 if classic else MOST_PACKED)
+            if classic:
+                _refuse_cut(path)
+            values = {
+                name: np.ma.filled(np.ma.asarray(variable[...]).astype(float), np.nan)
+                for name, variable in numeric.items()
+            }
+            units = {
+                name: str(variable.getncattr("units"))
+                for name, variable in numeric.items()
+                if "units" in variable.ncattrs()
+            }
+            return values, units, {name: file.getncattr(name) for name in file.ncattrs()}
 
 
 def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
     """Return the numeric arrays of an HDF5 file as MATLAB v7.3 writes it.
 
-    Keys are group.name; axes are in MATLAB's order. Raises RecordError.
+    Keys are group.name; axes are in MATLAB's order. Raises RecordError as read_numeric_variables.
     """
     # Imported here: it brings an HDF5 library of its own, which other stages do not need.
     import h5py
 
-    found = {}
+    found: dict[str, Any] = {}
 
     def collect(name, item):
         if (
-            isinstance(item, h5py.Dataset)
-            and item.dtype.kind in "fiu"
-            and not name.startswith("#")
-            and "MATLAB_empty" not in item.attrs
+            not isinstance(item, h5py.Dataset)
+            or item.dtype.kind not in "fiu"
+            or name.startswith("#")
+            or "MATLAB_empty" in item.attrs
+            or item.attrs.get("MATLAB_class") == b"char"
         ):
-            found[name.replace("/", ".")] = item[()].T
+            return
+        label = name.replace("/", ".")
+        if label in found:
+            raise RecordError(f"{path}: holds '{label}' twice: rename one of the two")
+        found[label] = item
 
-    try:
+    with _foreign(path, "HDF5"):
+        _inspect_hdf5(path)
         with h5py.File(path, "r") as file:
             file.visititems(collect)
-    except OSError as error:
-        raise RecordError(f"{path}: cannot be read as HDF5 ({error})") from error
-    return found
+            _refuse_size(path, found, MOST_PACKED)
+            return {name: np.asarray(item[()]).T for name, item in found.items()}
+
+
+@contextmanager
+def _foreign(path: str | Path, kind: str) -> Iterator[None]:
+    """Turn whatever a library raises on a damaged file into a RecordError."""
+    try:
+        # netCDF4 warns where it leaves out an attribute that would change the values.
+        with warnings.catch_warnings(action="error", category=UserWarning):
+            yield
+    except RecordError:
+        raise
+    except Exception as error:
+        cause = error.__cause__ or error
+        why = (str(cause).splitlines() or [type(cause).__name__])[0]
+        raise RecordError(
+            f"{path}: can not be read as {kind} ({why}): the file is damaged or of another kind,"
+            " export it again"
+        ) from error
+
+
+def is_hdf5(path: str | Path) -> bool:
+    """Return whether a file begins as HDF5 does, after a user block or none."""
+    with open(path, "rb") as file:
+        head = file.read(HDF5_PLACES[-1] + len(HDF5_SIGNATURE))
+    return any(head.startswith(HDF5_SIGNATURE, place) for place in HDF5_PLACES)
+
+
+def _inspect_hdf5(path: str | Path) -> None:
+    """Raise RecordError where an HDF5 file refers to another file, which would be read instead, or
+    where the type of its numbers is none that numpy has, as after damage: the values would differ.
+    """
+    import h5py
+
+    def refuse(name, what):
+        raise RecordError(
+            f"{path}: '{name}' refers to {what}, another file: only files of the folder itself are"
+            " read, store the numbers in this one"
+        )
+
+    def inspect_link(name, link):
+        if isinstance(link, h5py.ExternalLink):
+            refuse(name, f"'{link.filename}'")
+
+    def inspect_item(name, item):
+        if isinstance(item, h5py.Dataset) and item.external:
+            refuse(name, f"'{item.external[0][0]}'")
+        if isinstance(item, h5py.Dataset) and item.is_virtual:
+            refuse(name, "virtual sources")
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu":
+            if not item.id.get_type().equal(h5py.h5t.py_create(item.dtype)):
+                raise RecordError(
+                    f"{path}: '{name}' holds numbers of an unknown type: the file is damaged,"
+                    " export it again"
+                )
+
+    with h5py.File(path, "r") as file:
+        file.visititems_links(inspect_link)
+        file.visititems(inspect_item)
+
+
+def _refuse_cut(path: str | Path) -> None:
+    """Raise an exception for a netCDF-3 file that is cut short; the netCDF library reads zeros."""
+    from scipy.io import netcdf_file  # imported here: half a second that other files save
+
+    if Path(path).read_bytes()[:4] != b"CDF\5":  # the one kind that scipy does not read
+        netcdf_file(path, mmap=False).close()
+
+
+def _refuse_size(path: str | Path, arrays: Mapping[str, Any], packing: int) -> None:
+    """Raise RecordError where arrays of a file claim more numbers than it holds or than are read.
+
+    arrays: anything with shape and dtype. packing: the most that the format compresses.
+    """
+    most = packing * os.path.getsize(path)
+    for name, array in arrays.items():
+        claimed = math.prod(array.shape) * array.dtype.itemsize
+        if claimed > most:
+            raise RecordError(
+                f"{path}: '{name}' claims {claimed:.3g} bytes, more than the file can hold: it is"
+                " damaged or was cut short, export it again"
+            )
+    total = FLOAT_BYTES * sum(math.prod(array.shape) for array in arrays.values())
+    if total > MOST_READ:
+        raise RecordError(
+            f"{path}: holds {total:.3g} bytes of numbers, at most {MOST_READ:.0e} are read from one"
+            " file: store fewer signals or a shorter record in each"
+        )
 
 
 def write_table(rows: list[dict], path: str | Path, columns: tuple[str, ...] = ()) -> None:

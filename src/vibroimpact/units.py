@@ -5,8 +5,10 @@ A unit that is not certain raises an error that says what to write; nothing is g
 
 from __future__ import annotations
 
+import math
 import re
 from functools import cache
+from tokenize import TokenError
 from typing import Any
 
 # Order of the time derivative of displacement that each kind of sensor measures.
@@ -19,6 +21,7 @@ SI_OF_KIND = {
     "contact_force": "N",
     "force": "N",
     "voltage": "V",
+    "time": "s",
 }
 EXAMPLES = {
     "acceleration": "m s-2, mm s-2, ft s-2 or g",
@@ -27,6 +30,7 @@ EXAMPLES = {
     "contact_force": "N, kN or lbf",
     "force": "N, kN or lbf",
     "voltage": "V or mV",
+    "time": "s or ms",
 }
 # Texts that nearly every file holds. They save the import of pint, half a second per job.
 COMMON = {
@@ -54,6 +58,10 @@ ALIASES = {
 SHARE_OF_G = re.compile(r"(milli|m|µ|u)?[gG](?:'?s)?")
 # A number before the unit, as in 0.001 m.
 SCALED = re.compile(r"(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+(\D.*)")
+# What no unit needs and pint would evaluate or skip: a power of a number (9**9**9 takes minutes), a
+# number in brackets, one of two digits, two superscripts, a comment.
+NO_UNIT = re.compile(r"[#\x00-\x1f]|\d\s*(?:\^|\*\*)|\(\s*[+-]?\d|\d\d|[\d⁰¹²³⁴⁵⁶⁷⁸⁹][⁰¹²³⁴⁵⁶⁷⁸⁹]")
+LONGEST = 60  # characters
 PREFIX = {None: 1.0, "milli": 1e-3, "m": 1e-3, "µ": 1e-6, "u": 1e-6}
 STANDARD_GRAVITY = 9.80665
 # Where no force was measured, an input in volts serves as the excitation.
@@ -68,11 +76,11 @@ def si_factor(units: str, kind: str) -> float:
     """Return SI units per unit of a channel: multiply its values by it.
 
     units: UDUNITS text such as m s-2, mm/s², ft/s^2, g, lbf.
-    kind: acceleration, velocity, displacement, contact_force, force or voltage; "generic" takes any
-        unit, "excitation" takes forces and volts.
+    kind: acceleration, velocity, displacement, contact_force, force, voltage or time; "generic"
+        takes any unit, "excitation" takes forces and volts.
 
     For an acceleration "g" is standard gravity, not the gram. Raises UnitError for an empty or
-    unknown unit, and for one of another dimension.
+    unknown unit, for one of another dimension, and for one that is no factor (degC, dB).
     """
     text = units.strip()
     if not text:
@@ -143,11 +151,19 @@ def _parsed(text: str) -> tuple[Any, float]:
     """Return (dimensionality, factor to SI base units) of a unit text. Raises UnitError."""
     import pint
 
+    unknown = UnitError(
+        f"has the unit '{text[:LONGEST]}', which is not known: give a UDUNITS text such as m s-2,"
+        " mm/s^2, g, mm, N, lbf or V"
+    )
     try:
         scaled = SCALED.fullmatch(text)
         scale, unit_text = (float(scaled[1]), scaled[2]) if scaled else (1.0, text)
+        if len(text) > LONGEST or NO_UNIT.search(unit_text):
+            raise unknown
         unit = _registry().parse_units(_translated(unit_text))
-        quantity = _registry().Quantity(1.0, unit).to_base_units()
+        origin, quantity = (
+            _registry().Quantity(value, unit).to_base_units() for value in (0.0, 1.0)
+        )
     except (
         pint.errors.PintError,
         ValueError,
@@ -156,12 +172,17 @@ def _parsed(text: str) -> tuple[Any, float]:
         AttributeError,
         SyntaxError,
         AssertionError,
+        ArithmeticError,
+        TokenError,
     ) as error:
+        raise unknown from error
+    factor = scale * float(quantity.magnitude)
+    if float(origin.magnitude) != 0.0 or not 0.0 < factor < math.inf:
         raise UnitError(
-            f"has the unit '{text}', which is not known: give a UDUNITS text such as m s-2, mm/s^2,"
-            " g, mm, N, lbf or V"
-        ) from error
-    return unit.dimensionality, scale * float(quantity.magnitude)
+            f"has the unit '{text}', which is no multiple of an SI unit: convert the values to one"
+            " such as K, Pa or m s-2"
+        )
+    return unit.dimensionality, factor
 
 
 def _translated(text: str) -> str:

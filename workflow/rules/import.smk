@@ -1,15 +1,32 @@
 # Raw measurements to a campaign file, and a first look at one.
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
+if set(IMPORTED) & set("{}*?[]") or not IMPORTED.isprintable():
+    sys.exit(
+        f"import = '{REQUEST['import']}': the folder's name becomes that of the results: rename it,"
+        " without brackets, * and ?"
+    )
+
+
+def measured_files(wildcards):
+    """The files of --config import=FOLDER that are read, as an input function.
+
+    Exits with a sentence where there are none, and where campaign.yaml has a problem.
+    """
+    from vibroimpact.campaign.importing.raw_files import raw_files
+    from vibroimpact.campaign.importing.signals import ImportProblem
+
+    try:
+        return [str(file) for file in raw_files(REQUEST["import"])]
+    except ImportProblem as problem:
+        sys.exit(str(problem))
 
 
 rule import_campaign:
     """Turn a folder of raw measurements into a campaign file: --config import=FOLDER."""
     input:
         folder=requested("import", "FOLDER"),
-        files=lambda wildcards: sorted(
-            str(file) for file in Path(REQUEST["import"]).iterdir() if file.is_file()
-        ),
+        files=measured_files,
     output:
         campaign=f"results/{IMPORTED}/{IMPORTED}.nc",
         table=f"results/{IMPORTED}/import.csv",

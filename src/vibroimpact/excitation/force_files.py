@@ -80,7 +80,7 @@ def _rate_of(time, path):
 
 
 def _from_netcdf(path, variable):
-    known, attributes = read_numeric_variables(path)
+    known, _, attributes = read_numeric_variables(path)
     values = _pick(path, known, variable)
     rate = next((float(attributes[name]) for name in RATE_NAMES if name in attributes), None)
     time = next((known[name] for name in TIME_NAMES if name in known), None)

@@ -5,15 +5,24 @@ It also gives what the files do not state.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, ValidationError
 
 from vibroimpact.campaign.file import Kind
-from vibroimpact.config.problems import PLAIN_WORDS, ConfigError
-from vibroimpact.config.quantities import Frequency_Hz, Number, Range, Section, Vector, Whole
+from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, shown
+from vibroimpact.config.quantities import (
+    Frequency_Hz,
+    Length,
+    Number,
+    Pattern,
+    Range,
+    Section,
+    Whole,
+)
 from vibroimpact.config.yaml_file import read_yaml
 
 from .signals import ImportProblem, Signal
@@ -24,6 +33,27 @@ DIRECTIONS = {
     name: tuple((-1.0 if name[0] == "-" else 1.0) * float(name[-1] == axis) for axis in "xyz")
     for name in get_args(Direction)
 }
+CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\u2028\u2029"
+Label = Annotated[
+    str,
+    Pattern(
+        "a text of 1 to 100 characters on one line, without spaces at its ends",
+        rf"(?!\s)[^{CONTROL}\n\r\t]{{1,100}}(?<!\s)",
+    ),
+]
+Text = Annotated[str, Pattern("a text without control characters", rf"[^{CONTROL}]{{0,1000}}")]
+THREE = Length("give three, along x, y and z", 3)
+Point_m = Annotated[
+    tuple[Annotated[Number, Range("in metres", at_least=-1000, at_most=1000)], ...], THREE
+]
+Vector = Annotated[
+    tuple[Annotated[Number, Range("only the ratio counts", at_least=-1e6, at_most=1e6)], ...], THREE
+]
+Clearance_m = Annotated[
+    Number,
+    Range("the radial clearance in metres, 0.2 mm is 2.0e-4", at_least=0, at_most=0.1),
+]
+Time_s = Annotated[Number, Range("seconds from the start of the file", at_least=0, at_most=1e7)]
 Repeat = Annotated[
     Whole, Range("0 for the first record of its load and gap", at_least=0, at_most=10**6)
 ]
@@ -45,11 +75,11 @@ class Sensor(Section):
     Other keys give what the files do not state.
     """
 
-    name: str
+    name: Label
     variable: str | None = None
-    unit: str | None = None
+    unit: Text | None = None
     kind: Kind | None = None
-    point_m: Vector | None = None
+    point_m: Point_m | None = None
     direction: Direction | Vector | None = None
 
 
@@ -60,15 +90,15 @@ class Record(Section):
     from_s, to_s: part of the record that is used.
     """
 
-    name: str | None = None
+    name: Label | None = None
     file: str | None = None
     files: tuple[str, ...] = ()
-    gap_m: Number | None = None
-    support_gap_m: tuple[Number, ...] | None = None
+    gap_m: Clearance_m | None = None
+    support_gap_m: Annotated[tuple[Clearance_m, ...], Field(min_length=1)] | None = None
     split: Literal["fit", "holdout"] = "fit"
     repeat: Repeat | None = None
-    from_s: Number | None = None
-    to_s: Number | None = None
+    from_s: Time_s | None = None
+    to_s: Time_s | None = None
     variables: dict[str, str] = {}
 
     def all_files(self) -> tuple[str, ...]:
@@ -86,9 +116,9 @@ class Voltage(Section):
 class Sidecar(Section):
     """The content of a campaign.yaml."""
 
-    source: str = ""
+    source: Text = ""
     sampling_frequency_Hz: Frequency_Hz | None = None
-    antialias: str = "unknown"
+    antialias: Text = "unknown"
     start_up: Literal["rest", "stationary"] = "stationary"
     period_samples: PeriodSamples = 0
     transient_periods: TransientPeriods = 0
@@ -113,34 +143,93 @@ def read_sidecar(path: str | Path) -> Sidecar:
         sidecar = Sidecar.model_validate(data)
     except ValidationError as error:
         raise ImportProblem(
-            "\n".join(_sentence(path, line) for line in error.errors(include_url=False))
+            "\n".join(
+                dict.fromkeys(
+                    _sentence(path, line, data) for line in error.errors(include_url=False)
+                )
+            )
         ) from error
-    problems = [
-        f"{path}: records[{index}] names no file: give file or files"
-        for index, record in enumerate(sidecar.records)
-        if not record.all_files()
-    ]
-    for group in ("forces", "channels"):
-        names = [sensor.name for sensor in getattr(sidecar, group)]
-        problems += [
-            f"{path}: {group}: the name '{name}' is given twice"
-            for name in sorted({name for name in names if names.count(name) > 1})
-        ]
+    problems = [f"{path}: {problem}" for problem in _contradictions(sidecar)]
     if problems:
         raise ImportProblem("\n".join(problems))
     return sidecar
 
 
-def _sentence(path: str | Path, line: Mapping) -> str:
-    place = "".join(
-        f"[{part}]" if isinstance(part, int) else f".{part}" for part in line["loc"]
-    ).removeprefix(".")
-    if line["type"] == "missing":
+def _contradictions(sidecar: Sidecar) -> Iterator[str]:
+    """Yield a sentence for everything that does not fit together."""
+    sensors = [sensor.name for sensor in (*sidecar.forces, *sidecar.channels)]
+    for name in sorted({name for name in sensors if sensors.count(name) > 1}):
+        yield (
+            f"the name '{name}' is given to {sensors.count(name)} forces and channels: give each a"
+            " name of its own"
+        )
+    for index, record in enumerate(sidecar.records):
+        place = f"records[{index}]"
+        if not record.all_files():
+            yield f"{place} names no file: give file or files"
+        if record.to_s is not None and record.to_s <= (record.from_s or 0.0):
+            yield (
+                f"{place}.to_s = {record.to_s:g} is not after from_s = {record.from_s or 0:g}: give"
+                " the end of the part that is used"
+            )
+        for name in record.variables:
+            if name not in (*sensors, "voltage"):
+                yield (
+                    f"{place}.variables: '{name}' is no force and no channel: they are"
+                    f" {', '.join(sensors)}"
+                )
+    given = {record.support_gap_m and len(record.support_gap_m) for record in sidecar.records}
+    if len(given) > 1:
+        yield (
+            "support_gap_m has another number of supports in some records, or is missing there:"
+            " give one clearance per support in every record"
+        )
+
+
+def record_names(records: tuple[Record, ...]) -> list[str]:
+    """Return the name of each record: its own, else that of its first file.
+
+    A file that is cut into several records gives `run`, `run_2`, `run_3`. Raises ImportProblem
+    where a name is given twice.
+    """
+    names: list[str] = []
+    for record in records:
+        stem = Path(record.all_files()[0]).stem
+        earlier = sum(
+            other.name is None and Path(other.all_files()[0]).stem == stem
+            for other in records[: len(names)]
+        )
+        names.append(record.name or (f"{stem}_{earlier + 1}" if earlier else stem))
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ImportProblem(
+            "\n".join(
+                f"{NAME}: {names.count(name)} records are called '{name}': give each a name of its"
+                " own"
+                for name in twice
+            )
+        )
+    return names
+
+
+def _sentence(path: str | Path, error: Mapping, data: Any) -> str:
+    """Return the sentence of a pydantic error of the content `data` of a file."""
+    place, value = "", data
+    for part in error["loc"]:
+        inside = isinstance(value, dict) and part in value
+        inside |= isinstance(value, list) and isinstance(part, int) and part < len(value)
+        if inside:
+            value = value[part]
+        elif error["type"] not in ("missing", "extra_forbidden"):
+            continue  # names the member of a union, or says that the key itself is wrong
+        place += f"[{part}]" if isinstance(part, int) else f".{part}"
+    place = place.removeprefix(".")
+    if error["type"] == "missing":
         return f"{path}: {place} is missing: docs/bring_your_own.md shows it"
-    if line["type"] == "extra_forbidden":
+    if error["type"] == "extra_forbidden":
         return f"{path}: unknown key {place}: docs/bring_your_own.md shows those there are"
-    text = PLAIN_WORDS.get(line["type"]) or line["msg"].replace("Input should be", "must be")
-    return f"{path}: {place} = {line['input']!r} {text}"
+    text = PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
+    return f"{path}: {place} = {shown(value)} {text}"
 
 
 def draft_sidecar(folder: str | Path, signals: list[Signal]) -> str:
@@ -153,7 +242,7 @@ def draft_sidecar(folder: str | Path, signals: list[Signal]) -> str:
             "# Fill in every ???, delete the signals that are not channels, then move the forces"
             " to 'forces'."
         ),
-        f"source: {Path(folder).name}",
+        f"source: {json.dumps(Path(folder).name, ensure_ascii=False)}",
         "forces:",
         "  - {name: ???, variable: ???, unit: N, point_m: [???, ???, ???], direction: ???}",
         "channels:",
@@ -169,10 +258,14 @@ def draft_sidecar(folder: str | Path, signals: list[Signal]) -> str:
             "???",
         )
         place = list(signal.point) if signal.point else "[???, ???, ???]"
+        name, unit = (json.dumps(text, ensure_ascii=False) for text in (signal.name, signal.unit))
         lines.append(
-            f"  - {{name: {signal.name!r}, variable: {signal.name!r}, unit: {signal.unit or '???'},"
+            f"  - {{name: {name}, variable: {name}, unit: {unit if signal.unit else '???'},"
             f" kind: {signal.kind or '???'}, point_m: {place}, direction: {direction}}}"
         )
     files = dict.fromkeys(Path(signal.file).name for signal in signals)
-    records = [f"  - {{file: {name!r}, gap_m: ???, split: fit}}" for name in files]
+    records = [
+        f"  - {{file: {json.dumps(name, ensure_ascii=False)}, gap_m: ???, split: fit}}"
+        for name in files
+    ]
     return "\n".join([*lines, "records:", *records]) + "\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -32,7 +33,8 @@ class Signal:
     unit, kind, point (3,) m, direction (3,), force: as the file states them, else "" or None.
     unit_from: where in the file the unit stands.
     aliases: other names of the signal.
-    note: how its values were changed.
+    note: how the file was read and its values were changed.
+    lines (time,): line of the file that holds a sample, None where the file has none.
     """
 
     name: str
@@ -47,6 +49,14 @@ class Signal:
     force: bool = False
     aliases: tuple = ()
     note: str = ""
+    lines: np.ndarray | None = None
+
+    def place(self, sample: int) -> str:
+        """Return where a sample stands: "low.csv, line 38, column tip" or "low.mat, tip[38]"."""
+        file = Path(self.file).name
+        if self.lines is not None and sample < len(self.lines):
+            return f"{file}, line {self.lines[sample]}, column {self.name}"
+        return f"{file}, {self.name}, sample {sample} (from 0)"
 
 
 def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.ndarray, float, str]:
@@ -61,14 +71,14 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
     note says so. Raises ImportProblem for lost samples or stamps that do not increase.
     """
     time = np.asarray(time, float)
-    steps = np.diff(time)
+    steps = np.diff(time) if np.all(np.isfinite(time)) else np.zeros(0)
     typical = float(np.median(steps)) if steps.size else 0.0
-    printed = 1.05 * 10.0 ** (np.floor(np.log10(max(np.abs(time).max(initial=0.0), 1e-300))) - 5.0)
-    if not (np.all(np.isfinite(time)) and typical > 0.0):
+    if not 0.0 < typical < np.inf:
         raise ImportProblem(
-            f"{place}: the time does not rise: give sampling_frequency_Hz in campaign.yaml, or"
-            " correct the file"
+            f"{place}: the time does not rise, or is no number throughout: correct the file, or"
+            " leave the time out of it and give sampling_frequency_Hz in campaign.yaml"
         )
+    printed = 1.05 * 10.0 ** (np.floor(np.log10(max(np.abs(time).max(), 1e-300))) - 5.0)
     if np.any(steps > LOST_SAMPLE * typical + 2.0 * printed) or np.any(steps < -2.0 * printed):
         index = int(np.argmax(np.abs(steps - typical)))
         raise ImportProblem(
@@ -81,6 +91,13 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
     rate = whole_rate(1.0 / step)
     if np.max(np.abs(time - grid)) <= max(EVEN_WITHIN * step, printed):
         return values, rate, ""
+    holes = np.argwhere(~np.isfinite(values))
+    if holes.size or np.any(steps <= 0.0):
+        where = f"sample {holes[0][-1]} is no number" if holes.size else "two samples share a time"
+        raise ImportProblem(
+            f"{place}: unevenly sampled, and {where} (samples from 0): interpolate the record to"
+            " even steps first"
+        )
     even = CubicSpline(time, values, axis=-1)(grid)
     return even, rate, f"unevenly sampled: interpolated to {rate:g} Hz"
 

@@ -5,9 +5,12 @@ Nodes are taken from datasets 15 and 2411, units from 164.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
+
+from vibroimpact.units import UnitError, si_factor
 
 from .signals import ImportProblem, Signal, even_samples, whole_rate
 
@@ -24,7 +27,13 @@ SI_OF_TYPE = {8: "m", 9: "N", 11: "m s-1", 12: "m s-2", 13: "N"}
 LENGTH_POWER = {8: 1, 11: 1, 12: 1}  # of the length unit; forces follow the force unit
 AXES = {1: "x", 2: "y", 3: "z"}
 NOTHING = ("", "NONE", "None", "none")
-TIME_TYPES = (0, 17)
+UNKNOWN, TIME = 0, 17
+TIME_TYPES = (UNKNOWN, TIME)
+MARK = re.compile(rb"    -1(?= {74}|[\r\n]|\Z)")  # of the begin and the end of a dataset
+ORDINATE_LINE, UNIT_LABEL = 10, slice(46, 66)  # of the unit of the ordinate, from the first mark
+HEADER = 2000  # bytes, more than the header of a dataset 58 has
+SHORTEST_STEP = 1e-9  # s
+AGAIN = "export it again"
 
 
 def read_uff(path: str | Path) -> list[Signal]:
@@ -33,20 +42,15 @@ def read_uff(path: str | Path) -> list[Signal]:
     A signal is named node:axis, as 12:+y. Its aliases are the entity's name and the first
     identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
-    import pyuff  # imported here: other files do not need it
-
-    try:
-        file = pyuff.UFF(str(path))
-        types = [int(number) for number in file.get_set_types()]
-        sets = {
-            index: file.read_sets(index)
-            for index, number in enumerate(types)
-            if number in (15, 58, 164, 2411)
-        }
-    except Exception as error:  # pyuff raises bare Exceptions
-        raise ImportProblem(f"{path}: can not be read as a universal file ({error})") from error
+    types, sets = _datasets(path)
     units = next((data for index, data in sets.items() if types[index] == 164), None)
-    nodes = _nodes([data for index, data in sets.items() if types[index] in (15, 2411)], units)
+    if units is not None and not all(0.0 < units[key] < np.inf for key in ("length", "force")):
+        raise ImportProblem(
+            f"{path}: dataset 164: {units['length']:g} and {units['force']:g} are no units of"
+            f" length and force per SI unit: {AGAIN}"
+        )
+    tables = [data for index, data in sets.items() if types[index] in (15, 2411)]
+    nodes = _nodes(tables, units, path)
     functions = [data for index, data in sets.items() if types[index] == 58]
     signals = [_signal(data, path, nodes, units) for data in functions if _is_time_record(data)]
     if not signals:
@@ -59,10 +63,58 @@ def read_uff(path: str | Path) -> list[Signal]:
     return signals
 
 
+def _datasets(path):
+    """Return (number of each dataset, {index: content} of those that are read).
+
+    Raises ImportProblem for a file that is damaged: pyuff leaves out what it can not name.
+    """
+    import pyuff  # imported here: other files do not need it
+
+    try:
+        file = pyuff.UFF(str(path))
+        types = [int(number) for number in file.get_set_types()]
+        sets = {
+            index: file.read_sets(index)
+            for index, number in enumerate(types)
+            if number in (15, 58, 164, 2411)
+        }
+    except Exception as error:  # pyuff raises bare Exceptions
+        raise ImportProblem(
+            f"{path}: can not be read as a universal file ({error}): {AGAIN}"
+        ) from error
+    raw = Path(path).read_bytes()
+    marks = [*MARK.finditer(raw)]
+    if 0 in types or len(marks) % 2:
+        what = f"dataset {types.index(0) + 1} has no number" if 0 in types else "one has no end"
+        raise ImportProblem(
+            f"{path}: {len(types)} datasets, of which {what}: the file is damaged or cut short,"
+            f" {AGAIN}"
+        )
+    starts = [mark.start() for mark in marks[::2]]
+    for index in (index for index, number in enumerate(types) if number == 58):
+        sets[index] |= _label_of_unit(raw[starts[index] : starts[index] + HEADER])
+    return types, sets
+
+
+def _label_of_unit(header):
+    """Return {key of pyuff: label} of a unit that is not written in UTF-8, of which pyuff keeps no
+    letter; an empty dict for others.
+
+    It is read as Windows-1252, in which µ and ² are the bytes that they are in Latin-1.
+    """
+    line = header.splitlines()[ORDINATE_LINE]
+    try:
+        line.decode("utf-8")
+    except UnicodeDecodeError:
+        return {"ordinate_axis_units_lab": line.decode("cp1252", "replace")[UNIT_LABEL].strip()}
+    return {}
+
+
 def _is_time_record(data):
     return (
         data["func_type"] in (SHOCK, TIME_RESPONSE)
         and data.get("abscissa_spec_data_type", 0) in TIME_TYPES
+        and (data.get("abscissa_spec_data_type", 0) == TIME or _is_time(data))
         and not np.iscomplexobj(data["data"])
     )
 
@@ -73,17 +125,18 @@ def _signal(data, path, nodes, units):
     name = f"{node}:{_axis_text(axis)}"
     place = f"{path}, {name}"
     values, stated = np.asarray(data["data"], float), int(data["num_pts"])
-    if values.size < stated:
+    if not 1 < stated == values.size:
         raise ImportProblem(
-            f"{place}: {values.size} of {stated} samples can be read: the file is cut short, or its"
-            " binary part was changed by a text transfer"
+            f"{place}: {values.size} of {stated} samples can be read: the file is damaged or cut"
+            f" short, or its binary part was changed by a text transfer: {AGAIN}"
         )
-    values = values[:stated]
+    second = _second(data, place)
     if data["abscissa_spacing"] == 1:
-        rate = whole_rate(1.0 / data["abscissa_inc"]) if data["abscissa_inc"] > 0.0 else None
-        note = ""
+        step = data["abscissa_inc"] * second
+        rate, note = whole_rate(1.0 / step) if SHORTEST_STEP < step < np.inf else None, ""
     else:
-        values, rate, note = even_samples(np.asarray(data["x"], float)[:stated], values, place)
+        time = np.asarray(data["x"], float) * second
+        values, rate, note = even_samples(time, values, place)
     type_ = int(data["ordinate_spec_data_type"])
     unit, unit_from = _unit(data, type_, units)
     direction = tuple(np.sign(axis) * np.eye(3)[abs(axis) - 1]) if abs(axis) in AXES else None
@@ -108,6 +161,25 @@ def _signal(data, path, nodes, units):
     )
 
 
+def _is_time(data):
+    """Whether an abscissa of unknown type has the label of a time, or none."""
+    try:
+        return _second(data, "") > 0.0
+    except ImportProblem:
+        return False
+
+
+def _second(data, place):
+    """Return the unit of the abscissa in s: that of its label, else 1. Raises ImportProblem."""
+    label = _text(data.get("abscissa_axis_units_lab"))
+    if label in NOTHING:
+        return 1.0
+    try:
+        return si_factor(label, "time")
+    except UnitError as error:
+        raise ImportProblem(f"{place}: its abscissa {error}") from error
+
+
 def _axis_text(axis):
     return f"{'+' if axis > 0 else '-'}{AXES[abs(axis)]}" if abs(axis) in AXES else str(axis)
 
@@ -122,7 +194,7 @@ def _unit(data, type_, units):
     It is the axis label, else dataset 164 with the type of the ordinate.
     """
     label = _text(data.get("ordinate_axis_units_lab"))
-    if label not in NOTHING and "\ufffd" not in label:
+    if label not in NOTHING:
         return label, "label of dataset 58"
     if units is None or type_ not in SI_OF_TYPE:
         return "", ""
@@ -134,15 +206,24 @@ def _unit(data, type_, units):
     return unit if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {unit}", "dataset 164"
 
 
-def _nodes(tables, units):
+def _nodes(tables, units, path):
     """Return {node: (x, y, z) in m} of datasets 15 and 2411.
 
-    Empty without dataset 164, which gives their unit.
+    Empty without dataset 164, which gives their unit. Raises ImportProblem for incomplete nodes and
+    for one that lies at two places.
     """
     if units is None:
         return {}
-    return {
-        int(node): tuple(float(value) / units["length"] for value in place)
-        for table in tables
-        for node, *place in zip(table["node_nums"], table["x"], table["y"], table["z"], strict=True)
-    }
+    nodes: dict[int, tuple] = {}
+    for table in tables:
+        columns = [np.asarray(table[key], float) for key in ("node_nums", "x", "y", "z")]
+        if len({column.size for column in columns}) > 1 or not np.isfinite(columns).all():
+            raise ImportProblem(f"{path}: the table of nodes is incomplete: {AGAIN}")
+        for number, *place in zip(*columns, strict=True):
+            point = tuple(float(value) / units["length"] for value in place)
+            if nodes.setdefault(int(number), point) != point:
+                raise ImportProblem(
+                    f"{path}: node {int(number)} lies at {nodes[int(number)]} and at {point} m:"
+                    " leave one of them"
+                )
+    return nodes

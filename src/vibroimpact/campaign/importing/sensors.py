@@ -1,0 +1,218 @@
+"""The sensors of a campaign: their signals in every record, and their place, direction and unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.campaign.file import Channel
+from vibroimpact.units import UnitError, si_factor
+
+from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar
+from .signals import Signal
+
+
+@dataclass(frozen=True)
+class ResolvedSensor:
+    """A sensor whose place, direction, kind and unit are known.
+
+    channel: Channel.
+    unit_from: where its unit stands.
+    signals: its Signal in each record.
+    role: "force" or "response".
+    """
+
+    channel: Channel
+    unit_from: str
+    signals: list[Signal]
+    role: str
+
+    @property
+    def unit_kind(self) -> str:
+        """Return the kind as si_factor knows it."""
+        return "excitation" if self.role == "force" else self.channel.kind
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was described and what was found; problems gathers the sentences of all that is wrong.
+
+    folder: of the measurements.
+    sidecar: Sidecar.
+    found: {file name: Signals}.
+    """
+
+    folder: Path
+    sidecar: Sidecar
+    found: dict[str, list[Signal]]
+    problems: list[str]
+
+
+def resolve_sensors(measured: Measured) -> list[ResolvedSensor]:
+    """Return the ResolvedSensor of every force and channel that is described in full."""
+    sidecar = measured.sidecar
+    resolved = [
+        _resolved(sensor, role, measured)
+        for role, group in (("force", sidecar.forces), ("response", sidecar.channels))
+        for sensor in group
+    ]
+    sensors = [sensor for sensor in resolved if sensor is not None]
+    measured.problems.extend(dict.fromkeys(_shared_signals(sensors)))
+    return sensors
+
+
+def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor | None:
+    """Return the ResolvedSensor, or None after adding to problems."""
+    problems = measured.problems
+    signals = _signals_of(sensor.name, sensor.variable or sensor.name, measured)
+    if signals is None:
+        return None
+    first = signals[0]
+    place = f"{measured.folder / NAME}, {sensor.name}"
+    kind = sensor.kind or first.kind or ("generic" if role == "force" else "")
+    if not kind:
+        problems.append(
+            f"{place}: the kind is not known: add kind: acceleration, velocity, displacement,"
+            " contact_force or generic"
+        )
+    point = sensor.point_m or first.point
+    direction = _unit_vector(sensor.direction, place, problems) or first.direction
+    if point is None:
+        problems.append(f"{place}: its place is not known: add point_m: [x, y, z] in metres")
+    if direction is None:
+        problems.append(
+            f"{place}: its direction is not known: add direction: +x, -y, ... or [x, y, z], the"
+            " positive sense"
+        )
+    unit = _unit(sensor, signals, "excitation" if role == "force" else kind, measured)
+    if unit is None or not kind or point is None or direction is None:
+        return None
+    unit_from = NAME if sensor.unit else first.unit_from
+    if sensor.unit and first.unit and first.unit != unit:
+        unit_from = f"{NAME}; {first.unit_from} says {first.unit}"
+    channel = Channel(sensor.name, tuple(point), tuple(direction), unit, kind)
+    return ResolvedSensor(channel, unit_from, signals, role)
+
+
+def _unit(sensor: Sensor, signals: list[Signal], kind: str, measured: Measured) -> str | None:
+    """Return the one unit of a sensor, None after adding to problems."""
+    place, unit = f"{measured.folder / NAME}, {sensor.name}", sensor.unit or signals[0].unit
+    units = {sensor.unit or signal.unit for signal in signals}
+    if len(units) > 1:
+        measured.problems.append(
+            f"{place}: its unit differs from record to record, {' and '.join(sorted(units))}:"
+            " convert the files, or correct the labels with unit"
+        )
+    try:
+        si_factor(unit, kind or "generic")
+    except UnitError as error:
+        where = f" (add unit to {NAME}; {Path(signals[0].file).name} does not say it)"
+        measured.problems.append(f"{place} {error}" + ("" if unit else where))
+        return None
+    return unit
+
+
+def _unit_vector(direction, place, problems):
+    """Return (3,) a direction of the sidecar as a unit vector, None where none is given."""
+    if direction is None:
+        return None
+    vector = np.array(DIRECTIONS[direction] if isinstance(direction, str) else direction, float)
+    length = np.linalg.norm(vector)
+    if not length > 0.0:
+        problems.append(f"{place}: direction is zero: give +x, -y, ... or [x, y, z]")
+        return (1.0, 0.0, 0.0)
+    return tuple((vector / length).tolist())
+
+
+def _signals_of(sensor: str, variable: str, measured: Measured) -> list[Signal] | None:
+    """Return the Signal of a sensor in each record; None after adding to problems."""
+    signals = [
+        _signal_of(sensor, record.variables.get(sensor, variable), record, measured)
+        for record in measured.sidecar.records
+    ]
+    kept = [signal for signal in signals if signal is not None]
+    return kept if len(kept) == len(signals) else None
+
+
+def _signal_of(sensor: str, wanted: str, record: Record, measured: Measured) -> Signal | None:
+    """Return the Signal of a sensor in a record; None after adding to problems."""
+    known: list[Signal] = []
+    place = measured.folder / NAME
+    for name in record.all_files():
+        if name not in measured.found:
+            measured.problems.append(
+                f"{place}: record file '{name}' is not in the folder; it has"
+                f" {', '.join(measured.found)}"
+            )
+            return None
+        known += measured.found[name]
+    matches = [signal for signal in known if signal.name == wanted] or [
+        signal for signal in known if wanted in signal.aliases
+    ]
+    if len(matches) != 1:
+        what = "is not" if not matches else f"is {len(matches)} times"
+        measured.problems.append(
+            f"{place}, {sensor}: the signal '{wanted}' {what} in {', '.join(record.all_files())}:"
+            f" they have {', '.join(signal.name for signal in known)}; name it with variable"
+        )
+        return None
+    return matches[0]
+
+
+def _shared_signals(sensors: list[ResolvedSensor]) -> Iterable[str]:
+    """Yield a sentence for each signal that two sensors stand for."""
+    for record in zip(*(sensor.signals for sensor in sensors), strict=True):
+        taken: dict[tuple[str, str], str] = {}
+        for sensor, signal in zip(sensors, record, strict=True):
+            other = taken.setdefault((signal.file, signal.name), sensor.channel.name)
+            if other != sensor.channel.name:
+                yield (
+                    f"{NAME}: {other} and {sensor.channel.name} are the same signal"
+                    f" '{signal.name}' of {Path(signal.file).name}: name another with variable"
+                )
+
+
+def one_rate(sensors: list[ResolvedSensor], measured: Measured) -> float:
+    """Return the sampling frequency in Hz of all signals.
+
+    Adds to problems where there is none or more than one.
+    """
+    rates = {signal.rate: signal for sensor in sensors for signal in sensor.signals if signal.rate}
+    given = measured.sidecar.sampling_frequency_Hz
+    if given:
+        measured.problems.extend(
+            f"{Path(signal.file).name}, {signal.name}: sampled at {rate:g} Hz, but"
+            f" sampling_frequency_Hz of {NAME} = {given:g}: remove the key"
+            for rate, signal in rates.items()
+            if abs(rate - given) > 1e-6 * given
+        )
+        return given
+    if len(rates) > 1:
+        listed = ", ".join(
+            f"{rate:g} Hz ({Path(signal.file).name})" for rate, signal in sorted(rates.items())
+        )
+        measured.problems.append(
+            f"{NAME}: the signals are sampled at {listed}: resample them to one rate first"
+        )
+    if not rates and sensors:
+        measured.problems.append(
+            f"{NAME}: no file states its sampling frequency: add sampling_frequency_Hz"
+        )
+    return next(iter(rates), 1.0)
+
+
+def read_voltage(measured: Measured) -> list[Signal] | None:
+    """Return the Signal of the shaker's voltage in V in each record, None without."""
+    wanted = measured.sidecar.voltage
+    if wanted is None:
+        return None
+    try:
+        factor = si_factor(wanted.unit, "voltage")
+    except UnitError as error:
+        measured.problems.append(f"{measured.folder / NAME}, voltage {error}")
+        return None
+    signals = _signals_of("voltage", wanted.variable, measured)
+    return signals and [replace(signal, values=factor * signal.values) for signal in signals]
