@@ -30,6 +30,8 @@ PACKAGES = (
     "least_squares",
     "random_streams",
     "records",
+    "foreign_arrays",
+    "matlab_files",
     "verdict",
     "materials",
     "geometry",

@@ -157,7 +157,7 @@ def _reference(options: argparse.Namespace) -> int:
 
 def _is_netcdf(path: str) -> bool:
     """Whether a file is netCDF, by its name or its first bytes."""
-    if not Path(path).is_file():
+    if not os.path.isfile(path):
         return False
     if Path(path).suffix.lower() in NETCDF:
         return True

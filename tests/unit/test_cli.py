@@ -178,3 +178,19 @@ def test_a_broken_configfile_ends_snakemake_with_a_sentence(tmp_path):
         with pytest.raises(SystemExit, match="broken.yaml: line 2, column 2"):
             require_yaml(arguments)
     require_yaml(["-n", "--configfile", str(STUDY)])
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-1", "0", "1e30", "abc"])
+@pytest.mark.parametrize("argument", ["--load", "--gap"])
+def test_a_load_or_gap_that_is_no_quantity_is_refused(argument, value, capsys):
+    given = {"--load": "1", "--gap": "1e-4", argument: value}
+    with pytest.raises(SystemExit) as error:
+        main(["equivalent", "any", *(f"{name}={text}" for name, text in given.items())])
+    assert error.value.code == 2
+    assert f"argument {argument}: '{value}' is no positive number" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [["check"], ["new"], ["equivalent", "--load=1", "--gap=1e-4"]])
+def test_a_path_that_is_too_long_is_refused(command, capsys):
+    assert main([*command, "a" * 5000]) == 1
+    assert "a" * 5000 in capsys.readouterr().err

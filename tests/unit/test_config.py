@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import Config, ConfigError, check_config, load_config
 from vibroimpact.config.reserved_names import reserved_names
 from vibroimpact.config.stage_keys import STAGE_KEYS, select, stage_params
@@ -636,3 +637,15 @@ def test_names_of_parts_are_given_once(study, kind):
 def test_a_key_that_is_no_text_is_named(study):
     study["record"][7] = 1
     assert "config/mine.yaml: the key 7 of record must be a text" in problems(study)
+
+
+def test_numbers_beside_the_study_are_positive_or_whole():
+    assert asked_number("seconds", "49", "49", whole=True) == 49
+    assert asked_number("draw", "0", "1", whole=True) == 0
+    assert asked_number("compared_s", "0.5", "49") == 0.5
+    for text in ("abc", "", "nan", "inf", "-1", "0.5", "1e30", "1" * 400):
+        with pytest.raises(ValueError, match=r"draw = '.*': give a whole number, as in --config"):
+            asked_number("draw", text, "1", whole=True)
+    for text in ("abc", "nan", "inf", "-1", "0"):
+        with pytest.raises(ValueError, match=r"compared_s = '.*': give a positive number"):
+            asked_number("compared_s", text, "49")

@@ -79,7 +79,7 @@ def test_matrices_that_can_not_be_used_are_refused(tmp_path):
         ("skew.npz", "not symmetric"),
         ("long.npz", "a square matrix is needed"),
         ("text.txt", "none of .npz, .mat, .mtx, .op4"),
-        ("complex.mtx", "mass is complex"),
+        ("complex.mtx", "is complex"),
         ("no.npz", "no such file"),
     ):
         with pytest.raises(MatrixFileError, match=part):

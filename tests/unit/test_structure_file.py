@@ -87,6 +87,16 @@ def test_other_models_are_left_to_the_study(tmp_path, text):
         ("places: {joint: 3}", "structure.places.joint = 3 must give a coefficient"),
         ("places: [joint]", "structure.places = ['joint'] must be a block of places"),
         ("additions: {}", "structure.additions = {} must be a list of names law.place"),
+        (
+            "candidates: [clearance.a/../b]",
+            "structure.candidates[0] = 'clearance.a/../b' must be a law and a place",
+        ),
+        (
+            "additions: [clearance.a, clearance.a]",
+            "structure.additions = ['clearance.a', 'clearance.a'] must be a list of names",
+        ),
+        ("band_Hz: [5, .inf]", "structure.band_Hz[1] = inf must be a finite number"),
+        ("emphasis: .nan", "structure.emphasis = nan must be between 0"),
         ("mean: 1", "structure.mean = 1 must be true or false"),
         ("drive: [a1]", "structure.drive = ['a1'] must be the name of a channel"),
     ],

@@ -1,4 +1,4 @@
-"""A YAML error in a configuration, whichever way snakemake is given the file."""
+"""What snakemake is given that it can not use: YAML files, and values of --config."""
 
 import subprocess
 import sys
@@ -9,10 +9,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-def refusal(*arguments):
+def refusal(*arguments, target="all"):
     """The last line of a dry run of snakemake that is refused."""
     run = subprocess.run(
-        [sys.executable, "-m", "snakemake", "--dry-run", *map(str, arguments)],
+        [sys.executable, "-m", "snakemake", "--dry-run", target, *map(str, arguments)],
         capture_output=True,
         text=True,
         cwd=ROOT,
@@ -61,3 +61,36 @@ def test_snakemake_refuses_a_damaged_configuration(tmp_path, content, part, reli
     assert refusal("--configfile", "config/smoke.yaml", "--config", f"model={damaged}") == sentence
     what = request.node.callspec.id
     reliability.fault(f"a configuration that is a {what}", "refused with a sentence")
+
+
+REQUESTS = {
+    # value of --config: target, how the sentence begins
+    "suite_seed=abc": ("suite", "suite_seed = 'abc': give a whole number"),
+    "draw=0.5": ("suite", "draw = '0.5': give a whole number"),
+    "seconds=inf": ("suite", "seconds = 'inf': give a whole number"),
+    "count=-1": ("suite", "count = -1: give how many campaigns"),
+    "count=10000": ("suite", "count = 10000: give how many campaigns, at most 9999"),
+    "shard=9/3": ("suite", "shard = 9/3: give i/n"),
+    "add=none.csv": ("suite", "add = none.csv is not there"),
+    "compared_s=nan": ("discrepancy", "compared_s = 'nan': give a positive number"),
+    "quick=maybe": ("discrepancy", "quick = 'maybe': give yes or no"),
+    "bank=none": ("discrepancy", "bank = 'none' is no folder"),
+    "campaign=src": ("discrepancy", "campaign = 'src' is no file"),
+    "campaign=none.nc": ("discrepancy", "campaign = 'none.nc' is not there"),
+    "model=src": ("discrepancy", "src: is a folder"),
+    "import=Snakefile": ("import_campaign", "import = 'Snakefile' is no folder"),
+    "import=none": ("import_campaign", "import = 'none' is not there"),
+}
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        pytest.param(value, marks=[] if number < 3 else pytest.mark.slow)
+        for number, value in enumerate(REQUESTS)
+    ],
+)
+def test_a_value_beside_the_study_is_refused(value):
+    target, part = REQUESTS[value]
+    given = ["--configfile", "config/smoke.yaml", "--config", value]
+    assert refusal(*given, target=target).startswith(part)

@@ -45,6 +45,7 @@ os.environ.update(
 )
 
 from vibroimpact.completion.structure_file import read_structure
+from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
 
 # Values of --config that are not keys of the study.
@@ -69,28 +70,40 @@ REQUEST = {
 }
 
 
-def number_asked(name):
+for name, value in REQUEST.items():
+    if not value.strip():
+        sys.exit(f"{name} = '': give a value, or leave it out")
+if "bank" in REQUEST and not os.path.isdir(REQUEST["bank"]):
+    sys.exit(
+        f"bank = '{REQUEST['bank']}' is no folder: give that of another campaign's results, as in"
+        " --config bank=results/mine"
+    )
+
+
+def number_asked(name, example, whole=False):
     """The number of --config name=NUMBER, None where it is not given.
 
-    Exits with a sentence where it is not a positive number.
+    Exits with a sentence where it is not a positive number, or not whole where that is asked.
     """
     try:
-        value = float(REQUEST[name]) if name in REQUEST else None
-    except ValueError:
-        value = -1
-    if value is not None and not value > 0:
-        sys.exit(
-            f"{name} = '{REQUEST[name]}': give a positive number, as in"
-            f" --config {name}={1 if name == 'draw' else 49}"
-        )
-    return value
+        return asked_number(name, REQUEST[name], example, whole) if name in REQUEST else None
+    except ValueError as problem:
+        sys.exit(str(problem))
+
+
+def said_yes(name):
+    """Whether --config name=yes is given. Exits with a sentence where it is neither yes nor no."""
+    value = REQUEST.get(name, "no").lower()
+    if value not in ("yes", "true", "1", "no", "false", "0"):
+        sys.exit(f"{name} = '{REQUEST[name]}': give yes or no")
+    return value in ("yes", "true", "1")
 
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
-COMPARED_S = number_asked("compared_s")
-DRAW = int(number_asked("draw") or 0)
-QUICK = REQUEST.get("quick", "no") not in ("no", "False", "false", "0")
+COMPARED_S = number_asked("compared_s", example="49")
+DRAW = int(number_asked("draw", example="1", whole=True) or 0)
+QUICK = said_yes("quick")
 
 
 def requested(name, example):
@@ -99,10 +112,13 @@ def requested(name, example):
     Exits with a sentence where it is not given or does not exist.
     """
 
+    kind, is_there = ("folder", os.path.isdir) if example == "FOLDER" else ("file", os.path.isfile)
+
     def path(wildcards):
-        if not os.path.exists(REQUEST.get(name, "")):
+        if not is_there(REQUEST.get(name, "")):
+            what = f"is no {kind}" if os.path.exists(REQUEST.get(name, "")) else "is not there"
             sys.exit(
-                f"{name} = '{REQUEST.get(name, '')}' is not there: give it as in"
+                f"{name} = '{REQUEST.get(name, '')}' {what}: give it as in"
                 f" --config {name}={example}"
             )
         return REQUEST[name]

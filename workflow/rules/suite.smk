@@ -7,10 +7,12 @@
 # elsewhere.
 from vibroimpact.acceptance.shards import SUITE_NAME, SUITE_S, frozen_seed, suite_name
 
-SUITE_SEED = int(
-    REQUEST.get("suite_seed", frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py"))
-)
-SUITE = f"results/{suite_name(SUITE_SEED, int(number_asked('seconds') or SUITE_S), DRAW)}"
+SUITE_SEED = number_asked("suite_seed", example="1", whole=True)
+if SUITE_SEED is None:
+    SUITE_SEED = frozen_seed(f"{SOURCE}/vibroimpact/discrepancy/priors.py")
+SUITE_SEED = int(SUITE_SEED)
+SECONDS = int(number_asked("seconds", example="49", whole=True) or SUITE_S)
+SUITE = f"results/{suite_name(SUITE_SEED, SECONDS, DRAW)}"
 SUITE_ADDED = [file for file in REQUEST.get("add", "").split(",") if file]
 SUITE_CAMPAIGNS = suite_campaigns(SUITE, SUITE_ADDED)
 SUITE_FIGURES = (

@@ -13,6 +13,7 @@ def frozen_seed(path):
     return int(hashlib.sha256(Path(path).read_bytes()).hexdigest()[:8], 16)
 
 
+MOST_CAMPAIGNS = 9999  # their folders have numbers of four digits
 SUITE_S = 20  # of every record of a suite's campaigns
 SUITE_NAME = r"suite_([0-9]+)(?:_([0-9]+)s)?(?:_draw([0-9]+))?"
 
@@ -34,10 +35,10 @@ def shard_of(count, shard):
     """Return the numbers of the campaigns of a shard "i/n" of the first `count`: every n-th from
     the i-th on. Raises ValueError where these are none.
     """
-    if not str(count).isdecimal() or int(count) < 1:
+    if not str(count).isdecimal() or not 1 <= int(str(count)[:9]) <= MOST_CAMPAIGNS:
         raise ValueError(
-            f"count = {count}: give how many campaigns, as in count=90, or count=judged for those"
-            " with a verdict"
+            f"count = {count}: give how many campaigns, at most {MOST_CAMPAIGNS}, as in count=90,"
+            " or count=judged for those with a verdict"
         )
     parts = shard.split("/")
     if (

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from pydantic import ValidationError
 
 from vibroimpact.config.measured_structure import MeasuredStructure
+from vibroimpact.config.problems import PLAIN_WORDS, shown
 from vibroimpact.config.reading import ConfigError, read_yaml
 
 from .local_laws import LAWS
@@ -85,9 +86,14 @@ def _sentence(error):
             f"did you mean '{close[0]}'?" if close else f"known are {', '.join(KEYS)}"
         )
     if last == "[key]":
-        return f"structure.{path[0]}: the name {error['input']!r} {error['msg']}"
+        return f"structure.{path[0]}: the name {shown(error['input'])} {_rule(error)}"
     place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"])
-    return f"structure{place} = {error['input']!r} {error['msg']}"
+    return f"structure{place} = {shown(error['input'])} {_rule(error)}"
+
+
+def _rule(error):
+    """What is wrong with a value, in the words of a configuration."""
+    return PLAIN_WORDS.get(error["type"]) or error["msg"]
 
 
 def _unknown_laws(key, names):

@@ -12,7 +12,8 @@ from pydantic_core import PydanticCustomError
 from .quantities import Section, Unit
 
 ELSEWHERE = "elsewhere"  # stands for a place that no channel shows
-PLACE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+PLACE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,99}")
+LAW_AT_PLACE = re.compile(r"[A-Za-z_]+\.[^\s/\\{}.][^\s/\\{}]{0,99}")  # the name of files
 
 
 def _is_number(value: Any) -> bool:
@@ -39,6 +40,10 @@ def _are_coefficients(value: Any) -> bool:
         and all(map(_is_number, value.values()))
         and any(value.values())
     )
+
+
+def _are_names(value: Any) -> bool:
+    return isinstance(value, list) and len(set(map(str, value))) == len(value)
 
 
 def _are_two_flags(value: Any) -> bool:
@@ -97,17 +102,15 @@ Places = Annotated[
 Law_at_place = Annotated[
     str,
     only(
-        lambda value: isinstance(value, str) and "." in value,
+        lambda value: isinstance(value, str) and LAW_AT_PLACE.fullmatch(value) is not None,
         "must be a law and a place with a point between, as in cubic_stiffness.joint",
     ),
 ]
-A_LIST = "must be a list of names law.place, as in [cubic_stiffness.joint]"
+A_LIST = "must be a list of names law.place, each once, as in [cubic_stiffness.joint]"
 Laws = Annotated[
-    tuple[Law_at_place, ...], only(lambda value: isinstance(value, list) and bool(value), A_LIST)
+    tuple[Law_at_place, ...], only(lambda value: _are_names(value) and bool(value), A_LIST)
 ]
-Laws_or_none = Annotated[
-    tuple[Law_at_place, ...], only(lambda value: isinstance(value, list), A_LIST)
-]
+Laws_or_none = Annotated[tuple[Law_at_place, ...], only(_are_names, A_LIST)]
 Two_flags = Annotated[
     tuple[bool, bool],
     only(

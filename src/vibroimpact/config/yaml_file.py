@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 import yaml
@@ -77,9 +76,9 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 def _content(path: str | os.PathLike[str]) -> bytes:
     """Return the bytes of a file. Raises ConfigError."""
-    if Path(path).is_dir():
+    if os.path.isdir(path):
         raise ConfigError([f"{path}: is a folder: give the path of a file in it"])
-    if Path(path).exists() and not Path(path).is_file():
+    if os.path.exists(path) and not os.path.isfile(path):
         raise ConfigError([f"{path}: is a pipe or a device: save the configuration to a file"])
     try:
         with open(path, "rb") as file:

@@ -14,7 +14,19 @@ if TYPE_CHECKING:
 
     from .answer import Answer
 
+LARGEST = 1e20
 FORMATS = ("nastran", "code_aster", "abaqus", "opensees", "csv", "json")
+
+
+def _positive(text: str) -> float:
+    """Return the positive number of an argument. Raises ArgumentTypeError."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= LARGEST:
+        raise argparse.ArgumentTypeError(f"'{text}' is no positive number: give it in SI units")
+    return value
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,9 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a finished study: its name under results/, or the folder of its results",
     )
     parser.add_argument(
-        "--load", type=float, required=True, metavar="N", help="RMS of the force in N"
+        "--load", type=_positive, required=True, metavar="N", help="RMS of the force in N"
     )
-    parser.add_argument("--gap", type=float, required=True, metavar="M", help="radial gap in m")
+    parser.add_argument("--gap", type=_positive, required=True, metavar="M", help="radial gap in m")
     parser.add_argument(
         "--config",
         metavar="FILE",

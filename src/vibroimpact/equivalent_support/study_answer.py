@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -115,7 +116,7 @@ def study_folder(study: str | Path) -> Path:
     study: the folder, or its name under results/. Raises EquivalentError.
     """
     for folder in (Path(study), Path("results") / study):
-        if (folder / SUMMARY).is_file():
+        if os.path.isfile(folder / SUMMARY):
             return folder.resolve() if folder.name in ("", ".", "..") else folder
     raise EquivalentError(
         f"'{study}' is no finished study: neither {Path(study) / SUMMARY} nor"

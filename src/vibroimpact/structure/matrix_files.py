@@ -1,12 +1,23 @@
 """Mass, stiffness and damping matrices from NumPy, MATLAB, MatrixMarket and Nastran OP4 files."""
 
-import struct
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import io, sparse
+from scipy import sparse
 
+from vibroimpact.foreign_arrays import (
+    ForeignFileError,
+    load_npz,
+    refused_if_damaged,
+    require_size,
+)
+from vibroimpact.matlab_files import load_matlab
+
+from .matrix_market import read_matrix_market
+
+MOST_ROWS = 10**7
+LARGEST = 1e30  # beyond any mass, stiffness or damping in SI units
 LETTERS = {"mass": ("M", "m"), "stiffness": ("K", "k"), "damping": ("C", "c")}
 OP4_READER = "pyyeti==1.4.7"
 OP4_NAME_LENGTH = 8  # characters of a name in the format: stiffnes
@@ -16,11 +27,7 @@ OP4_LETTERS = {"mass": ("m",), "stiffness": ("k",), "damping": ("c", "b")}
 OP4_SETS = ("gg", "nn", "ff", "aa", "ll", "xx")
 
 
-# What pyyeti raises on a truncated file or one of another format.
-OP4_ERRORS = (ValueError, RuntimeError, IndexError, OverflowError, OSError, struct.error)
-
-
-class MatrixFileError(ValueError):
+class MatrixFileError(ForeignFileError):
     """A matrix file that cannot be used; the message names it, what it holds and the remedy."""
 
 
@@ -39,31 +46,77 @@ def read_matrix(path: str | Path, name: str) -> sparse.csr_array:
         )
     if path.suffix.lower() not in READERS:
         raise MatrixFileError(f"{path}: ends in none of {', '.join(READERS)}")
-    matrix = READERS[path.suffix.lower()](path, name)
+    try:
+        with refused_if_damaged(path, f"a matrix file {path.suffix.lower()}", "write it anew"):
+            matrix = READERS[path.suffix.lower()](path, name)
+            return _symmetric(path, name, _real(path, name, matrix))
+    except MatrixFileError:
+        raise
+    except ForeignFileError as error:
+        raise MatrixFileError(str(error)) from error
+
+
+def _real(path: Path, name: str, matrix: Any) -> sparse.csr_array:
+    """Return a matrix as real numbers, sparse. Raises MatrixFileError where it is not square, holds
+    other things than finite real numbers, or refers to rows that it does not have.
+    """
+    if sparse.issparse(matrix):
+        _require_shape(path, name, matrix.shape)
+        if matrix.format in ("csr", "csc", "bsr"):
+            matrix.check_format(full_check=True)
+        matrix = sparse.csr_array(matrix)
     if matrix.dtype.kind == "c":
         raise MatrixFileError(
             f"{path}: {name} is complex: give its real part, and what damps as a damping matrix or"
             " as damping ratios"
         )
-    matrix = sparse.csr_array(matrix, dtype=float)
-    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise MatrixFileError(f"{path}: {name} is {matrix.shape}, a square matrix is needed")
+    if matrix.dtype.kind not in "fiu":
+        raise MatrixFileError(f"{path}: {name} holds no numbers: give a matrix of numbers")
+    _require_shape(path, name, matrix.shape)
+    values = matrix.data if sparse.issparse(matrix) else matrix
+    if not np.all(np.abs(values) <= LARGEST):  # false for what is not a number, too
+        raise MatrixFileError(
+            f"{path}: {name} holds values that are not finite or beyond {LARGEST:g}: correct them"
+        )
+    return sparse.csr_array(matrix, dtype=float)
+
+
+def _require_shape(path: Path, name: str, shape: tuple[int, ...]) -> None:
+    """Raise MatrixFileError unless a matrix is square, and not beyond any structure."""
+    if len(shape) != 2 or shape[0] != shape[1] or not 1 <= shape[0] <= MOST_ROWS:
+        raise MatrixFileError(
+            f"{path}: {name} is {tuple(map(int, shape))}, a square matrix is needed, of 1 to"
+            f" {MOST_ROWS} rows"
+        )
+
+
+def _symmetric(path: Path, name: str, matrix: sparse.csr_array) -> sparse.csr_array:
+    """Return a matrix with exactly equal halves. Raises MatrixFileError where they differ."""
     largest = abs(matrix).max()
     if abs(matrix - matrix.T).max() > 1e-8 * largest:
         raise MatrixFileError(f"{path}: {name} is not symmetric: give both halves, in SI units")
     return (0.5 * (matrix + matrix.T)).tocsr()
 
 
-def _npz(path, name):
-    with np.load(path, allow_pickle=False) as arrays:
-        if "format" in arrays.files:
-            return sparse.load_npz(path)
-        return arrays[_choose_letter(path, arrays.files, name)]
+def _npz(path: Path, name: str) -> Any:
+    """Return a matrix of a .npz file. Raises ForeignFileError."""
+    arrays = load_npz(path)
+    if "format" not in arrays:
+        return arrays[_choose_letter(path, list(arrays), name)]
+    _require_shape(path, name, tuple(arrays["shape"]))
+    with open(path, "rb") as file:
+        return sparse.load_npz(file)
 
 
-def _mat(path, name):
-    arrays = {key: value for key, value in io.loadmat(path).items() if not key.startswith("__")}
+def _mat(path: Path, name: str) -> Any:
+    """Return a matrix of a .mat file. Raises ForeignFileError."""
+    arrays = load_matlab(path)
     return arrays[_choose_letter(path, list(arrays), name)]
+
+
+def _mtx(path: Path, name: str) -> Any:
+    """Return the matrix of a MatrixMarket file. Raises ForeignFileError."""
+    return read_matrix_market(path, MOST_ROWS)
 
 
 def _choose_letter(path, names, name):
@@ -79,16 +132,13 @@ def _op4(path: Path, name: str) -> Any:
         raise MatrixFileError(
             f"{path}: reading OP4 needs pyyeti: pip install {OP4_READER}"
         ) from error
-    try:
-        names = op4.dir(str(path), verbose=False)[0]
+    with refused_if_damaged(path, "OP4", "write it anew with OUTPUT4"):
+        names, sizes = op4.dir(str(path), verbose=False)[:2]
         chosen = _choose_op4(path, names, name)
+        rows, columns = (abs(int(size)) for size in sizes[names.index(chosen)])
+        _require_shape(path, name, (rows, columns))
+        require_size(path, 8.0 * rows * columns, chosen)
         return op4.read(str(path), chosen, sparse=None)[chosen]
-    except MatrixFileError:
-        raise
-    except OP4_ERRORS as error:
-        raise MatrixFileError(
-            f"{path}: cannot be read as OP4 ({error}): write it anew with OUTPUT4"
-        ) from error
 
 
 def _choose_op4(path: Path, names: list[str], name: str) -> str:
@@ -125,4 +175,4 @@ def _choose(path: Path, names: list[str], fitting: list[str], remedy: str) -> st
     raise MatrixFileError(f"{path}: holds {', '.join(names) or 'no matrix'}: {remedy}")
 
 
-READERS = {".npz": _npz, ".mat": _mat, ".mtx": lambda path, name: io.mmread(path), ".op4": _op4}
+READERS = {".npz": _npz, ".mat": _mat, ".mtx": _mtx, ".op4": _op4}

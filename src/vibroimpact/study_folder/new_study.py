@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Iterator
 from difflib import get_close_matches
@@ -72,9 +73,9 @@ def files_named(value: Any, folder: Path) -> Iterator[Path]:
 
 def _refuse_what_exists(folder: Path) -> None:
     """Raise NewStudyError where a path is a file or a folder that holds something."""
-    if folder.exists() and not folder.is_dir():
+    if os.path.exists(folder) and not os.path.isdir(folder):
         raise NewStudyError(f"{folder} is a file: give a folder that does not exist yet")
-    if folder.is_dir() and (entry := next(folder.iterdir(), None)):
+    if os.path.isdir(folder) and (entry := next(folder.iterdir(), None)):
         raise NewStudyError(
             f"{folder} is not empty, it holds {entry.name}: give a folder that is empty or does not"
             " exist yet"
