@@ -33,8 +33,8 @@ rule _f16_records:
         "results/f16/benchmarks/f16_records.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=memory(1500),
+        runtime=minutes(10),
     params:
         python=PYTHON,
     message:
@@ -56,8 +56,8 @@ rule _f16_poles:
         "results/f16/benchmarks/f16_poles.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         python=PYTHON,
     message:

@@ -35,8 +35,8 @@ rule _silverbox_records:
         "results/silverbox/benchmarks/silverbox_records.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=memory(1500),
+        runtime=minutes(10),
     params:
         python=PYTHON,
     message:
@@ -59,8 +59,8 @@ rule _silverbox_published:
         "results/silverbox/benchmarks/silverbox_published.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         python=PYTHON,
     message:

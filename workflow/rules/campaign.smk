@@ -15,8 +15,8 @@ rule _synthetic_campaign:
         f"{RESULTS}/benchmarks/synthetic_campaign.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=memory(2000),
+        runtime=minutes(20),
     params:
         config=settings("synthetic_campaign"),
         loads=nearest_loads(STUDY.grid, STUDY.overlay.load_rms_N),

@@ -31,8 +31,8 @@ checkpoint _completion_prepare:
         "results/{structure}/benchmarks/completion_prepare.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=memory(2000),
+        runtime=minutes(30),
     params:
         structure=structure_completed,
     message:
@@ -55,8 +55,8 @@ rule _completion_candidate:
         "results/{structure}/benchmarks/candidate_{law}.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=memory(1500),
+        runtime=minutes(30),
     params:
         law="{law}",
     message:
@@ -80,8 +80,8 @@ rule _completion_addition:
         "results/{structure}/benchmarks/addition_{law}.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=memory(1500),
+        runtime=minutes(30),
     params:
         law="{law}",
     message:
@@ -109,8 +109,8 @@ rule _completion_outcome:
         "results/{structure}/benchmarks/completion_outcome.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=memory(1500),
+        runtime=minutes(30),
     params:
         structure=structure_completed,
     message:
@@ -139,8 +139,8 @@ rule _completion_report:
         "results/{structure}/benchmarks/completion_report.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=memory(1500),
+        runtime=minutes(10),
     params:
         name="{structure}",
     message:

@@ -27,8 +27,8 @@ checkpoint _discrepancy_prepare:
         f"{DISCREPANCY}/benchmarks/prepare.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=20,
+        mem_mb=memory(3000),
+        runtime=minutes(20),
     params:
         config=MODEL.model_dump(mode="json"),
         compared_s=COMPARED_S,
@@ -52,8 +52,8 @@ rule _discrepancy_null:
         f"{DISCREPANCY}/benchmarks/null_{{part}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
     message:
@@ -75,8 +75,8 @@ rule _discrepancy_candidate:
         f"{DISCREPANCY}/benchmarks/candidate_{{candidate}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
     message:
@@ -101,8 +101,8 @@ checkpoint _discrepancy_screening:
         f"{DISCREPANCY}/benchmarks/screening.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=30,
+        mem_mb=memory(3000),
+        runtime=minutes(30),
     params:
         config=MODEL.model_dump(mode="json"),
     message:
@@ -128,8 +128,8 @@ rule _discrepancy_finalist:
         f"{DISCREPANCY}/benchmarks/finalist_{{candidate}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
     message:
@@ -156,8 +156,8 @@ checkpoint _discrepancy_pairs:
         f"{DISCREPANCY}/benchmarks/pairs.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=30,
+        mem_mb=memory(3000),
+        runtime=minutes(30),
     params:
         config=MODEL.model_dump(mode="json"),
     message:
@@ -183,8 +183,8 @@ rule _discrepancy_pair:
         f"{DISCREPANCY}/benchmarks/pair_{{pair}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
     message:
@@ -217,8 +217,8 @@ rule _discrepancy_verdict:
         f"{DISCREPANCY}/benchmarks/verdict.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
     message:

@@ -21,8 +21,8 @@ rule _discrepancy_mode:
         f"{DISCREPANCY}/benchmarks/mode.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=1,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         mode="quick" if QUICK else "full",
     message:
@@ -52,8 +52,8 @@ rule _discrepancy_report:
         f"{DISCREPANCY}/benchmarks/discrepancy_report.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=memory(2000),
+        runtime=minutes(10),
     params:
         name=LOOKED_AT,
         quick=QUICK,

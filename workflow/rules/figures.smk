@@ -13,8 +13,8 @@ rule _figures_model:
         f"{RESULTS}/benchmarks/figures_model.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("figures_model"),
     message:
@@ -37,8 +37,8 @@ rule _figures_response:
         f"{RESULTS}/benchmarks/figures_response.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("figures_response"),
     message:
@@ -62,8 +62,8 @@ rule _figures_identification:
         f"{RESULTS}/benchmarks/figures_identification.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("figures_identification"),
     message:
@@ -86,8 +86,8 @@ rule _figures_checks:
         f"{RESULTS}/benchmarks/figures_checks.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("figures_checks"),
     message:

@@ -24,8 +24,8 @@ for START, LOADS in loads_by_half_decade(STUDY.grid).items():
         priority: 1  # spread over the simulations, not after them
         threads: 1
         resources:
-            mem_mb=500,
-            runtime=30,
+            mem_mb=memory(1000),
+            runtime=minutes(30),
         params:
             config=settings("identify"),
         message:
@@ -54,8 +54,8 @@ rule _consistency:
         f"{RESULTS}/benchmarks/consistency.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("consistency"),
     message:

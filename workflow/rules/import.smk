@@ -23,8 +23,8 @@ rule import_campaign:
         f"results/{IMPORTED}/benchmarks/import_campaign.tsv"
     threads: 1
     resources:
-        mem_mb=4000,
-        runtime=20,
+        mem_mb=memory(4000),
+        runtime=minutes(20),
     params:
         folder=REQUEST.get("import"),
     message:
@@ -48,8 +48,8 @@ rule quicklook:
         f"results/{LOOKED_AT}/benchmarks/quicklook.tsv"
     threads: 1
     resources:
-        mem_mb=4000,
-        runtime=10,
+        mem_mb=memory(4000),
+        runtime=minutes(10),
     params:
         campaign=REQUEST.get("campaign"),
     message:

@@ -27,8 +27,8 @@ rule _simulate:
         f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=60,
+        mem_mb=memory(1000),
+        runtime=minutes(60),
     params:
         config=settings("simulate"),
     message:
@@ -51,8 +51,8 @@ rule _simulate_to_spectra:
         f"{RESULTS}/benchmarks/simulate_load_{{load}}.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=60,
+        mem_mb=memory(1000),
+        runtime=minutes(60),
     params:
         config=settings("simulate_to_spectra"),
     message:
@@ -73,8 +73,8 @@ rule _spectra:
         f"{RESULTS}/benchmarks/spectra_load_{{load}}.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=20,
+        mem_mb=memory(1000),
+        runtime=minutes(20),
     params:
         config=settings("spectra"),
     message:
@@ -95,8 +95,8 @@ rule _statistics:
         f"{RESULTS}/benchmarks/statistics.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("statistics"),
     message:

@@ -18,8 +18,8 @@ rule timing:
         f"{RESULTS}/benchmarks/timing.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("timing"),
         logs=[f"{RESULTS}/logs/{job}.log" for job in jobs_of_study()],

@@ -43,8 +43,8 @@ rule _validation_reference:
         f"{VALIDATION}/benchmarks/reference_{{group}}.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=memory(2000),
+        runtime=minutes(30),
     params:
         config=settings("validation"),
     message:
@@ -77,8 +77,8 @@ rule _validation_claims:
         f"{VALIDATION}/benchmarks/claims.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=20,
+        mem_mb=memory(3000),
+        runtime=minutes(20),
     params:
         config=settings("validation"),
     message:
@@ -103,8 +103,8 @@ rule _validation_prediction_cases:
         f"{VALIDATION}/benchmarks/prediction_{{cases}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=30,
+        mem_mb=memory(3000),
+        runtime=minutes(30),
     params:
         config=settings("validation"),
     message:
@@ -127,8 +127,8 @@ rule _validation_prediction:
         f"{VALIDATION}/benchmarks/prediction.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("statistics"),
     message:
@@ -159,8 +159,8 @@ rule validation:
         f"{VALIDATION}/benchmarks/validation.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("statistics"),
     message:

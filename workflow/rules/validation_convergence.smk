@@ -47,8 +47,8 @@ rule _validation_convergence_frequencies:
         "results/validation/benchmarks/convergence_frequencies.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("validation"),
     message:
@@ -68,8 +68,8 @@ rule _validation_convergence_runs:
         "results/validation/benchmarks/convergence_runs_{axis}.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=memory(2000),
+        runtime=minutes(30),
     params:
         config=settings("validation"),
     message:
@@ -91,8 +91,8 @@ rule _validation_convergence_statistics:
         "results/validation/benchmarks/convergence_statistics.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         config=settings("validation"),
     message:
@@ -113,8 +113,8 @@ rule _validation_convergence_spectra:
         "results/validation/benchmarks/convergence_spectra.tsv"
     threads: 1
     resources:
-        mem_mb=2500,
-        runtime=20,
+        mem_mb=memory(2500),
+        runtime=minutes(20),
     params:
         config=settings("validation"),
     message:
