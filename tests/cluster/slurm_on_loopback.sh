@@ -135,15 +135,16 @@ processes_of_jobs() { # the ids of what jobs of this cluster still run
 }
 
 stop() {
-    local name process
+    local name process daemons=()
     for name in slurmd slurmctld munged; do
-        ! running "$name" || kill "$(cat "$folder/$name.pid")"
+        ! running "$name" || daemons+=("$(cat "$folder/$name.pid")")
     done
+    [ ${#daemons[@]} = 0 ] || kill "${daemons[@]}"
     for process in $(processes_of_jobs); do # none where every job has ended
         kill -9 "$process" 2>/dev/null || true
     done
-    for name in slurmd slurmctld munged; do
-        while running "$name"; do sleep 0.1; done
+    for process in "${daemons[@]}"; do # slurmd may wait for ever for a job that was lost
+        timeout 10 tail --pid="$process" -f /dev/null || kill -9 "$process" 2>/dev/null || true
     done
     [ "$(readlink "$link")" != "$configuration" ] || rm "$link"
 }

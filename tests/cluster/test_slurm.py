@@ -117,9 +117,8 @@ def test_a_study_survives_the_faults_of_a_cluster(slurm, local_results, tmp_path
         slurm.set_node("resume")
 
         lost = run.job_in_the_middle("_identify", "identify_from_3.16.log")
-        slurm.set_node("down")
+        slurm.set_node("down")  # comes back by itself, without its job
         run.wait_for_end(lost, "NODE_FAIL")
-        slurm.set_node("resume")
         run.complete()
     with Run(slurm, tmp_path) as rest:  # figures and page
         rest.complete()
