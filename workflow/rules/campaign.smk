@@ -15,7 +15,7 @@ rule _synthetic_campaign:
         f"{RESULTS}/benchmarks/synthetic_campaign.tsv"
     threads: 1
     resources:
-        mem_mb=memory(2000),
+        mem_mb=memory(1000),
         runtime=minutes(20),
     params:
         config=settings("synthetic_campaign"),

@@ -27,7 +27,7 @@ checkpoint _discrepancy_prepare:
         f"{DISCREPANCY}/benchmarks/prepare.tsv"
     threads: 1
     resources:
-        mem_mb=memory(3000),
+        mem_mb=memory(1500),
         runtime=minutes(20),
     params:
         config=MODEL.model_dump(mode="json"),
@@ -52,7 +52,7 @@ rule _discrepancy_null:
         f"{DISCREPANCY}/benchmarks/null_{{part}}.tsv"
     threads: 1
     resources:
-        mem_mb=memory(3000),
+        mem_mb=memory(1500),
         runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
@@ -75,7 +75,7 @@ rule _discrepancy_candidate:
         f"{DISCREPANCY}/benchmarks/candidate_{{candidate}}.tsv"
     threads: 1
     resources:
-        mem_mb=memory(3000),
+        mem_mb=memory(1500),
         runtime=minutes(60),
     params:
         config=MODEL.model_dump(mode="json"),
