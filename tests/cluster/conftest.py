@@ -43,7 +43,7 @@ def wait_for(what, told):
 def local_results(tmp_path_factory):
     """The folder of the tiny study's results, run on this machine."""
     folder = tmp_path_factory.mktemp("local")
-    run = subprocess.run(command(folder, "-j1"), cwd=ROOT, capture_output=True, text=True)
+    run = subprocess.run(command(folder, "-j2"), cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
     return folder / "results" / "tiny"
 
