@@ -41,16 +41,16 @@ def test_each_attempt_asks_for_as_much_again():
 
 
 @pytest.mark.slow
-def test_jobs_take_less_memory_and_time_than_they_ask_for(local_results):
+def test_jobs_take_less_memory_than_they_ask_for(local_results):
     stated, short = asked(), {}
     benchmarks = sorted((local_results / "benchmarks").glob("*.tsv"))
     for file in benchmarks:
         with open(file, newline="") as lines:
             (row,) = csv.DictReader(lines, delimiter="\t")
-        megabytes, minutes = stated[re.split("_load_|_from_", file.stem)[0]]
+        megabytes, _ = stated[re.split("_load_|_from_", file.stem)[0]]
         needed = MARGIN * float(row["max_rss"]) + SNAKEMAKE_MB
-        if megabytes < needed or minutes < float(row["s"]) / 6:
-            short[file.stem] = (megabytes, needed, minutes, row["s"])
+        if megabytes < needed:
+            short[file.stem] = (megabytes, needed)
     assert len(benchmarks) > 10 and short == {}
 
 
