@@ -32,8 +32,8 @@ rule _f16_records:
         "results/f16/benchmarks/f16_records.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=memory(1500),
+        runtime=minutes(10),
     params:
         library=library_of(f"{F16}/records.py"),
         python=PYTHON,
@@ -55,8 +55,8 @@ rule _f16_poles:
         "results/f16/benchmarks/f16_poles.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library_of(f"{F16}/poles.py"),
         python=PYTHON,

@@ -34,8 +34,8 @@ rule _silverbox_records:
         "results/silverbox/benchmarks/silverbox_records.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=memory(1500),
+        runtime=minutes(10),
     params:
         library=library_of(f"{SILVERBOX}/records.py"),
         python=PYTHON,
@@ -58,8 +58,8 @@ rule _silverbox_published:
         "results/silverbox/benchmarks/silverbox_published.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library_of(f"{SILVERBOX}/published.py"),
         python=PYTHON,

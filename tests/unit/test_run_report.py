@@ -94,5 +94,12 @@ def test_failure_with_an_empty_log_speaks_of_memory(tmp_path):
     assert "empty.log is empty: see the lines above. A job that is stopped" in told
 
 
+def test_a_job_that_a_later_attempt_finished_has_not_failed():
+    told = LOG.format(log="none.log") + "Finished jobid: 7 (Rule: _simulate)\n"
+    assert failure_text(told) == ""
+    other = told + told.split("\n", 3)[3].replace("jobid: 7", "jobid: 6").split("Finished")[0]
+    assert failure_text(other).startswith("1 job failed:\n  Simulation at 0.1 N RMS")
+
+
 def test_a_run_without_failed_jobs_says_nothing():
     assert failure_text("Finished job 0.\n") == ""

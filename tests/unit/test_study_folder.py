@@ -26,6 +26,7 @@ def test_the_default_study_is_laid_out_unchanged(tmp_path):
         "Snakefile",
         "config/study.yaml",
         "profiles/default/config.yaml",
+        "profiles/shared_folder/config.yaml",
         "profiles/slurm/config.yaml",
     ]
     laid_out = (tmp_path / "mine" / "config" / "study.yaml").read_bytes()

@@ -14,8 +14,8 @@ rule _synthetic_campaign:
         f"{RESULTS}/benchmarks/synthetic_campaign.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=memory(1000),
+        runtime=minutes(20),
     params:
         library=library("synthetic_campaign"),
         config=settings("synthetic_campaign"),

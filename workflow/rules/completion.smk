@@ -30,8 +30,8 @@ checkpoint _completion_prepare:
         "results/{structure}/benchmarks/completion_prepare.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=memory(2000),
+        runtime=minutes(30),
     params:
         library=library("completion_prepare"),
         structure=structure_completed,
@@ -54,8 +54,8 @@ rule _completion_candidate:
         "results/{structure}/benchmarks/candidate_{law}.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=memory(1500),
+        runtime=minutes(30),
     params:
         library=library("completion_candidate"),
         law="{law}",
@@ -79,8 +79,8 @@ rule _completion_addition:
         "results/{structure}/benchmarks/addition_{law}.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=memory(1500),
+        runtime=minutes(30),
     params:
         library=library("completion_addition"),
         law="{law}",
@@ -108,8 +108,8 @@ rule _completion_outcome:
         "results/{structure}/benchmarks/completion_outcome.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=30,
+        mem_mb=memory(1500),
+        runtime=minutes(30),
     params:
         library=library("completion_outcome"),
         structure=structure_completed,
@@ -138,8 +138,8 @@ rule _completion_report:
         "results/{structure}/benchmarks/completion_report.tsv"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=memory(1500),
+        runtime=minutes(10),
     params:
         library=library("completion_report"),
         name="{structure}",

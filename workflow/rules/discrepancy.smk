@@ -26,8 +26,8 @@ checkpoint _discrepancy_prepare:
         f"{DISCREPANCY}/benchmarks/prepare.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=20,
+        mem_mb=memory(1500),
+        runtime=minutes(20),
     params:
         library=library("discrepancy_prepare"),
         config=MODEL.model_dump(mode="json"),
@@ -51,8 +51,8 @@ rule _discrepancy_null:
         f"{DISCREPANCY}/benchmarks/null_{{part}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(1500),
+        runtime=minutes(60),
     params:
         library=library("discrepancy_null"),
         config=MODEL.model_dump(mode="json"),
@@ -74,8 +74,8 @@ rule _discrepancy_candidate:
         f"{DISCREPANCY}/benchmarks/candidate_{{candidate}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(1500),
+        runtime=minutes(60),
     params:
         library=library("discrepancy_candidate"),
         config=MODEL.model_dump(mode="json"),
@@ -100,8 +100,8 @@ checkpoint _discrepancy_screening:
         f"{DISCREPANCY}/benchmarks/screening.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=30,
+        mem_mb=memory(3000),
+        runtime=minutes(30),
     params:
         library=library("discrepancy_screening"),
         config=MODEL.model_dump(mode="json"),
@@ -127,8 +127,8 @@ rule _discrepancy_finalist:
         f"{DISCREPANCY}/benchmarks/finalist_{{candidate}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         library=library("discrepancy_finalist"),
         config=MODEL.model_dump(mode="json"),
@@ -155,8 +155,8 @@ checkpoint _discrepancy_pairs:
         f"{DISCREPANCY}/benchmarks/pairs.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=30,
+        mem_mb=memory(3000),
+        runtime=minutes(30),
     params:
         library=library("discrepancy_pairs"),
         config=MODEL.model_dump(mode="json"),
@@ -182,8 +182,8 @@ rule _discrepancy_pair:
         f"{DISCREPANCY}/benchmarks/pair_{{pair}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         library=library("discrepancy_pair"),
         config=MODEL.model_dump(mode="json"),
@@ -216,8 +216,8 @@ rule _discrepancy_verdict:
         f"{DISCREPANCY}/benchmarks/verdict.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         library=library("discrepancy_verdict"),
         config=MODEL.model_dump(mode="json"),

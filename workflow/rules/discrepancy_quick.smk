@@ -18,8 +18,8 @@ rule _discrepancy_quick:
         f"{DISCREPANCY}/benchmarks/quick.tsv"
     threads: 2
     resources:
-        mem_mb=6000,
-        runtime=20,
+        mem_mb=memory(6000),
+        runtime=minutes(20),
     params:
         library=library("discrepancy_quick"),
         config=MODEL.model_dump(mode="json"),

@@ -19,8 +19,8 @@ rule _discrepancy_mode:
         f"{DISCREPANCY}/benchmarks/mode.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=1,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("discrepancy_mode"),
         mode="quick" if QUICK else "full",
@@ -50,8 +50,8 @@ rule _discrepancy_report:
         f"{DISCREPANCY}/benchmarks/discrepancy_report.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=memory(2000),
+        runtime=minutes(10),
     params:
         library=library("discrepancy_report"),
         name=LOOKED_AT,

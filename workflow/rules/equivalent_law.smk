@@ -17,8 +17,8 @@ rule equivalent_law:
         f"{RESULTS}/benchmarks/equivalent_law.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=20,
+        mem_mb=memory(1000),
+        runtime=minutes(20),
     params:
         library=library("equivalent_law"),
         config=settings("validation"),

@@ -12,8 +12,8 @@ rule _figures_model:
         f"{RESULTS}/benchmarks/figures_model.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("figures_model"),
         config=settings("figures_model"),
@@ -36,8 +36,8 @@ rule _figures_response:
         f"{RESULTS}/benchmarks/figures_response.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("figures_response"),
         config=settings("figures_response"),
@@ -61,8 +61,8 @@ rule _figures_identification:
         f"{RESULTS}/benchmarks/figures_identification.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("figures_identification"),
         config=settings("figures_identification"),
@@ -85,8 +85,8 @@ rule _figures_checks:
         f"{RESULTS}/benchmarks/figures_checks.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("figures_checks"),
         config=settings("figures_checks"),

@@ -19,8 +19,8 @@ for BATCH, BATCH_CASES in IDENTIFIED.items():
         priority: 1  # spread over the simulations, not after them
         threads: 1
         resources:
-            mem_mb=500,
-            runtime=30,
+            mem_mb=memory(1000),
+            runtime=minutes(30),
         params:
             library=library("identify"),
             config=settings("identify"),
@@ -46,8 +46,8 @@ rule _consistency:
         f"{RESULTS}/benchmarks/consistency.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("consistency"),
         config=settings("consistency"),

@@ -39,8 +39,8 @@ rule import_campaign:
         f"results/{IMPORTED}/benchmarks/import_campaign.tsv"
     threads: 1
     resources:
-        mem_mb=4000,
-        runtime=20,
+        mem_mb=memory(4000),
+        runtime=minutes(20),
     params:
         library=library("import_campaign"),
         folder=REQUEST.get("import"),
@@ -64,8 +64,8 @@ rule quicklook:
         f"results/{LOOKED_AT}/benchmarks/quicklook.tsv"
     threads: 1
     resources:
-        mem_mb=4000,
-        runtime=10,
+        mem_mb=memory(4000),
+        runtime=minutes(10),
     params:
         library=library("quicklook"),
         campaign=REQUEST.get("campaign"),

@@ -14,8 +14,8 @@ rule _basis:
         f"{RESULTS}/benchmarks/basis.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("basis"),
         config=settings("basis"),

@@ -19,8 +19,8 @@ for BATCH, BATCH_CASES in TO_SERIES.items():
             f"{RESULTS}/benchmarks/simulate_{BATCH}.tsv"
         threads: 1
         resources:
-            mem_mb=500,
-            runtime=60,
+            mem_mb=memory(1000),
+            runtime=minutes(60),
         params:
             library=library("simulate"),
             config=settings("simulate"),
@@ -47,8 +47,8 @@ for BATCH, BATCH_CASES in TO_SPECTRA.items():
             f"{RESULTS}/benchmarks/simulate_{BATCH}.tsv"
         threads: 1
         resources:
-            mem_mb=500,
-            runtime=60,
+            mem_mb=memory(1000),
+            runtime=minutes(60),
         params:
             library=library("simulate_to_spectra"),
             config=settings("simulate_to_spectra"),
@@ -73,8 +73,8 @@ for BATCH, BATCH_CASES in TO_SERIES.items():
             f"{RESULTS}/benchmarks/spectra_{BATCH}.tsv"
         threads: 1
         resources:
-            mem_mb=1000,
-            runtime=20,
+            mem_mb=memory(1000),
+            runtime=minutes(20),
         params:
             library=library("spectra"),
             config=settings("spectra"),
@@ -95,8 +95,8 @@ rule _statistics:
         f"{RESULTS}/benchmarks/statistics.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("statistics"),
         config=settings("statistics"),

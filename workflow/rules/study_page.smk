@@ -26,8 +26,8 @@ rule _study_page:
         f"{RESULTS}/benchmarks/study_page.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("study_page"),
         config=settings("study_page"),

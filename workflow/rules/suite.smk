@@ -38,8 +38,8 @@ rule _suite_bank:
         "results/{suite}/benchmarks/bank.tsv"
     threads: 8
     resources:
-        mem_mb=6000,
-        runtime=120,
+        mem_mb=memory(6000),
+        runtime=minutes(120),
     params:
         library=library("suite_bank"),
         config=MODEL.model_dump(mode="json"),
@@ -61,8 +61,8 @@ rule _suite_campaign:
         "results/{suite}/benchmarks/campaign_{number}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=60,
+        mem_mb=memory(3000),
+        runtime=minutes(60),
     params:
         library=library("suite_campaign"),
         config=MODEL.model_dump(mode="json"),
@@ -95,8 +95,8 @@ rule suite:
         f"{SUITE}/benchmarks/suite.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=memory(2000),
+        runtime=minutes(10),
     params:
         library=library("suite"),
         campaigns=len(SUITE_CAMPAIGNS),
@@ -121,8 +121,8 @@ rule suite_difference:
         f"{SUITE}/benchmarks/suite_difference.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=5,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("suite_difference"),
         campaigns=[f"campaign_{number:04d}" for number in SUITE_CAMPAIGNS],

@@ -13,8 +13,8 @@ rule _suite_check_campaign:
         f"{SUITE_CHECK}/benchmarks/{{check}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=20,
+        mem_mb=memory(3000),
+        runtime=minutes(20),
     params:
         library=library("suite_check_campaign"),
         config=MODEL.model_dump(mode="json"),
@@ -36,8 +36,8 @@ rule suite_check:
         f"{SUITE_CHECK}/benchmarks/suite_check.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=1,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("suite_check"),
         checks=list(CHECKS),

@@ -18,8 +18,8 @@ rule supports_prediction:
         f"{RESULTS}/benchmarks/supports_prediction.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=memory(2000),
+        runtime=minutes(20),
     params:
         library=library("supports_prediction"),
         config=settings("supports_prediction"),

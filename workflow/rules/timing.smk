@@ -17,8 +17,8 @@ rule timing:
         f"{RESULTS}/benchmarks/timing.tsv"
     threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("timing"),
         config=settings("timing"),

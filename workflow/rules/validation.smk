@@ -50,8 +50,8 @@ rule _validation_reference:
         f"{VALIDATION}/benchmarks/reference_{{group}}.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=memory(2000),
+        runtime=minutes(30),
     params:
         library=library("validation_reference"),
         config=settings("validation"),
@@ -84,8 +84,8 @@ rule _validation_claims:
         f"{VALIDATION}/benchmarks/claims.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=20,
+        mem_mb=memory(3000),
+        runtime=minutes(20),
     params:
         library=library("validation_claims"),
         config=settings("validation"),
@@ -110,8 +110,8 @@ rule _validation_prediction_cases:
         f"{VALIDATION}/benchmarks/prediction_{{cases}}.tsv"
     threads: 1
     resources:
-        mem_mb=3000,
-        runtime=30,
+        mem_mb=memory(3000),
+        runtime=minutes(30),
     params:
         library=library("validation_prediction_cases"),
         config=settings("validation"),
@@ -134,8 +134,8 @@ rule _validation_prediction:
         f"{VALIDATION}/benchmarks/prediction.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("validation_prediction"),
         config=settings("statistics"),
@@ -166,8 +166,8 @@ rule validation:
         f"{VALIDATION}/benchmarks/validation.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("validation"),
         config=settings("statistics"),

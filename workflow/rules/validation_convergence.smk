@@ -45,8 +45,8 @@ rule _validation_convergence_frequencies:
         "results/validation/benchmarks/convergence_frequencies.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("validation_convergence_frequencies"),
         config=settings("validation"),
@@ -65,8 +65,8 @@ rule _validation_convergence_runs:
         "results/validation/benchmarks/convergence_runs_{axis}.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=30,
+        mem_mb=memory(2000),
+        runtime=minutes(30),
     params:
         library=library("validation_convergence_runs"),
         config=settings("validation"),
@@ -88,8 +88,8 @@ rule _validation_convergence_statistics:
         "results/validation/benchmarks/convergence_statistics.tsv"
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=memory(1000),
+        runtime=minutes(10),
     params:
         library=library("validation_convergence_statistics"),
         config=settings("validation"),
@@ -109,8 +109,8 @@ rule _validation_convergence_spectra:
         "results/validation/benchmarks/convergence_spectra.tsv"
     threads: 1
     resources:
-        mem_mb=2500,
-        runtime=20,
+        mem_mb=memory(2500),
+        runtime=minutes(20),
     params:
         library=library("validation_convergence_spectra"),
         config=settings("validation"),

@@ -15,8 +15,8 @@ rule _validation_judges:
         "results/validation/benchmarks/judges.tsv"
     threads: 1
     resources:
-        mem_mb=2000,
-        runtime=10,
+        mem_mb=memory(2000),
+        runtime=minutes(10),
     params:
         library=library("validation_judges"),
         config=settings("validation"),

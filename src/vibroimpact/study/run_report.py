@@ -16,6 +16,7 @@ from .equivalent_table import NOT_MOVED
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
 STARTED = re.compile(r"^Job (?P<job>\d+): (?P<message>.*)$", flags=re.M)
+FINISHED = re.compile(r"^Finished jobid: (\d+)", flags=re.M)
 # A warning as Python prints it: file, line, kind and text.
 WARNED = re.compile(r"^\S.*:\d+: (?P<warning>\w*Warning: .*)$", flags=re.M)
 NO_WORD = (
@@ -105,7 +106,8 @@ def failure_text(log: str) -> str:
     """
     messages = {match["job"]: match["message"] for match in STARTED.finditer(log)}
     jobs = [_failed_job(match, messages) for match in FAILED.finditer(log)]
-    failed = {(job["rule"], job["log"]): job for job in jobs}
+    recovered = set(FINISHED.findall(log))  # in a later attempt
+    failed = {(job["rule"], job["log"]): job for job in jobs if job["job"] not in recovered}
     if not failed:
         return ""
     count = f"{len(failed)} jobs" if len(failed) > 1 else "1 job"
@@ -144,12 +146,14 @@ def warnings_text(logs: Iterable[str | Path]) -> str:
 
 
 def _failed_job(match: re.Match, messages: dict[str, str]) -> dict[str, str]:
-    """Return {rule, message, log} of a failed job; messages: of the started jobs by number."""
+    """Return {job, rule, message, log} of a failed job; messages: of the started jobs by number."""
     about = dict(re.findall(r"^    (\w+): (.*)$", match["about"], flags=re.M))
     log = about.get("log", "").removesuffix(" (check log file(s) for error details)")
+    number = about.get("jobid", "")
     return {
+        "job": number,
         "rule": match["rule"],
-        "message": messages.get(about.get("jobid", ""), ""),
+        "message": messages.get(number, ""),
         "log": log.split(", ")[0],
     }
 
