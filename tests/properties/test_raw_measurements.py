@@ -513,7 +513,7 @@ def set_at(content, keys, value):
 
 
 def cut_as_described(content, record):
-    """(3, time) what a record of a valid campaign.yaml holds as stored, and its units: an oracle."""
+    """What a record of a valid campaign.yaml holds (3, time), as stored, and its units."""
     stated = content["records"][record]
     rate = content["sampling_frequency_Hz"] or RATE
     first = round((stated.get("from_s") or 0) * rate)
