@@ -513,7 +513,7 @@ def set_at(content, keys, value):
 
 
 def cut_as_described(content, record):
-    """(3, time) what a record of a valid campaign.yaml holds, in SI units: an oracle."""
+    """What a record of a valid campaign.yaml holds (3, time), as stored, and its units."""
     stated = content["records"][record]
     rate = content["sampling_frequency_Hz"] or RATE
     first = round((stated.get("from_s") or 0) * rate)
@@ -528,7 +528,8 @@ def cut_as_described(content, record):
         ]
         for sensor in sensors
     ]
-    return VALUES[level][chosen, first:last], [sensor["unit"] for sensor in sensors]
+    units = [sensor["unit"] or UNITS[row] for sensor, row in zip(sensors, chosen, strict=True)]
+    return VALUES[level][chosen, first:last], units
 
 
 def damaged_campaign_yaml(data, tried):
