@@ -126,7 +126,8 @@ def test_files_named_in_commands_exist():
         (name(page), path)
         for page, line in shell_lines()
         for path in re.findall(
-            r"(?<![\w/])((?:config/[\w/]+\.yaml|docs/[\w/]+\.py|workflow/\w+/[\w/]+))", line
+            r"(?<![\w/])((?:config/[\w/]+\.yaml|docs/[\w/]+\.py|workflow/\w+/[\w/]+(?:\.\w+)?))",
+            line,
         )
         if not (ROOT / path).exists() and path not in MADE_BY_THE_READER
     }

@@ -82,7 +82,7 @@ def copy_of_another_case(path):
 TABLE_DAMAGES = {
     empty: "is empty",
     keep_header: "has 0 of 8 estimates",
-    cut_in_a_row: "row 9 has .* values for 15 columns",
+    cut_in_a_row: "row 9 has .* values for .* columns",
     cut_after_a_row: "has 7 of 8 estimates.*'secant'",
     repeat_a_row: "has 8 of 8 estimates.*'statistical_linearisation'",
     put_zeros: "has 0 of 8 estimates",

@@ -76,7 +76,7 @@ for name, value in REQUEST.items():
 if "bank" in REQUEST and not os.path.isdir(REQUEST["bank"]):
     sys.exit(
         f"bank = '{REQUEST['bank']}' is no folder: give that of another campaign's results, as in"
-        " --config bank=results/mine"
+        " --config bank=results/<campaign>"
     )
 
 

@@ -180,9 +180,11 @@ def jobs_of_study():
 def missing_files():
     """Of the files per case that a study lacks, one of each load and kind: its job makes them all.
 
-    A file that was deleted is made again, although what was made from it is there. To name every
-    file that is there would cost time at each start.
+    A file that was deleted is made again, although what was made from it is there. A study without
+    its page makes them anyway. To name every file that is there would cost time at each start.
     """
+    if not Path(RESULTS, "index.html").is_file():
+        return []
     kinds = ["records/*.nc", "spectra/*.nc", "estimates/*.nc", "estimates/*.csv"]
     missing = {}
     for kind in kinds if STUDY.identification is not None else kinds[:1]:

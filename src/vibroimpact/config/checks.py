@@ -22,7 +22,7 @@ from . import (
     turbulence_checks,
 )
 from . import name_checks as names
-from .excitation import Excitation
+from .excitation import Excitation, highest_frequency
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
 from .structure import Structure
 
@@ -248,18 +248,6 @@ def _step_and_force(excitation: Excitation, integration: Integration) -> Problem
                 f" frequency, {highest:g} Hz: give at least {math.ceil(needed)}"
             ),
         )
-
-
-def highest_frequency(excitation: Excitation) -> float:
-    """Return the highest excited frequency in Hz, 0 where none is stated."""
-    source = excitation.signal if excitation.kind == "base_motion" else excitation
-    if source.kind in ("band_limited", "turbulence"):
-        return source.band_Hz[1]
-    if source.kind == "measured":
-        return (source.sampling_frequency_Hz or 0.0) / 2
-    if source.kind == "harmonic":
-        return source.frequency_Hz
-    return 0.0
 
 
 def _step_and_modes(structure: Structure, basis: Basis, integration: Integration) -> Problems:

@@ -221,3 +221,15 @@ class Turbulence(TurbulentForce):
 Excitation = Annotated[
     BandLimited | Measured | Harmonic | WhiteNoise | Turbulence | Still | BaseMotion, By_kind
 ]
+
+
+def highest_frequency(excitation: Excitation) -> float:
+    """Return the highest excited frequency in Hz, 0 where none is stated."""
+    source = excitation.signal if excitation.kind == "base_motion" else excitation
+    if source.kind in ("band_limited", "turbulence"):
+        return source.band_Hz[1]
+    if source.kind == "measured":
+        return (source.sampling_frequency_Hz or 0.0) / 2
+    if source.kind == "harmonic":
+        return source.frequency_Hz
+    return 0.0

@@ -8,7 +8,7 @@ import numpy as np
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
 
-from .contact_convergence import IntegrationError, checked_contraction
+from .contact_convergence import LARGEST_DECAY, IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout
 from .kernels.decimation import BEHIND, RATIO, decimate
 from .kernels.lanes import LANES
@@ -177,7 +177,10 @@ def settled(
         return np.zeros((model.modes, LANES)) if start is None else start
     damped = replace(
         model,
-        damping=2.0 * REST_DAMPING * np.maximum(model.omega, lowest),
+        damping=np.minimum(
+            2.0 * REST_DAMPING * np.maximum(model.omega, lowest),
+            LARGEST_DECAY * schedule.steps_per_second,
+        ),
         initial_displacement=np.zeros(model.modes),
         initial_velocity=np.zeros(model.modes),
         contact_laws=model.contact_laws.with_columns(friction=0.0),

@@ -12,7 +12,7 @@ import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse.linalg import eigsh
 
-from vibroimpact.config.checks import highest_frequency
+from vibroimpact.config.excitation import highest_frequency
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.contact.local_elements import element_laws
