@@ -17,6 +17,8 @@ LABEL = "_name"
 # Seconds from the start of a record are no date, which is what a dimension `time` stands for
 # (CF 4.4).
 TIME, TIME_IN_FILE = "time", "elapsed_time"
+# Measured values are compressed ten times at most; a file that holds less was never filled.
+MOST_TIMES_SMALLER, SMALL_BYTES = 100, 10**8
 
 
 class RecordError(Exception):
@@ -260,6 +262,56 @@ def read_dataset(path: str | Path) -> xr.Dataset:
         raise RecordError(
             f"{path}: cannot be read as netCDF ({error}): delete it and run again"
         ) from error
+
+
+def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Dataset:
+    """Return the dataset of a netCDF file that a user gives, in any state.
+
+    described: variables whose values are not read: zeros of their shape and type stand for them.
+
+    Texts are decoded and packed numbers unpacked; no variable is taken for a date. The time of a
+    record is called `time`, as in read_record. Raises RecordError for whatever can not be read.
+    """
+    place = Path(path)
+    if not place.is_file():
+        raise RecordError(f"{path}: is no file: give the path of a netCDF file")
+    try:
+        with xr.open_dataset(
+            path, engine="netcdf4", decode_times=False, decode_timedelta=False
+        ) as dataset:
+            _require_plausible_size(dataset, place)
+            shown = {name: dataset[name] for name in described if name in dataset.variables}
+            values = dataset.drop_vars(list(shown)).load()
+            for name, variable in shown.items():
+                zeros = np.broadcast_to(np.zeros((), variable.dtype), variable.shape)
+                values[name] = (variable.dims, zeros, variable.attrs)
+            own = {} if TIME in values.sizes else {TIME_IN_FILE: TIME}
+            names = {name: own[name] for name in (*values.variables, *values.dims) if name in own}
+            return values.rename(names)
+    except RecordError:
+        raise
+    except Exception as error:  # of a damaged file, netCDF4 and xarray raise nearly anything
+        told = str(getattr(error, "strerror", None) or error).strip()
+        why = (told.splitlines() or [type(error).__name__])[0]
+        raise RecordError(
+            f"{path}: can not be read as netCDF ({why}): it is no netCDF file, or damaged: copy it"
+            " or make it again"
+        ) from error
+
+
+def _require_plausible_size(dataset: xr.Dataset, path: Path) -> None:
+    """Raise RecordError where the variables of a file are far larger than the file.
+
+    They would fill the memory with values that were never written.
+    """
+    stored = path.stat().st_size
+    if dataset.nbytes > max(SMALL_BYTES, MOST_TIMES_SMALLER * stored):
+        largest = max(dataset.variables, key=lambda name: dataset[name].nbytes)
+        raise RecordError(
+            f"{path}: claims {dataset.nbytes / 1e9:.3g} GB of values, most of them in '{largest}'"
+            f" {tuple(dataset[largest].shape)}, but has {stored} bytes: it was cut off or never"
+            " filled: make it again"
+        )
 
 
 def read_numeric_variables(path: str | Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
