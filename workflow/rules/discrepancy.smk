@@ -18,7 +18,7 @@ wildcard_constraints:
 checkpoint _discrepancy_prepare:
     input:
         library=library("discrepancy_prepare"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
     output:
         prepared=f"{DISCREPANCY}/prepared.json",
     log:
@@ -42,7 +42,7 @@ checkpoint _discrepancy_prepare:
 rule _discrepancy_null:
     input:
         library=library("discrepancy_null"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
         null=f"{DISCREPANCY}/null/{{part}}.npz",
@@ -65,7 +65,7 @@ rule _discrepancy_null:
 rule _discrepancy_candidate:
     input:
         library=library("discrepancy_candidate"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
         path=f"{DISCREPANCY}/paths/{{candidate}}.npz",
@@ -88,7 +88,7 @@ rule _discrepancy_candidate:
 checkpoint _discrepancy_screening:
     input:
         library=library("discrepancy_screening"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -114,7 +114,7 @@ checkpoint _discrepancy_screening:
 rule _discrepancy_finalist:
     input:
         library=library("discrepancy_finalist"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -141,7 +141,7 @@ rule _discrepancy_finalist:
 checkpoint _discrepancy_pairs:
     input:
         library=library("discrepancy_pairs"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -169,7 +169,7 @@ checkpoint _discrepancy_pairs:
 rule _discrepancy_pair:
     input:
         library=library("discrepancy_pair"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -196,7 +196,7 @@ rule _discrepancy_pair:
 rule _discrepancy_verdict:
     input:
         library=library("discrepancy_verdict"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,

@@ -5,7 +5,7 @@
 rule _discrepancy_quick:
     input:
         library=library("discrepancy_quick"),
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         mode=f"{DISCREPANCY}/mode.txt",
     output:
         verdict=f"{DISCREPANCY}/verdict.json",

@@ -37,7 +37,7 @@ rule quicklook:
     """Check and draw a campaign file, without a model: --config campaign=FILE."""
     input:
         library=library("quicklook"),
-        campaign=requested("campaign", "FILE.nc"),
+        campaign=asked_campaign,
     output:
         checks=f"results/{LOOKED_AT}/quicklook_checks.csv",
         text=f"results/{LOOKED_AT}/quicklook_checks.txt",

@@ -227,9 +227,14 @@ def opened_campaign(path: str | Path) -> xr.Dataset:
     return decode_texts(read_given_dataset(path))
 
 
-def described_campaign(path: str | Path) -> xr.Dataset:
-    """Return opened_campaign with zeros for all signals, which takes no longer for long records."""
-    return decode_texts(read_given_dataset(path, described=SERIES))
+def checked_description(path: str | Path) -> xr.Dataset:
+    """Return the Dataset of a campaign file that keeps the contract, with zeros for all signals.
+
+    It takes no longer for long records. Raises as read_campaign does.
+    """
+    campaign = decode_texts(read_given_dataset(path, described=SERIES))
+    _require(campaign, path)
+    return campaign
 
 
 def decode_texts(campaign: xr.Dataset) -> xr.Dataset:
@@ -264,6 +269,7 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     line for each, or is empty.
     """
     assumed: list[str] = []
+    campaign = _with_real_signals(campaign)
     new: dict[str, tuple] = {}
     count = campaign.sizes["record"]
     if "valid_samples" not in campaign:
@@ -312,6 +318,12 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     return campaign.assign(new).assign_attrs(
         {**defaults, **campaign.attrs, "assumed": "\n".join(assumed)}
     )
+
+
+def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:
+    """Return the Dataset with the counts of a converter as real numbers, which know NaN."""
+    counts = [name for name in ("force", "response") if campaign[name].dtype.kind in "iu"]
+    return campaign.assign({name: campaign[name].astype(float) for name in counts})
 
 
 def _rms(signal: np.ndarray) -> float:

@@ -3,42 +3,42 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
-# {name of the folder: the target whose results it holds}.
-FOLDERS = {
-    "f16": "f16",
-    "silverbox": "silverbox",
-    "suite_check": "suite_check",
-    "validation": "validation",
-}
-SUITES = re.compile(r"suite_[0-9]+(_[0-9]+s)?(_draw[0-9]+)?")
-# How snakemake marks a wildcard, and what leaves the folder of results.
-UNUSABLE = re.compile(r"[{}/\\*?\x00-\x1f]|^\.*$")
+TARGETS = ("suite_check", "validation")  # each writes to the folder of its name
+SUITES = r"suite_[0-9]+(_[0-9]+s)?(_draw[0-9]+)?"
+# How snakemake marks a wildcard, and what names no folder inside results/.
+UNUSABLE = r"[{}/\\*?\x00-\x1f]|^\.*$"
 
 
-def reserved_result_folders() -> tuple[str, ...]:
+def reserved_result_folders(examples: Iterable[str] = ()) -> tuple[str, ...]:
     """Return the names of folders in results/ that targets of their own use.
 
-    Folders of suites follow a pattern, see target_of.
+    examples: names of the folders of examples, each of which is a target.
+
+    Folders of suites follow a pattern, which target_of knows.
     """
-    return tuple(FOLDERS)
+    return (*TARGETS, *examples)
 
 
-def target_of(name: str) -> str | None:
+def target_of(name: str, examples: Iterable[str] = ()) -> str | None:
     """Return the target whose results the folder results/NAME holds, None for a free name."""
-    return FOLDERS.get(name) or ("suite" if SUITES.fullmatch(name) else None)
+    if name in reserved_result_folders(examples):
+        return name
+    return "suite" if re.fullmatch(SUITES, name) else None
 
 
-def name_problem(name: str, study: str | None = None) -> str | None:
+def name_problem(name: str, examples: Iterable[str] = (), study: str | None = None) -> str | None:
     """Return why results can not go to results/NAME, as the end of a sentence; None where they can.
 
+    examples: as in reserved_result_folders.
     study: name of the study of the same run, whose folder is taken.
     """
-    target = target_of(name)
+    target = target_of(name, examples)
     if target is not None:
         return f"its results would go to results/{name}, which the target {target} writes"
     if name == study:
         return f"its results would go to results/{name}, where the study '{study}' is"
-    if UNUSABLE.search(name):
+    if re.search(UNUSABLE, name):
         return f"'{name}' can not be the name of a folder of results"
     return None
