@@ -14,6 +14,7 @@ report: "workflow/report/study.rst"
 
 include: "workflow/rules/configuration.smk"
 include: "workflow/rules/resources.smk"
+include: "workflow/rules/asked_campaign.smk"
 include: "workflow/rules/study_files.smk"
 include: "workflow/rules/run_files.smk"
 include: "workflow/rules/scheduling.smk"

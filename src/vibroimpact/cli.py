@@ -171,6 +171,7 @@ def _is_netcdf(path: str) -> bool:
 def _campaign(path: str) -> tuple[str | None, list[str]]:
     """Return (what a campaign is, None where it is refused; its problems and warnings)."""
     from vibroimpact.campaign.checks.file_checks import check_file, refused
+    from vibroimpact.discrepancy.comparable import campaign_problems, channel_rows
 
     campaign, rows = check_file(path)
     problems = [
@@ -180,6 +181,9 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
     ]
     if campaign is None or refused(rows):
         return None, problems
+    notes = [row["message"] for row in channel_rows(campaign)]
+    notes += [f"{problem}." for problem in campaign_problems(campaign)]
+    problems += [f"{path}: warning: {note}" for note in notes]
     sizes = campaign.sizes
     return (
         f"a campaign of {_count(sizes['record'], 'record')},"

@@ -30,6 +30,8 @@ HDF5_PLACES = (0, 512, 1024, 2048)
 # Limits of foreign files: a damaged one may claim any size, and memory is taken before it is read.
 MOST_PACKED = 1100  # deflate makes zeros 1032 times smaller
 MOST_READ, FLOAT_BYTES = 10**9, 8
+# Measured values are compressed ten times at most; a file that holds less was never filled.
+MOST_TIMES_SMALLER, SMALL_BYTES = 100, 10**8
 
 # What to do with a file that cannot be read: with a result, and with one that a user gave.
 MAKE_AGAIN = "delete it and run again"
@@ -275,6 +277,49 @@ def read_dataset(path: str | Path, remedy: str = GIVE_AGAIN) -> xr.Dataset:
             return dataset.load().rename(names)
     except (OSError, RuntimeError) as error:
         raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
+
+
+def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Dataset:
+    """Return the dataset of a netCDF file that a user gives, in any state.
+
+    described: variables whose values are not read: zeros of their shape and type stand for them.
+
+    Texts are decoded and packed numbers unpacked; no variable is taken for a date. The time of a
+    record is called `time`, as in read_record. Raises RecordError for whatever can not be read.
+    """
+    place = Path(path)
+    if not place.is_file():
+        raise RecordError(f"{path}: is no file: give the path of a netCDF file")
+    with _foreign(path, "netCDF"):
+        if is_hdf5(path):
+            _inspect_hdf5(path)
+        with xr.open_dataset(
+            path, engine="netcdf4", decode_times=False, decode_timedelta=False
+        ) as dataset:
+            _require_plausible_size(dataset, place)
+            shown = {name: dataset[name] for name in described if name in dataset.variables}
+            values = dataset.drop_vars(list(shown)).load()
+            for name, variable in shown.items():
+                zeros = np.broadcast_to(np.zeros((), variable.dtype), variable.shape)
+                values[name] = (variable.dims, zeros, variable.attrs)
+            own = {} if TIME in values.sizes else {TIME_IN_FILE: TIME}
+            names = {name: own[name] for name in (*values.variables, *values.dims) if name in own}
+            return values.rename(names)
+
+
+def _require_plausible_size(dataset: xr.Dataset, path: Path) -> None:
+    """Raise RecordError where the variables of a file are far larger than the file.
+
+    They would fill the memory with values that were never written.
+    """
+    stored = path.stat().st_size
+    if dataset.nbytes > max(SMALL_BYTES, MOST_TIMES_SMALLER * stored):
+        largest = max(dataset.variables, key=lambda name: dataset[name].nbytes)
+        raise RecordError(
+            f"{path}: claims {dataset.nbytes / 1e9:.3g} GB of values, most of them in '{largest}'"
+            f" {tuple(dataset[largest].shape)}, but has {stored} bytes: it was cut off or never"
+            " filled: make it again"
+        )
 
 
 def read_numeric_variables(

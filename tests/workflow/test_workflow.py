@@ -17,11 +17,15 @@ from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
+from tests.sound_campaign import sound_campaign
+from vibroimpact.campaign.file import write_campaign
 from vibroimpact.config.reading import check_config
 from vibroimpact.provenance import config_digest
+from vibroimpact.records import write_record
 
 ROOT = Path(__file__).parents[2]
 STUB = """\
@@ -351,13 +355,54 @@ def test_an_example_goes_the_way_of_any_campaign(study, tmp_path, structure, fil
     assert set(planned) == {structure, f"{structure}_records", f"{structure}_{table}"} | completion
 
 
-def test_a_campaign_named_as_an_example_is_compared_with_a_model(study, tmp_path):
-    (tmp_path / "f16.nc").touch()
-    run = study.snakemake("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/f16.nc")
+@pytest.mark.parametrize(
+    ("target", "asked", "owner"),
+    [
+        ("discrepancy", "campaign={}/f16.nc", "which the target f16 writes"),
+        ("quicklook", "campaign={}/suite_7_20s.nc", "which the target suite writes"),
+        ("discrepancy", "campaign={}/smoke.nc", "where the study 'smoke' is"),
+        ("import_campaign", "import={}/validation", "which the target validation writes"),
+    ],
+)
+def test_results_of_another_target_are_not_overwritten(study, tmp_path, target, asked, owner):
+    write_campaign(sound_campaign(), tmp_path / Path(asked.partition("/")[2]).name)
+    run = study.snakemake("--dry-run", target, "--config", asked.format(tmp_path))
+    told = run.stdout + run.stderr
+    assert run.returncode == 1 and owner in told and "give it another name" in told
+    assert "Building DAG" not in told and "Traceback" not in told
+
+
+def test_campaign_channels_that_no_model_gives_are_told(study, tmp_path):
+    campaign = sound_campaign()
+    campaign["channel_kind"].values[0], campaign["channel_units"].values[0] = "velocity", "m s-1"
+    write_campaign(campaign, tmp_path / "bench.nc")
+    asked = ("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc")
+    run = study.snakemake(*asked)
     assert run.returncode == 0, run.stdout + run.stderr
-    planned = re.findall(r"^_?(\w+) +\d+$", run.stdout + run.stderr, flags=re.M)
-    assert "discrepancy_prepare" in planned
-    assert [name for name in planned if re.match("completion|f16", name)] == []
+    assert run.stderr.count("bench.nc: tip 0 measures velocity") == 1 and "tip 1" not in run.stderr
+    campaign["channel_kind"].values[:], campaign["channel_units"].values[:] = "contact_force", "N"
+    write_campaign(campaign, tmp_path / "bench.nc")
+    run = study.snakemake(*asked)
+    told = run.stdout + run.stderr
+    assert run.returncode == 1 and "Traceback" not in told
+    assert "bench.nc: no channel can be compared with a model" in told
+
+
+def test_campaign_faults_are_reported_before_any_job(study, tmp_path):
+    campaign = sound_campaign()
+    write_campaign(campaign, tmp_path / "bench.nc")
+    campaign["gap"].values[:] = [0.289, -1.0, np.nan]
+    campaign["record_name"].values[2] = "low"
+    write_record(campaign, tmp_path / "wrong.nc", names_kept=True)
+    (tmp_path / "text.nc").write_text("nothing")
+    for target, file, parts in (
+        ("quicklook", "wrong.nc", ("gap[1] = -1 m is negative", "record_name[2] = 'low'")),
+        ("discrepancy", "text.nc", ("text.nc: can not be read as netCDF",)),
+    ):
+        run = study.snakemake("--dry-run", target, "--config", f"campaign={tmp_path}/{file}")
+        told = run.stdout + run.stderr
+        assert run.returncode == 1 and all(part in told for part in parts), told
+        assert "Traceback" not in told and "delete it" not in told
 
 
 def test_an_example_in_quick_mode_is_planned_all_the_same(study, tmp_path):
@@ -367,7 +412,7 @@ def test_an_example_in_quick_mode_is_planned_all_the_same(study, tmp_path):
 
 
 def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
-    (tmp_path / "bench.nc").touch()
+    write_campaign(sound_campaign(), tmp_path / "bench.nc")
     (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [5, 60]}")
     for model in ("identified", tmp_path / "own.yaml"):
         run = study.snakemake(
@@ -384,7 +429,7 @@ def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
 
 
 def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
-    (tmp_path / "bench.nc").touch()
+    write_campaign(sound_campaign(), tmp_path / "bench.nc")
     (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [60, 5]}")
     run = study.snakemake(
         "--dry-run",
@@ -400,7 +445,7 @@ def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
 
 
 def test_quick_run_is_one_job_full_run_one_per_candidate(study, tmp_path):
-    (tmp_path / "bench.nc").touch()
+    write_campaign(sound_campaign(), tmp_path / "bench.nc")
     planned = {}
     for quick in ("yes", "no"):
         run = study.snakemake(

@@ -11,12 +11,8 @@ COMPLETED = {LOOKED_AT: (REQUEST.get("campaign", ""), OWN)} if OWN is not None e
 
 
 def complete(name, campaign, model):
-    """Complete a campaign file with the structure of a YAML file, in results/<name>/.
-
-    A campaign of that name given by --config goes first.
-    """
-    if "campaign" not in REQUEST or name != LOOKED_AT:
-        COMPLETED[name] = (campaign, read_structure(model))
+    """Complete a campaign file with the structure of a YAML file, in results/<name>/."""
+    COMPLETED[name] = (campaign, read_structure(model))
 
 
 def downloaded(key, default, pattern, what):
@@ -44,7 +40,7 @@ def campaign_completed(wildcards):
     there.
     """
     if wildcards.structure == LOOKED_AT and OWN is not None:
-        return requested("campaign", "FILE")(wildcards)
+        return asked_campaign(wildcards)
     return COMPLETED[wildcards.structure][0]
 
 

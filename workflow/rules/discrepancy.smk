@@ -17,7 +17,7 @@ wildcard_constraints:
 
 checkpoint _discrepancy_prepare:
     input:
-        campaign=after_model_checks(MODEL, MODEL_FILES, requested("campaign", "FILE")),
+        campaign=after_model_checks(MODEL, MODEL_FILES, compared_campaign),
     output:
         prepared=f"{DISCREPANCY}/prepared.json",
     log:
@@ -41,7 +41,7 @@ checkpoint _discrepancy_prepare:
 
 rule _discrepancy_null:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
         null=f"{DISCREPANCY}/null/{{part}}.npz",
@@ -64,7 +64,7 @@ rule _discrepancy_null:
 
 rule _discrepancy_candidate:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
     output:
         path=f"{DISCREPANCY}/paths/{{candidate}}.npz",
@@ -87,7 +87,7 @@ rule _discrepancy_candidate:
 
 checkpoint _discrepancy_screening:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -113,7 +113,7 @@ checkpoint _discrepancy_screening:
 
 rule _discrepancy_finalist:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -140,7 +140,7 @@ rule _discrepancy_finalist:
 
 checkpoint _discrepancy_pairs:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -168,7 +168,7 @@ checkpoint _discrepancy_pairs:
 
 rule _discrepancy_pair:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,
@@ -195,7 +195,7 @@ rule _discrepancy_pair:
 
 rule _discrepancy_verdict:
     input:
-        campaign=requested("campaign", "FILE"),
+        campaign=compared_campaign,
         prepared=f"{DISCREPANCY}/prepared.json",
         null=NULLS,
         paths=path_files,

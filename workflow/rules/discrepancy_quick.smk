@@ -4,7 +4,7 @@
 
 rule _discrepancy_quick:
     input:
-        campaign=after_model_checks(MODEL, MODEL_FILES, requested("campaign", "FILE")),
+        campaign=after_model_checks(MODEL, MODEL_FILES, compared_campaign),
         mode=f"{DISCREPANCY}/mode.txt",
     output:
         verdict=f"{DISCREPANCY}/verdict.json",

@@ -1,11 +1,6 @@
 # Raw measurements to a campaign file, and a first look at one.
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
-if set(IMPORTED) & set("{}*?[]") or not IMPORTED.isprintable():
-    sys.exit(
-        f"import = '{REQUEST['import']}': the folder's name becomes that of the results: rename it,"
-        " without brackets, * and ?"
-    )
 
 
 def measured_files(wildcards):
@@ -53,7 +48,7 @@ rule import_campaign:
 rule quicklook:
     """Check and draw a campaign file, without a model: --config campaign=FILE."""
     input:
-        campaign=requested("campaign", "FILE.nc"),
+        campaign=asked_campaign,
     output:
         checks=f"results/{LOOKED_AT}/quicklook_checks.csv",
         text=f"results/{LOOKED_AT}/quicklook_checks.txt",

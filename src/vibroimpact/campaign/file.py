@@ -30,47 +30,21 @@ transient_periods, source. Between samples the force is band-limited, not consta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from vibroimpact.records import read_dataset, write_record
+from vibroimpact.records import read_given_dataset, write_record
 from vibroimpact.units import UnitError, si_factor
 
-Kind = Literal["acceleration", "velocity", "displacement", "contact_force", "generic"]
-KINDS = get_args(Kind)
-NEEDED = {
-    "force": ("record", "force_channel", "time"),
-    "response": ("record", "channel", "time"),
-    "channel_units": ("channel",),
-    "channel_kind": ("channel",),
-    "channel_name": ("channel",),
-    "channel_point": ("channel", "xyz"),
-    "channel_direction": ("channel", "xyz"),
-    "force_channel_name": ("force_channel",),
-    "force_channel_point": ("force_channel", "xyz"),
-    "force_channel_direction": ("force_channel", "xyz"),
-    "gap": ("record",),
-}
-# Derived from the rest where they are missing.
-FILLED = {
-    "record_name": ("record",),
-    "load_rms": ("record",),
-    "repeat": ("record",),
-    "split": ("record",),
-}
-OPTIONAL = {
-    "support_gap": ("record", "support"),
-    "voltage": ("record", "time"),
-    "noise_floor_rms": ("channel",),
-    "valid_samples": ("record",),
-    "force_channel_units": ("force_channel",),
-}
+from .contract import OPTIONAL, SERIES, contract_problems
+from .stated_values import KINDS as KINDS
+from .stated_values import Kind as Kind
+
 # What is written to the attribute long_name, and to units where the file does not state them.
 ABOUT = {
     "force": ("", "excitation force of the record"),
@@ -95,7 +69,7 @@ ABOUT = {
     "valid_samples": ("1", "number of samples of the record that count, from its start"),
     "time": ("s", "time since the start of the record"),
 }
-SPLITS = ("fit", "holdout")
+LARGEST = 1.0e15  # of any unit; larger samples, such as the fill values of netCDF, are none
 SAME_POINT_M = 5.0e-3  # largest distance of a channel from the point it stands for
 PARALLEL = 0.99  # least |cosine| between the direction of a channel and the one asked for
 
@@ -240,9 +214,27 @@ def read_campaign(path: str | Path) -> xr.Dataset:
     Raises RecordError when there is no such file or it is not netCDF, CampaignError with every
     breach of the contract.
     """
-    campaign = decode_texts(read_dataset(path))
+    campaign = opened_campaign(path)
     _require(campaign, path)
     return fill_missing(campaign)
+
+
+def opened_campaign(path: str | Path) -> xr.Dataset:
+    """Return the Dataset of a campaign file of any state, texts decoded, nothing filled in.
+
+    Raises RecordError when it can not be read as netCDF.
+    """
+    return decode_texts(read_given_dataset(path))
+
+
+def checked_description(path: str | Path) -> xr.Dataset:
+    """Return the Dataset of a campaign file that keeps the contract, with zeros for all signals.
+
+    It takes no longer for long records. Raises as read_campaign does.
+    """
+    campaign = decode_texts(read_given_dataset(path, described=SERIES))
+    _require(campaign, path)
+    return campaign
 
 
 def decode_texts(campaign: xr.Dataset) -> xr.Dataset:
@@ -277,6 +269,7 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     line for each, or is empty.
     """
     assumed: list[str] = []
+    campaign = _with_real_signals(campaign)
     new: dict[str, tuple] = {}
     count = campaign.sizes["record"]
     if "valid_samples" not in campaign:
@@ -289,9 +282,7 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
             )
     whole = campaign.assign(new)
     if "load_rms" not in campaign:
-        rms = [
-            np.sqrt(np.nanmean(np.square(force_signal(whole, record)))) for record in range(count)
-        ]
+        rms = [_rms(force_signal(whole, record)) for record in range(count)]
         new["load_rms"] = ("record", np.array(rms), {"units": "N"})
         assumed.append("load_rms is missing: it was computed from force channel 0")
     loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
@@ -329,12 +320,25 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     )
 
 
+def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:
+    """Return the Dataset with the counts of a converter as real numbers, which know NaN."""
+    counts = [name for name in ("force", "response") if campaign[name].dtype.kind in "iu"]
+    return campaign.assign({name: campaign[name].astype(float) for name in counts})
+
+
+def _rms(signal: np.ndarray) -> float:
+    """Return the RMS of the samples that are not missing, NaN where all are."""
+    kept = signal[np.isfinite(signal)]
+    return float(np.sqrt(np.mean(np.square(kept)))) if kept.size else float("nan")
+
+
 def _last_finite(campaign: xr.Dataset) -> np.ndarray:
     """Return (record,) the number of samples up to the last one that is finite in any channel."""
     samples = campaign.sizes["time"]
-    some = np.isfinite(campaign["force"].values).any(axis=1) | np.isfinite(
-        campaign["response"].values
-    ).any(axis=1)
+    some = np.any(
+        [(np.abs(campaign[name].values) <= LARGEST).any(axis=1) for name in ("force", "response")],
+        axis=0,
+    )
     return np.where(some.any(axis=1), samples - np.argmax(some[:, ::-1], axis=1), 0)
 
 
@@ -343,35 +347,6 @@ def _require(campaign: xr.Dataset, path: str | Path) -> None:
     problems = [*contract_problems(campaign)]
     if problems:
         raise CampaignError("\n".join(f"{path}: {problem}" for problem in problems))
-
-
-def contract_problems(campaign: xr.Dataset) -> Iterator[str]:
-    """Yield a sentence for every breach of the contract."""
-    for name, dims in (NEEDED | FILLED | OPTIONAL).items():
-        if name in NEEDED and name not in campaign:
-            yield f"has no variable '{name}' {dims}: see docs/bring_your_own.md"
-        elif name in campaign and campaign[name].dims != dims:
-            yield f"'{name}' has dimensions {campaign[name].dims}, expected {dims}"
-    if not _number_of(campaign.attrs.get("sampling_frequency", 0.0)) > 0.0:
-        yield "has no attribute sampling_frequency in Hz"
-    if "force" in campaign and "force_channel_units" not in campaign:
-        try:
-            si_factor(str(campaign["force"].attrs.get("units", "N")), "excitation")
-        except UnitError as error:
-            yield f"'force' {error}"
-    if "channel_kind" in campaign:
-        for kind in sorted({str(kind) for kind in campaign["channel_kind"].values} - set(KINDS)):
-            yield f"channel_kind '{kind}' is unknown: use one of {', '.join(KINDS)}"
-    if "split" in campaign:
-        for split in sorted({str(split) for split in campaign["split"].values} - set(SPLITS)):
-            yield f"split '{split}' is unknown: use one of {', '.join(SPLITS)}"
-
-
-def _number_of(value: Any) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return 0.0
 
 
 def channel_at(campaign: xr.Dataset, position: ArrayLike, direction: ArrayLike, kind: str) -> int:
@@ -418,8 +393,9 @@ def channel_signal(campaign: xr.Dataset, record: int, channel: int) -> np.ndarra
 
     Raises CampaignError for an unknown unit.
     """
-    values = campaign["response"].values[record, channel, : valid_count(campaign, record)]
-    return values.astype(float) * channel_factor(campaign, channel)
+    return measured_values(campaign, "response", record)[channel] * channel_factor(
+        campaign, channel
+    )
 
 
 def channel_factor(campaign: xr.Dataset, channel: int) -> float:
@@ -438,8 +414,18 @@ def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> n
 
     Raises CampaignError for an unknown unit.
     """
-    values = campaign["force"].values[record, force_channel, : valid_count(campaign, record)]
-    return values.astype(float) * force_factor(campaign, force_channel)
+    return measured_values(campaign, "force", record)[force_channel] * force_factor(
+        campaign, force_channel
+    )
+
+
+def measured_values(campaign: xr.Dataset, name: str, record: int) -> np.ndarray:
+    """Return (channel, time) the valid samples of the force or response of a record, as stored.
+
+    NaN where a sample is missing: where it is not finite, or beyond LARGEST.
+    """
+    values = campaign[name].values[record, :, : valid_count(campaign, record)].astype(float)
+    return np.where(np.abs(values) <= LARGEST, values, np.nan)
 
 
 def force_factor(campaign: xr.Dataset, force_channel: int) -> float:
@@ -476,9 +462,8 @@ def support_ratios(campaign: xr.Dataset) -> np.ndarray | None:
     """
     if "support_gap" not in campaign:
         return None
-    ratio = (
-        campaign["support_gap"].values.astype(float) / campaign["gap"].values.astype(float)[:, None]
-    )
+    gap = campaign["gap"].values.astype(float)[:, None]
+    ratio = campaign["support_gap"].values.astype(float) / np.where(gap > 0.0, gap, np.nan)
     if not np.isfinite(ratio).all() or np.ptp(ratio, axis=0).max(initial=0.0) > 0.01 * ratio.mean():
         raise CampaignError(
             "support_gap: its ratio to gap differs from record to record, or has no value in some:"

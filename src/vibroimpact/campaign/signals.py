@@ -15,12 +15,16 @@ import xarray as xr
 from vibroimpact.spectra.periodic_lines import PeriodError, find_period
 from vibroimpact.spectra.welch import segment_spectra
 
-from .file import CampaignError, channel_factor, force_factor, valid_count
+from .file import CampaignError, channel_factor, force_factor, measured_values
 
 SEGMENT_S = 8.0
 FEWEST_SEGMENTS = 12
+SHORTEST_SEGMENT = 64  # samples
+# Of a record whose spectra can be averaged: FEWEST_SEGMENTS that overlap by half.
+FEWEST_SAMPLES = SHORTEST_SEGMENT * (FEWEST_SEGMENTS + 1) // 2
 EXCITED_SHARE = 0.01  # of the typical PSD of the force: lines below it are not excited
 
+LOAD_TOLERANCE = 0.01
 DEFAULT_BAND_HZ = (5.0, 200.0)
 EXCITED_PSD = 1.0e-3  # of the largest lines of the smoothed PSD of all forces
 
@@ -40,7 +44,8 @@ class CampaignSignals:
 
     rate: sampling frequency, Hz.
     records, channels, forces: names. kinds (channel,). splits (record,): "fit" or "holdout".
-    load_rms (record,): N. gap (record,): m, NaN where there is none.
+    load_rms (record,): N, as stated, or that of the force where it differs.
+    gap (record,): m, NaN where there is none.
     points (channel, xyz): m.
     directions (channel, xyz), force_directions (force_channel, xyz): unit vectors.
     stated_period: samples of a period as the file states it, 0 for none.
@@ -125,14 +130,12 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
     """Return the CampaignSignals of a campaign Dataset that keeps the contract."""
     factors, faults = _factors(campaign, campaign.sizes["channel"], channel_factor)
     force_factors, force_faults = _factors(campaign, campaign.sizes["force_channel"], force_factor)
-    counts = [valid_count(campaign, record) for record in range(campaign.sizes["record"])]
+    records = range(campaign.sizes["record"])
     force = [
-        campaign["force"].values[record, :, :count].astype(float) * force_factors[:, None]
-        for record, count in enumerate(counts)
+        measured_values(campaign, "force", record) * force_factors[:, None] for record in records
     ]
     response = [
-        campaign["response"].values[record, :, :count].astype(float) * factors[:, None]
-        for record, count in enumerate(counts)
+        measured_values(campaign, "response", record) * factors[:, None] for record in records
     ]
     texts = {
         name: [str(value) for value in campaign[name].values]
@@ -144,12 +147,12 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         channels=texts["channel_name"],
         forces=texts["force_channel_name"],
         kinds=texts["channel_kind"],
-        load_rms=campaign["load_rms"].values.astype(float),
+        load_rms=_loads(campaign["load_rms"].values.astype(float), force),
         gap=campaign["gap"].values.astype(float),
         splits=(
             [str(value) for value in campaign["split"].values]
             if "split" in campaign
-            else ["fit"] * len(counts)
+            else ["fit"] * len(records)
         ),
         points=campaign["channel_point"].values.astype(float),
         directions=campaign["channel_direction"].values.astype(float),
@@ -163,6 +166,27 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         force_factors=force_factors,
         unit_faults=faults,
         force_unit_faults=force_faults,
+    )
+
+
+def rms_of_force(force: np.ndarray) -> float:
+    """Return the RMS of the first force of (force_channel, sample), NaN where a sample is."""
+    return float(np.sqrt(np.mean(np.square(force[0])))) if force.size else float("nan")
+
+
+def is_load(stated: float, found: float) -> bool:
+    """Return whether a stated load is the RMS of the force, where that is known."""
+    return not np.isfinite(found) or abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300)
+
+
+def _loads(stated: np.ndarray, forces: list[np.ndarray]) -> np.ndarray:
+    """Return (record,) the stated loads, the RMS of the force where they are not that."""
+    found = [rms_of_force(force) for force in forces]
+    return np.array(
+        [
+            load if is_load(load, rms) else rms
+            for load, rms in zip(stated.tolist(), found, strict=True)
+        ]
     )
 
 
@@ -232,7 +256,7 @@ def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
             return None
         force, response = force[:, start : start + whole], response[:, start : start + whole]
         averaging = Averaging(signals.period_samples / signals.rate, 0.0, "boxcar")
-    if averaging.segment_s * signals.rate < 64:
+    if averaging.segment_s * signals.rate < SHORTEST_SEGMENT:
         return None
     spectra = segment_spectra(
         np.concatenate([force, np.nan_to_num(response)]), signals.rate, averaging

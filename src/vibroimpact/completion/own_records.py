@@ -58,7 +58,7 @@ def own_records(path):
             rows,
         )
     force &= _one_gap(campaign, force, rows)
-    kept = _named_apart(campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown)))
+    kept = campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown))
     measured = campaign_signals(kept)
     _one_force(measured, rows)
     periods = [measured.period_samples or common_period([signals[0]]) for signals in measured.force]
@@ -119,16 +119,6 @@ def _one_gap(campaign, usable, rows):
             )
         )
     return gap == chosen
-
-
-def _named_apart(campaign):
-    """The campaign with a number behind the names of records that share one."""
-    names = [str(name) for name in campaign["record_name"].values]
-    apart = [
-        name if names.count(name) == 1 else f"{name} ({names[:index].count(name) + 1})"
-        for index, name in enumerate(names)
-    ]
-    return campaign.assign(record_name=("record", np.array(apart, dtype=object)))
 
 
 def _coherent(measured, band_Hz, rows):

@@ -1,11 +1,14 @@
-"""The names of folders in results/ that targets of the workflow write, and no study may have."""
+"""Folders of results/ that targets of their own write: no study or campaign may have one."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
 TARGETS = ("validation", "suite_check")
+# How snakemake marks a wildcard, and what names no folder inside results/.
+UNUSABLE = r"[{}/\\*?\x00-\x1f]|^\.*$"
 SUITE = "suite_"  # begins the name of every suite of campaigns
 
 
@@ -19,3 +22,18 @@ def reserved_names() -> frozenset[str]:
 def is_reserved(name: str) -> bool:
     """Whether a target writes to the folder of this name, or a suite of campaigns does."""
     return name.lower() in reserved_names() or name.lower().startswith(SUITE)
+
+
+def name_problem(name: str, study: str | None = None) -> str | None:
+    """Return why results can not go to results/NAME, as the end of a sentence; None where they can.
+
+    study: name of the study of the same run, whose folder is taken.
+    """
+    if is_reserved(name):
+        target = name.lower() if name.lower() in reserved_names() else "suite"
+        return f"its results would go to results/{name}, which the target {target} writes"
+    if name == study:
+        return f"its results would go to results/{name}, where the study '{study}' is"
+    if re.search(UNUSABLE, name):
+        return f"'{name}' can not be the name of a folder of results"
+    return None

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
+# Places of a measuring fault beside the channels: no channel may have such a name.
+NO_CHANNELS = ("force", "responses", "force_and_responses")
+
 
 @dataclass(frozen=True)
 class Measuring:
@@ -32,7 +35,7 @@ def places(names):
     """Return the places of a measuring fault: every channel, the force, all responses together,
     force and responses together.
     """
-    return [*names, "force", "responses", "force_and_responses"]
+    return [*names, *NO_CHANNELS]
 
 
 def measuring_of(effect_id, parameters, location, names):

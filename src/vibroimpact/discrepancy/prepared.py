@@ -10,12 +10,14 @@ import numpy as np
 
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.records import read_json, write_text
 
 from . import priors
 from .candidates import candidate_named, local_candidates, not_testable
+from .comparable import campaign_problems, channel_rows, compared_channels, comparison_problems
 from .in_place import in_place
 from .linear_fit import LinearChanges
 from .linear_rows import held, linear_rows, nameable, nearest_linear
@@ -108,6 +110,10 @@ def usable_campaign(path, checks):
     except (CampaignError, ValueError) as error:
         return None, str(error)
     force, response = usable_signals(campaign, checks)
+    compared = np.flatnonzero(compared_channels(campaign))
+    if not compared.size:
+        return None, campaign_problems(campaign)[0]
+    campaign, response = campaign.isel(channel=compared), response[:, compared]
     records = np.flatnonzero(force)
     channels = np.flatnonzero(response[records].all(axis=0)) if len(records) else []
     contradicted = {
@@ -203,7 +209,13 @@ def prepare(
     model that need them; draw: number of the draw of seeds, of which verdicts shall not depend;
     quick: look for effects at fewer places.
     """
-    _, checks = check_file(campaign_path)
+    whole, checks = check_file(campaign_path)
+    if whole is not None and not refused(checks):
+        checks += channel_rows(whole)
+        checks += [
+            check_row("model", "refuse", f"{problem}.")
+            for problem in comparison_problems(config, whole)
+        ]
     campaign, refusal = usable_campaign(campaign_path, checks)
     if refusal is None:
         try:

@@ -100,20 +100,22 @@ def signals_of(campaign, longest_s=None):
         load=load,
         split=np.array(measured.splits),
         record_names=tuple(measured.records),
-        noise=noise_of(campaign, response[lowest], rate, band),
+        noise=noise_of(campaign, response[lowest], rate, band, measured.factors),
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
     )
 
 
-def noise_of(campaign, response, rate, band):
-    """Return (channel,) RMS of the noise: as the campaign says, or the least density of the lowest
-    record's spectrum; 0 where neither tells.
+def noise_of(campaign, response, rate, band, factors=1.0):
+    """Return (channel,) RMS of the noise in SI: as the campaign says, or the least density of the
+    lowest record's spectrum; 0 where neither tells.
+
+    factors (channel,): SI units per unit in which the campaign says it.
 
     Where the lowest record touches, impacts fill the range above the band: noise is what parts of
     the spectrum that are as low as the lowest have, within their scatter.
     """
     if "noise_floor_rms" in campaign:
-        return np.asarray(campaign["noise_floor_rms"].values, float)
+        return np.asarray(campaign["noise_floor_rms"].values, float) * factors
     valid = response[:, np.isfinite(response).all(axis=0)]
     window = np.hanning(valid.shape[-1])
     frequency = np.fft.rfftfreq(valid.shape[-1], 1.0 / rate)

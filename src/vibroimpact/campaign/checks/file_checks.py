@@ -12,9 +12,21 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import CampaignError, contract_problems, decode_texts, fill_missing
-from vibroimpact.campaign.signals import campaign_signals, common_period, transfer, transfer_band
-from vibroimpact.records import RecordError, read_dataset
+from vibroimpact.campaign.contract import contract_problems
+from vibroimpact.campaign.file import (
+    LARGEST,
+    CampaignError,
+    decode_texts,
+    fill_missing,
+    opened_campaign,
+)
+from vibroimpact.campaign.signals import (
+    campaign_signals,
+    common_period,
+    transfer,
+    transfer_band,
+)
+from vibroimpact.records import RecordError
 
 from .linear_record import (
     NO_CAUSE,
@@ -25,11 +37,22 @@ from .linear_record import (
     swap_hints,
 )
 from .signal_faults import clipped_share, drop_out, is_drifting, level_trend, missing_samples
+from .stated import (
+    assumed_rows,
+    check_row,
+    load_rows,
+    period_rows,
+    short_rows,
+    size_rows,
+    time_rows,
+    unit_rows,
+)
 
 COLUMNS = ("check", "level", "record", "channel", "message")
 CHECKS = (
     "contract",
     "units",
+    "sizes",
     "time",
     "gaps in time",
     "clipping",
@@ -44,8 +67,8 @@ CHECKS = (
     "content",
 )
 # A warning of these excludes its signal from every comparison.
-EXCLUDING_CHECKS = ("units", "gaps in time", "clipping", "drop-outs")
-LOAD_TOLERANCE, LEVELS_APART = 0.01, 1.05
+EXCLUDING_CHECKS = ("units", "gaps in time", "clipping", "drop-outs", "record length")
+LEVELS_APART = 1.05
 BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
 
@@ -56,13 +79,17 @@ def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
     A file that can not be read gives a single row, which refuses it.
     """
     try:
-        campaign = decode_texts(read_dataset(path))
-    except (RecordError, ValueError) as error:
-        return None, [_row("contract", "refuse", f"The file can not be read: {error}.")]
+        campaign = opened_campaign(path)
+    except RecordError as error:
+        reason = str(error).removeprefix(f"{path}: ")
+        return None, [check_row("contract", "refuse", f"The file {reason}.")]
     rows = check_campaign(campaign)
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
-    return fill_missing(campaign), rows
+    try:
+        return fill_missing(campaign), rows
+    except CampaignError:  # a row refuses the unit of the force
+        return None, rows
 
 
 def check_campaign(campaign: xr.Dataset) -> list[dict]:
@@ -73,22 +100,25 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     campaign = decode_texts(campaign)
     problems = [*contract_problems(campaign)]
     if problems:
-        return [_row("contract", "refuse", f"The file {problem}.") for problem in problems]
+        return [check_row("contract", "refuse", f"{problem}.") for problem in problems]
     try:
         campaign = fill_missing(campaign)
     except CampaignError as error:  # the load can not be computed from a force of unknown unit
-        return [_row("units", "refuse", f"The {error}.")]
+        return [check_row("units", "refuse", f"The {error}.")]
     measured = campaign_signals(campaign)
     rows = [
-        *_assumed(campaign),
-        *_units(measured),
-        *_time(campaign, measured),
+        *assumed_rows(campaign),
+        *unit_rows(measured),
+        *size_rows(campaign, measured),
+        *time_rows(campaign, measured),
+        *period_rows(measured),
         *_signal_faults(measured),
+        *short_rows(measured),
     ]
     usable = usable_signals(campaign, rows)
     spectra, record = _lowest_spectra(measured)
     rows += [
-        *_load_rms(measured),
+        *load_rows(campaign, measured),
         *_linear(measured, spectra, record),
         *_directions(measured),
         *_stationarity(measured, usable),
@@ -96,13 +126,14 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
         *_content(measured, usable),
     ]
     complained = {row["check"] for row in rows}
-    rows += [_row(check, "pass", PASSED[check]) for check in CHECKS if check not in complained]
+    rows += [check_row(check, "pass", PASSED[check]) for check in CHECKS if check not in complained]
     return sorted(rows, key=lambda row: CHECKS.index(row["check"]))
 
 
 PASSED = {
     "contract": "The file holds every variable of the contract.",
     "units": "Every channel has a unit of its kind.",
+    "sizes": "Gaps and places are as large as those of a structure in metres.",
     "time": "Samples are even in time and agree with sampling_frequency.",
     "gaps in time": "No sample is missing.",
     "clipping": "No signal has flat tops.",
@@ -139,67 +170,11 @@ def usable_signals(campaign: xr.Dataset, rows: list[dict]) -> tuple[np.ndarray, 
         if row["check"] not in EXCLUDING_CHECKS or row["level"] == "pass" or row["channel"] is None:
             continue
         which = slice(None) if row["record"] is None else names["record_name"].index(row["record"])
-        if row["channel"] in names["channel_name"]:
+        if row["channel"] in names["channel_name"]:  # no name stands twice in a file
             response[which, names["channel_name"].index(row["channel"])] = False
         elif row["channel"] == names["force_channel_name"][0]:
             force[which] = False
     return force, response
-
-
-def _row(check, level, message, record=None, channel=None):
-    return {
-        "check": check,
-        "level": level,
-        "record": record,
-        "channel": channel,
-        "message": message,
-    }
-
-
-def _assumed(campaign):
-    for sentence in filter(None, campaign.attrs.get("assumed", "").split("\n")):
-        yield _row("contract", "warn", sentence[0].upper() + sentence[1:] + ".")
-
-
-def _units(measured):
-    for faults, names in (
-        (measured.unit_faults, measured.channels),
-        (measured.force_unit_faults, measured.forces),
-    ):
-        for index, sentence in faults.items():
-            yield _row(
-                "units",
-                "warn",
-                f"{sentence[0].upper()}{sentence[1:]}. It is left out.",
-                channel=names[index],
-            )
-
-
-def _time(campaign, measured):
-    if (
-        "time" not in campaign
-        or campaign["time"].dtype.kind not in "fiu"
-        or campaign.sizes["time"] < 2
-    ):
-        return
-    steps = np.diff(campaign["time"].values.astype(float))
-    typical = float(np.median(steps))
-    off = np.flatnonzero(~(np.abs(steps - typical) < 0.01 * abs(typical)))
-    if not typical > 0.0 or off.size:
-        place = int(off[0]) if off.size else 0
-        yield _row(
-            "time",
-            "refuse",
-            f"The time between samples {place} and {place + 1} is {steps[place]:.4g} s, elsewhere"
-            f" {typical:.4g} s: resample all channels to even steps.",
-        )
-    elif abs(typical * measured.rate - 1.0) > 1e-3:
-        yield _row(
-            "time",
-            "refuse",
-            f"sampling_frequency is {measured.rate:g} Hz but the time steps say {1.0 / typical:g}"
-            " Hz: correct the one that is wrong.",
-        )
 
 
 def _signal_faults(measured):
@@ -223,16 +198,16 @@ def _faults_of(signal, period, measured, record, channel, what):
     if signal.size == 0 or holes:
         count, first = holes or (0, 0)
         message = (
-            f"{channel} misses {count} of {signal.size} samples, the first at"
-            f" {first / measured.rate:.3f} s, in record {record}. {what}: repair the gap or shorten"
-            " valid_samples."
+            f"{channel} misses {count} of {signal.size} samples (no number, or beyond"
+            f" {LARGEST:g}), the first at {first / measured.rate:.3f} s, in record {record}."
+            f" {what}: repair the gap or shorten valid_samples."
             if signal.size
             else f"Record {record} has no valid sample."
         )
-        yield _row("gaps in time", "warn", message, record, channel)
+        yield check_row("gaps in time", "warn", message, record, channel)
         return
     if not signal.any():
-        yield _row(
+        yield check_row(
             "drop-outs",
             "warn",
             f"{channel} is zero throughout record {record}. {what}.",
@@ -243,7 +218,7 @@ def _faults_of(signal, period, measured, record, channel, what):
     # Only the last period of a periodic signal: every peak recurs in each period.
     share = clipped_share(signal[-period:] if 0 < period < signal.size else signal)
     if share is not None:
-        yield _row(
+        yield check_row(
             "clipping",
             "warn",
             f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in"
@@ -254,7 +229,7 @@ def _faults_of(signal, period, measured, record, channel, what):
         )
     lost = drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
-        yield _row(
+        yield check_row(
             "drop-outs",
             "warn",
             f"{channel} is held or vanishes at {lost[0]:.2f} s for {lost[1]:.3f} s in record"
@@ -262,26 +237,6 @@ def _faults_of(signal, period, measured, record, channel, what):
             record,
             channel,
         )
-
-
-def _load_rms(measured):
-    for record, name in enumerate(measured.records):
-        found = (
-            float(np.sqrt(np.mean(np.square(measured.force[record][0]))))
-            if measured.force[record][0].size
-            else np.nan
-        )
-        stated = float(measured.load_rms[record])
-        if np.isfinite(found) and not abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300):
-            yield _row(
-                "load_rms",
-                "warn",
-                f"load_rms is {stated:.4g} but {measured.forces[0]} has an RMS of {found:.4g} in"
-                f" record {name}: the unit or the valid samples of one of them are wrong; the force"
-                " itself is used.",
-                name,
-                measured.forces[0],
-            )
 
 
 def _lowest_spectra(measured):
@@ -292,7 +247,7 @@ def _lowest_spectra(measured):
 def _linear(measured, spectra, record):
     """Yield rows of the lowest level: coherence, delays, hints of swapped or reversed channels."""
     if spectra is None:
-        yield _row(
+        yield check_row(
             "coherence",
             "warn",
             "No record has a force and a response without holes that are long enough to average.",
@@ -303,7 +258,7 @@ def _linear(measured, spectra, record):
     finite = measured.finite(record)
     best = float(coherence[finite].max())
     if best < NO_CAUSE:
-        yield _row(
+        yield check_row(
             "coherence",
             "refuse",
             f"No response follows {measured.forces[0]} in record {name} (mean coherence {best:.2f}"
@@ -312,7 +267,7 @@ def _linear(measured, spectra, record):
         )
         return
     if best < 0.8:
-        yield _row(
+        yield check_row(
             "coherence",
             "warn",
             f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in"
@@ -322,7 +277,7 @@ def _linear(measured, spectra, record):
         )
     apart, common = channel_delays(spectra, measured.kinds, measured.rate, finite)
     for index, samples in apart.items():
-        yield _row(
+        yield check_row(
             "delay",
             "warn",
             f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by"
@@ -332,7 +287,7 @@ def _linear(measured, spectra, record):
             measured.channels[index],
         )
     if common is not None:
-        yield _row(
+        yield check_row(
             "delay",
             "warn",
             f"All responses {'lag' if common > 0 else 'lead'} {measured.forces[0]} by"
@@ -352,7 +307,7 @@ def _mix_ups(measured, spectra, name):
                 f"{measured.channels[other]}, which lies across the force, does: the two seem"
                 " swapped"
             )
-        yield _row(
+        yield check_row(
             "swapped channels",
             "warn",
             f"{measured.channels[index]} lies along the force and does not follow it in record"
@@ -362,7 +317,7 @@ def _mix_ups(measured, spectra, name):
         )
     against = reversed_hint(measured, spectra)
     if against is not None:
-        yield _row(
+        yield check_row(
             "swapped channels",
             "warn",
             f"{measured.channels[against]} moves against all other channels below the first"
@@ -378,21 +333,21 @@ def _directions(measured):
     ):
         length = float(np.linalg.norm(direction))
         if not abs(length - 1.0) < 0.01:
-            yield _row(
+            yield check_row(
                 "directions",
                 "warn",
                 f"The direction of {name} has the length {length:.3g}, not 1: write a unit vector.",
                 channel=name,
             )
         if not np.isfinite(point).all():
-            yield _row(
+            yield check_row(
                 "directions",
                 "warn",
                 f"The place of {name} is not known: it can not be compared with a model.",
                 channel=name,
             )
     if not np.isfinite(alignment(measured)).any():
-        yield _row(
+        yield check_row(
             "directions",
             "warn",
             f"The direction of {measured.forces[0]} is not known.",
@@ -417,7 +372,7 @@ def _stationarity(measured, usable):
                 level_trend(signal, measured.rate, band, measured.starts_at_rest) if kept else None
             )
             if is_drifting(trend):
-                yield _row(
+                yield check_row(
                     "stationarity",
                     "warn",
                     f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by"
@@ -437,7 +392,7 @@ def _length(measured):
         if duration * band[0] < FEWEST_PERIODS:
             too_short += 1
         if duration * width < GOOD_AVERAGES:
-            yield _row(
+            yield check_row(
                 "record length",
                 "warn",
                 f"Record {name} of {duration:.3g} s holds {duration * width:.1f} independent"
@@ -446,7 +401,7 @@ def _length(measured):
                 name,
             )
     if too_short == len(measured.records):
-        yield _row(
+        yield check_row(
             "record length",
             "refuse",
             f"Every record is shorter than {FEWEST_PERIODS:.0f} periods of the lowest excited"
@@ -459,7 +414,7 @@ def _content(measured, usable):
     force, response = usable
     whole = force & response.any(axis=1)
     if not force.any() or measured.force_unit_faults.get(0):
-        yield _row(
+        yield check_row(
             "content",
             "refuse",
             f"No record has a usable force {measured.forces[0]}: a verdict needs one measured"
@@ -467,7 +422,7 @@ def _content(measured, usable):
         )
         return
     if not whole.any():
-        yield _row(
+        yield check_row(
             "content",
             "refuse",
             "No response is usable beside a usable force: a verdict needs one response.",
@@ -475,7 +430,7 @@ def _content(measured, usable):
         return
     loads = measured.load_rms[whole]
     if not loads.max() > LEVELS_APART * loads.min():
-        yield _row(
+        yield check_row(
             "content",
             "refuse",
             f"All usable records have the load {loads.max():.4g}: a verdict needs two levels.",
@@ -486,4 +441,4 @@ def _content(measured, usable):
         ("holdout", "nothing is left to verify on"),
     ):
         if split not in splits:
-            yield _row("content", "warn", f"No usable record has the split '{split}': {why}.")
+            yield check_row("content", "warn", f"No usable record has the split '{split}': {why}.")

@@ -1,0 +1,169 @@
+"""Checks of what a campaign file states of itself: units, sizes, times, period, load, length.
+
+Each yields rows {check, level, record, channel, message}, see file_checks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.signals import FEWEST_SAMPLES, CampaignSignals, is_load, rms_of_force
+
+WIDE_GAP_M, FAR_M = 0.05, 100.0  # larger ones may be in millimetres
+FILTERS = ("fir80", "none")  # what simulations pass, and no filter
+NO_PERIOD = 0.5  # of the force: a larger difference between two periods is that of another force
+Rows = Iterator[dict]
+
+
+def check_row(
+    check: str, level: str, message: str, record: str | None = None, channel: str | None = None
+) -> dict:
+    """Return a row of a check."""
+    return {
+        "check": check,
+        "level": level,
+        "record": record,
+        "channel": channel,
+        "message": message,
+    }
+
+
+def assumed_rows(campaign: xr.Dataset) -> Rows:
+    """Yield rows of what was filled in, and of a filter that is not simulated."""
+    for sentence in filter(None, campaign.attrs.get("assumed", "").split("\n")):
+        yield check_row("contract", "warn", sentence[0].upper() + sentence[1:] + ".")
+    antialias = campaign.attrs.get("antialias", "")
+    if antialias not in (*FILTERS, "", "unknown"):
+        yield check_row(
+            "contract",
+            "warn",
+            f"antialias = '{antialias}' is a filter that is not simulated: simulated records pass"
+            f" {FILTERS[0]}, so that the highest frequencies may differ; known are"
+            f" {' and '.join(FILTERS)}.",
+        )
+
+
+def unit_rows(measured: CampaignSignals) -> Rows:
+    """Yield rows of signals whose unit can not be used."""
+    for faults, names in (
+        (measured.unit_faults, measured.channels),
+        (measured.force_unit_faults, measured.forces),
+    ):
+        for index, sentence in faults.items():
+            yield check_row(
+                "units",
+                "warn",
+                f"{sentence[0].upper()}{sentence[1:]}. It is left out.",
+                channel=names[index],
+            )
+
+
+def size_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
+    """Yield rows of gaps and places that are possible in metres, but likelier in millimetres."""
+    gaps = {"gap": campaign["gap"].values.astype(float)}
+    if "support_gap" in campaign:
+        gaps["support_gap"] = campaign["support_gap"].values.astype(float)
+    for name, values in gaps.items():
+        for place in np.argwhere(values > WIDE_GAP_M)[:1]:
+            index = "".join(f"[{number}]" for number in place)
+            yield check_row(
+                "sizes",
+                "warn",
+                f"{name}{index} = {values[tuple(place)]:g} m is a wide clearance: is it in"
+                " millimetres? Write metres.",
+            )
+    places = {
+        "channel_point": measured.points,
+        "force_channel_point": campaign["force_channel_point"].values.astype(float),
+    }
+    for name, points in places.items():
+        for place in np.argwhere(np.abs(points) > FAR_M)[:1]:
+            yield check_row(
+                "sizes",
+                "warn",
+                f"{name}[{place[0]}] = {points[place[0]].tolist()} m is far out: is it in"
+                " millimetres? Write metres.",
+            )
+
+
+def time_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
+    """Yield rows of uneven samples, and of a sampling frequency that is not theirs."""
+    if (
+        "time" not in campaign
+        or campaign["time"].dtype.kind not in "fiu"
+        or campaign.sizes["time"] < 2
+    ):
+        return
+    steps = np.diff(campaign["time"].values.astype(float))
+    typical = float(np.median(steps))
+    off = np.flatnonzero(~(np.abs(steps - typical) < 0.01 * abs(typical)))
+    if not typical > 0.0 or off.size:
+        place = int(off[0]) if off.size else 0
+        yield check_row(
+            "time",
+            "refuse",
+            f"The time between samples {place} and {place + 1} is {steps[place]:.4g} s, elsewhere"
+            f" {typical:.4g} s: resample all channels to even steps.",
+        )
+    elif abs(typical * measured.rate - 1.0) > 1e-3:
+        yield check_row(
+            "time",
+            "refuse",
+            f"sampling_frequency is {measured.rate:g} Hz but the time steps say {1.0 / typical:g}"
+            " Hz: correct the one that is wrong.",
+        )
+
+
+def load_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
+    """Yield rows of loads that are not the RMS of the force."""
+    stated = campaign["load_rms"].values.astype(float)
+    for record, name in enumerate(measured.records):
+        found = rms_of_force(measured.force[record])
+        if not is_load(stated[record], found):
+            yield check_row(
+                "load_rms",
+                "warn",
+                f"load_rms is {stated[record]:.4g} but {measured.forces[0]} has an RMS of"
+                f" {found:.4g} in record {name}: the unit or the valid samples of one of them are"
+                " wrong; the force itself is used.",
+                name,
+                measured.forces[0],
+            )
+
+
+def short_rows(measured: CampaignSignals) -> Rows:
+    """Yield rows of records too short for any average, which leave them out."""
+    for record, name in enumerate(measured.records):
+        samples = measured.force[record].shape[-1]
+        if samples < FEWEST_SAMPLES:
+            yield check_row(
+                "record length",
+                "warn",
+                f"Record {name} has {samples} samples: no spectrum can be averaged over fewer than"
+                f" {FEWEST_SAMPLES}. The record is left out.",
+                name,
+                measured.forces[0],
+            )
+
+
+def period_rows(measured: CampaignSignals) -> Rows:
+    """Yield a row where the force does not repeat with the stated period."""
+    period = measured.stated_period
+    for name, force in zip(measured.records, measured.force, strict=True):
+        if not 0 < 2 * period <= force.shape[-1]:
+            continue
+        last, before = force[0, -period:], force[0, -2 * period : -period]
+        share = np.std(last - before) / max(np.std(last), np.finfo(float).tiny)
+        if share > NO_PERIOD:
+            yield check_row(
+                "time",
+                "refuse",
+                f"period_samples = {period}, but {measured.forces[0]} differs by {share:.0%} from"
+                f" one period to the next in record {name}: write the samples of a period, or 0"
+                " where the force does not repeat.",
+                name,
+            )
+            return

@@ -1,0 +1,61 @@
+# The campaign or the folder of measurements that --config names: its name, and what its file
+# states, are checked before a job is planned.
+from functools import cache
+
+from vibroimpact.campaign.file import CampaignError, checked_description
+from vibroimpact.config.reserved_names import name_problem
+from vibroimpact.discrepancy.comparable import channel_rows, comparison_problems
+from vibroimpact.records import RecordError
+
+
+def require_free_folder(key, name):
+    """Exit with a sentence where the results of --config key=PATH would overwrite others."""
+    problem = name_problem(name, STUDY.study)
+    if key in REQUEST and problem:
+        sys.exit(f"{key} = '{REQUEST[key]}': {problem}: give it another name")
+
+
+require_free_folder("campaign", LOOKED_AT)
+require_free_folder("import", Path(REQUEST.get("import", "import")).resolve().name)
+
+
+@cache
+def described(file):
+    """A campaign file without its signals.
+
+    Exits with a sentence for everything it states that can not be.
+    """
+    try:
+        return checked_description(file)
+    except (CampaignError, RecordError) as error:
+        sys.exit(str(error))
+
+
+if STUDY.overlay.campaign is not None:
+    described(STUDY.overlay.campaign)
+
+
+def asked_campaign(wildcards):
+    """The file of --config campaign=FILE, which keeps the contract of campaign files."""
+    file = requested("campaign", "FILE.nc")(wildcards)
+    described(file)
+    return file
+
+
+@cache
+def require_comparable():
+    """Exit where a model can not be compared; say which channels are left out of a comparison."""
+    file = REQUEST["campaign"]
+    problems = comparison_problems(MODEL, described(file))
+    if problems:
+        sys.exit("\n".join(f"{file}: {problem}" for problem in problems))
+    if workflow.is_main_process:
+        for row in channel_rows(described(file)):
+            print(f"{file}: {row['message']}", file=sys.stderr)
+
+
+def compared_campaign(wildcards):
+    """The file of --config campaign=FILE, which can be compared with the model."""
+    file = asked_campaign(wildcards)
+    require_comparable()
+    return file
