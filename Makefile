@@ -52,7 +52,7 @@ test-all: $(READY) ## every test, and the coverage of the library
 
 reliability: $(READY) ## the tests of faults and bad input: writes docs/reliability.md
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile thorough \
-		--reliability tests/faults tests/properties
+		--reliability
 
 lint: $(READY) ## formatting, static checks and types
 	$(BIN)/ruff format --check

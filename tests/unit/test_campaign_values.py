@@ -1,6 +1,5 @@
 """What may stand in a campaign file, what is compared with a model, and where results may go."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from vibroimpact.campaign.checks.file_checks import check_campaign, usable_signa
 from vibroimpact.campaign.contract import contract_problems
 from vibroimpact.campaign.file import fill_missing, write_campaign
 from vibroimpact.config.reading import load_config
-from vibroimpact.config.reserved_names import reserved_result_folders, target_of
+from vibroimpact.config.reserved_names import name_problem
 from vibroimpact.discrepancy.comparable import comparison_problems
 from vibroimpact.discrepancy.prepared import prepare
 
@@ -118,10 +117,8 @@ def test_volts_and_reserved_names_drive_no_model(campaign):
     assert "channel_name[2] = 'responses' stands for several channels" in told
 
 
-def test_every_folder_that_a_rule_names_is_reserved():
-    examples = [folder.name for folder in ROOT.glob("examples/*/") if folder.name != "__pycache__"]
-    files = [*ROOT.glob("workflow/rules/*.smk"), *ROOT.glob("examples/*/*.smk")]
-    named = {name for file in files for name in re.findall(r'"results/(\w+)["/]', file.read_text())}
-    assert named == set(reserved_result_folders(name for name in examples if name in named))
-    assert {target_of(suite_name(*suite)) for suite in ((3,), (3, 49), (3, 49, 2))} == {"suite"}
-    assert target_of("bench") is None
+def test_results_of_suites_are_not_overwritten():
+    for suite in ((3,), (3, 49), (3, 49, 2)):
+        assert "which the target suite writes" in name_problem(suite_name(*suite))
+    assert "where the study 'bench' is" in name_problem("bench", "bench")
+    assert name_problem("bench") is None
