@@ -8,7 +8,7 @@ modules themselves, so that the workflow sees which files a stage depends on.
 
 from importlib import import_module
 
-__version__ = "0.3.0"
+__version__ = "0.4.0"
 
 # Name -> module that defines it. The file __init__.pyi states the same for type checkers.
 PUBLIC = {
