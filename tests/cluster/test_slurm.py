@@ -106,17 +106,17 @@ def test_slurm_is_refused_to_a_user_who_is_not_root():
 def test_a_study_survives_the_faults_of_a_cluster(slurm, local_results, tmp_path, reliability):
     too_little = "_basis:mem_mb=attempt * attempt * 150"  # MB; the second attempt has enough
     with Run(slurm, tmp_path, *TABLES, "--set-resources", too_little) as run:
-        cancelled = run.job_in_the_middle("_simulate", "simulate_load_4.log")
+        cancelled = run.job_in_the_middle("_simulate", "simulate_from_4.log")
         slurm.ask("scancel", cancelled)
         run.wait_for_end(cancelled, "CANCELLED")
 
-        drained = run.job_in_the_middle("_spectra", "spectra_load_4.log")
+        drained = run.job_in_the_middle("_spectra", "spectra_from_4.log")
         slurm.set_node("drain")
         run.wait_for_pending("_identify")
         assert slurm.state_of(drained) == "COMPLETED"
         slurm.set_node("resume")
 
-        lost = run.job_in_the_middle("_identify", "identify_from_3.16.log")
+        lost = run.job_in_the_middle("_identify", "identify_from_4.log")
         slurm.set_node("down")  # comes back by itself, without its job
         run.wait_for_end(lost, "NODE_FAIL")
         run.complete()
