@@ -106,7 +106,7 @@ def page(rows):
     """Return the page of rows (section, cells)."""
     parts = [INTRODUCTION]
     for section, header in HEADERS.items():
-        table = sorted(cells for name, cells in rows if name == section)
+        table = sorted({tuple(cells) for name, cells in rows if name == section})
         lines = [" | ".join(cells) for cells in (header, ["---"] * len(header), *table)]
         parts.append(f"## {TITLES[section]}\n\n" + "\n".join(f"| {line} |" for line in lines))
     return "\n".join(parts[:1]) + "\n" + "\n\n".join(parts[1:]) + "\n"
