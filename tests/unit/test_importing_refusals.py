@@ -1,15 +1,20 @@
 """What an import refuses, and what it reads although the file does not say it plainly."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
 import scipy.io
 import yaml
+from scipy import sparse
 
 from vibroimpact.campaign.file import channel_signal
 from vibroimpact.campaign.importing.assemble import import_folder
-from vibroimpact.campaign.importing.matlab_5 import read_matlab_5
+from vibroimpact.campaign.importing.matlab import read_matlab
 from vibroimpact.campaign.importing.signals import ImportProblem
+from vibroimpact.foreign_arrays import ForeignFileError
+from vibroimpact.matlab_files import load_matlab
 from vibroimpact.records import RecordError, read_hdf5_arrays
 
 RATE, SAMPLES = 512, 512
@@ -188,28 +193,91 @@ def test_damaged_number_types_of_hdf5_are_refused(tmp_path):
 
 
 def test_version_5_of_matlab_is_read_as_scipy_reads_it(tmp_path):
+    matrix = sparse.csc_array([[0.0, 2.0], [1.0, 0.0], [0.0, 3.0]])
     content = {
         "F": np.arange(6.0).reshape(2, 3),
         "run": {"acc": np.arange(5, dtype=np.int16), "deep": {"x": np.float32(1.5)}},
         "flags": np.array([True, False]),
         "text": "bench",
         "complex": np.array([1j, 2]),
+        "sparse": matrix,
+        "both": matrix * (1 + 2j),
         "cell": np.array([1, "a"], dtype=object),
         "empty": np.zeros((0, 0)),
     }
     for compressed in (False, True):
         scipy.io.savemat(tmp_path / "a.mat", content, do_compression=compressed)
-        found = read_matlab_5(tmp_path / "a.mat")
-        assert sorted(found) == ["F", "empty", "flags", "run.acc", "run.deep.x"]
-        np.testing.assert_array_equal(found["F"], content["F"])
+        found = load_matlab(tmp_path / "a.mat")
+        assert sorted(found) == sorted(
+            {*content} - {"run", "text", "cell"} | {"run.acc", "run.deep.x"}
+        )
+        for name in ("F", "flags", "empty"):
+            np.testing.assert_array_equal(found[name], np.atleast_2d(content[name]))
+        np.testing.assert_array_equal(found["complex"], [[1j, 2]])
         np.testing.assert_array_equal(found["run.acc"], [np.arange(5)])
         assert found["run.deep.x"] == 1.5
+        for name in ("sparse", "both"):
+            np.testing.assert_array_equal(found[name].toarray(), content[name].toarray())
+    scipy.io.savemat(tmp_path / "b.mat", {**content, "F": np.arange(50.0)})
+    assert {signal.name for signal in read_matlab(tmp_path / "b.mat")} == {"F"}
 
 
-def test_a_flipped_tag_of_matlab_names_its_place(tmp_path):
-    scipy.io.savemat(tmp_path / "a.mat", {"F": np.arange(50.0)}, do_compression=False)
-    raw = bytearray((tmp_path / "a.mat").read_bytes())
-    raw[128] ^= 0xFF
-    (tmp_path / "a.mat").write_bytes(raw)
+def flipped(path, place, bits):
+    """Write a file of MATLAB with the variable F, and change bits of one byte."""
+    scipy.io.savemat(path, {"F": np.arange(50.0)}, do_compression=False)
+    raw = bytearray(path.read_bytes())
+    raw[place] ^= bits
+    path.write_bytes(raw)
+    return path
+
+
+# Type of the variable, flag of complex numbers, number of rows, type of the values.
+@pytest.mark.parametrize("place, bits", [(128, 0xFF), (145, 0x08), (160, 2), (176, 1)])
+def test_a_flipped_tag_of_matlab_names_its_place(tmp_path, place, bits):
+    path = flipped(tmp_path / "a.mat", place, bits)
+    with pytest.raises(ForeignFileError, match="variable that begins at byte 128 can not be read"):
+        load_matlab(path)
     with pytest.raises(ImportProblem, match="variable that begins at byte 128 can not be read"):
-        read_matlab_5(tmp_path / "a.mat")
+        read_matlab(path)
+
+
+def test_a_row_twice_in_a_sparse_matrix_of_matlab_is_refused(tmp_path):
+    twice = sparse.csc_array(([1.0, 2.0], [0, 0], [0, 2]), shape=(2, 1))
+    scipy.io.savemat(tmp_path / "a.mat", {"K": twice})
+    with pytest.raises(ForeignFileError, match="the rows of a column of 'K' do not rise"):
+        load_matlab(tmp_path / "a.mat")
+
+
+def test_small_compressed_variables_count_together(tmp_path):
+    content = {name: np.zeros(1000) for name in "ab"}
+    scipy.io.savemat(tmp_path / "a.mat", content, do_compression=True)
+    assert len(load_matlab(tmp_path / "a.mat", most=20_000)) == 2
+    with pytest.raises(ForeignFileError, match="of numbers, at most 1e\\+04 are read"):
+        load_matlab(tmp_path / "a.mat", most=10_000)
+
+
+# Of MATLAB itself: a name in UTF-8, logical values called doubles, big-endian, function handles
+# (whose data have no name), version 4.
+@pytest.mark.parametrize(
+    "file, names",
+    [
+        ("miutf8_array_name", ["array_name"]),
+        ("logical_sparse", ["sp_log_5_4"]),
+        ("testsparsecomplex_6.5.1_GLNX86", ["testsparsecomplex"]),
+        ("big_endian", ["floats"]),
+        ("sqr", []),
+        ("testmulti_4.2c_SOL2", ["a", "theta"]),
+    ],
+)
+def test_files_of_matlab_are_read_as_scipy_reads_them(file, names):
+    path = Path(scipy.io.__file__).parent / f"matlab/tests/data/{file}.mat"
+    if not path.is_file():
+        pytest.skip("the files of SciPy's tests are not installed")
+    found, expected = load_matlab(path), scipy.io.loadmat(path)
+    assert sorted(found) == names
+    for name in names:
+        pair = [
+            values.toarray() if sparse.issparse(values) else values
+            for values in (found[name], expected[name])
+        ]
+        np.testing.assert_array_equal(*pair)

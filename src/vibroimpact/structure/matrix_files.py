@@ -111,7 +111,8 @@ def _npz(path: Path, name: str) -> Any:
 def _mat(path: Path, name: str) -> Any:
     """Return a matrix of a .mat file. Raises ForeignFileError."""
     arrays = load_matlab(path)
-    return arrays[_choose_letter(path, list(arrays), name)]
+    variables = [each for each in arrays if "." not in each]  # the others are fields of structures
+    return arrays[_choose_letter(path, variables, name)]
 
 
 def _mtx(path: Path, name: str) -> Any:
