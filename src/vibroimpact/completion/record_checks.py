@@ -4,6 +4,7 @@ holds them.
 
 import numpy as np
 
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.spectra.periodic_lines import line_power
 
 NOISY = 0.05  # of the response: noise above it is worth a warning
@@ -24,48 +25,45 @@ def check_periods(levels, names, band_Hz):
                 / line_power(level.response, level.frequency, lines)
             )
             rows += [
-                _row(
+                check_row(
                     "noise",
                     "warn" if value > LOUD else "pass",
-                    level.name,
-                    channel,
                     "The record has no period: it is taken whole, without the transient at "
                     f"its ends; noise and distortion are {value:.1%} of the response in the band.",
+                    level.name,
+                    channel,
                 )
                 for channel, value in zip(names, share, strict=True)
             ]
             continue
         if level.periods < 2:
             rows.append(
-                _row(
+                check_row(
                     "periods",
                     "warn",
-                    level.name,
-                    None,
                     "There is one period only: noise and transient can not be told from the"
                     " response.",
+                    level.name,
                 )
             )
             continue
         rows.append(
-            _row(
+            check_row(
                 "periods",
                 "pass",
-                level.name,
-                None,
                 f"The force repeats; {level.periods} periods are averaged.",
+                level.name,
             )
         )
         share = float(
             np.sqrt(np.sum(level.force_noise[lines] ** 2) / np.sum(np.abs(level.force[lines]) ** 2))
         )
         rows.append(
-            _row(
+            check_row(
                 "force",
                 "warn" if share > FORCE_NOISE else "pass",
-                level.name,
-                None,
                 f"The force differs between periods by {share:.2%} of itself.",
+                level.name,
             )
         )
         noise = np.sqrt(
@@ -74,22 +72,12 @@ def check_periods(levels, names, band_Hz):
         )
         for channel, value in zip(names, noise, strict=True):
             rows.append(
-                _row(
+                check_row(
                     "noise",
                     "warn" if value > NOISY else "pass",
+                    f"Noise is {value:.2%} of the averaged response in the band.",
                     level.name,
                     channel,
-                    f"Noise is {value:.2%} of the averaged response in the band.",
                 )
             )
     return rows
-
-
-def _row(check, level, record, channel, message):
-    return {
-        "check": check,
-        "level": level,
-        "record": record,
-        "channel": channel,
-        "message": message,
-    }
