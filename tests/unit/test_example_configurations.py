@@ -113,9 +113,17 @@ def test_supports_of_three_spans_differ_by_orders_of_magnitude():
 
 @pytest.mark.slow
 def test_each_support_of_three_spans_is_identified_for_itself():
-    config, _, record = short("broached_three_span")
-    found = identify_support(config, record)
-    k = {(item.group, item.method): item.k for item in found.estimates}
-    # The response shows each support as the contact forces do.
-    for group in ("plate_1", "plate_2", "bars"):
-        assert k[group, "broadband"] == pytest.approx(k[group, "secant"], rel=0.5), group
+    """The response shows each support as the contact forces do, in the median of four records: that
+    of one record of 12 s scatters from 0.6 to 1.6 (8 seeds), as the plates are hit rarely.
+    """
+    config, _, _ = short("broached_three_span")
+    load = SHORT["broached_three_span"][0]
+    ratios = []
+    for seed in range(4):
+        record = simulate_case(config, load, config.grid.gap_m[0], seed)
+        k = {
+            (item.group, item.method): item.k for item in identify_support(config, record).estimates
+        }
+        places = ("plate_1", "plate_2", "bars")
+        ratios.append([k[place, "broadband"] / k[place, "secant"] for place in places])
+    np.testing.assert_allclose(np.nanmedian(ratios, axis=0), 1.0, rtol=0.0, atol=0.5)
