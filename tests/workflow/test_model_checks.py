@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.sound_campaign import sound_campaign
+from vibroimpact.campaign.file import write_campaign
+
 ROOT = Path(__file__).parents[2]
 SMOKE = (ROOT / "config" / "smoke.yaml").read_text()
 
@@ -42,7 +45,8 @@ def test_a_coarse_mesh_warns_in_the_dry_run(tmp_path):
 def test_what_needs_no_model_of_the_study_checks_none(tmp_path):
     """A campaign is compared with the model that is given for it."""
     model = ROOT / "config" / "smoke.yaml"
-    values = ("--config", f"model={model}", "campaign=mine.yaml")
+    write_campaign(sound_campaign(), tmp_path / "bench.nc")
+    values = ("--config", f"model={model}", f"campaign={tmp_path}/bench.nc")
     run = dry_run(tmp_path, SMOKE.replace("4.0e+6", "1.0e+12"), "_discrepancy_prepare", *values)
     assert run.returncode == 0, run.stderr
     assert "too stiff" not in run.stderr + run.stdout

@@ -7,6 +7,8 @@ from vibroimpact.config.reserved_names import name_problem
 from vibroimpact.discrepancy.comparable import channel_rows, comparison_problems
 from vibroimpact.records import RecordError
 
+IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
+
 
 def require_free_folder(key, name):
     """Exit with a sentence where the results of --config key=PATH would overwrite others."""
@@ -16,7 +18,7 @@ def require_free_folder(key, name):
 
 
 require_free_folder("campaign", LOOKED_AT)
-require_free_folder("import", Path(REQUEST.get("import", "import")).resolve().name)
+require_free_folder("import", IMPORTED)
 
 
 @cache
@@ -59,3 +61,17 @@ def compared_campaign(wildcards):
     file = asked_campaign(wildcards)
     require_comparable()
     return file
+
+
+def measured_files(wildcards):
+    """The files of --config import=FOLDER that are read, as an input function.
+
+    Exits with a sentence where there are none, and where campaign.yaml has a problem.
+    """
+    from vibroimpact.campaign.importing.raw_files import raw_files
+    from vibroimpact.campaign.importing.signals import ImportProblem
+
+    try:
+        return [str(file) for file in raw_files(REQUEST["import"])]
+    except ImportProblem as problem:
+        sys.exit(str(problem))

@@ -1,21 +1,5 @@
 # Raw measurements to a campaign file, and a first look at one.
 
-IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
-
-
-def measured_files(wildcards):
-    """The files of --config import=FOLDER that are read, as an input function.
-
-    Exits with a sentence where there are none, and where campaign.yaml has a problem.
-    """
-    from vibroimpact.campaign.importing.raw_files import raw_files
-    from vibroimpact.campaign.importing.signals import ImportProblem
-
-    try:
-        return [str(file) for file in raw_files(REQUEST["import"])]
-    except ImportProblem as problem:
-        sys.exit(str(problem))
-
 
 rule import_campaign:
     """Turn a folder of raw measurements into a campaign file: --config import=FOLDER."""
