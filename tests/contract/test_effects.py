@@ -87,6 +87,15 @@ def test_variant_is_valid_and_leaves_the_original_unchanged(study_config, name):
     assert repr(values) == before
 
 
+@pytest.mark.parametrize("name", sorted(set(OF_THE_MODEL) - {"clearance"}))
+def test_an_effect_is_added_to_a_model_that_has_it(study_config, name):
+    """As a second rod at the shaker, or a second mass. A second stop is refused as such."""
+    values = study_config.model_dump(mode="json")
+    candidate = Candidate(name, EFFECTS[name].locations(values)[0])
+    strength = candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES)
+    check_config(candidate.variant(candidate.variant(values, strength), strength), name)
+
+
 @pytest.mark.parametrize(
     "name", [name for name in OF_THE_MODEL if EFFECTS[name].neutral() is not None]
 )

@@ -6,14 +6,7 @@ from .effect import Effect, Parameter, Values
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with a point mass at a named point."""
-    if parameters["mass"] == 0.0:
-        return values
-    return values | {
-        "masses": [
-            *values["masses"],
-            {"name": "added_mass", "point": location, "mass_kg": parameters["mass"]},
-        ]
-    }
+    return places.with_mass(values, "added_mass", location, parameters["mass"])
 
 
 EFFECT = Effect(

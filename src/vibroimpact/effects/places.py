@@ -3,6 +3,7 @@ configuration.
 """
 
 from collections.abc import Callable, Sequence
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -89,8 +90,26 @@ def with_element(
     """
     if not any(laws.values()):
         return values
-    element = {"name": name, "point": point, "direction": list(direction), **laws}
-    return values | {"elements": [*values["elements"], element]}
+    element = {"point": point, "direction": list(direction), **laws}
+    return with_entry(values, "elements", name, element)
+
+
+def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
+    """Return the configuration with another point mass; unchanged where it is 0."""
+    if mass_kg == 0.0:
+        return values
+    return with_entry(values, "masses", name, {"point": point, "mass_kg": mass_kg})
+
+
+def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
+    """Return the configuration with an entry added to elements or masses.
+
+    It is called name, or name_2 and so on where an effect is added to a model that has it.
+    """
+    taken = {other["name"] for other in values[key]}
+    names = (name if number == 1 else f"{name}_{number}" for number in count(1))
+    free = next(each for each in names if each not in taken)
+    return values | {key: [*values[key], {"name": free, **entry}]}
 
 
 def side_by_side(

@@ -6,13 +6,7 @@ from .effect import Effect, Parameter, Values
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the armature at the drive point."""
-    if parameters["mass"] > 0.0:
-        values = values | {
-            "masses": [
-                *values["masses"],
-                {"name": "armature", "point": location, "mass_kg": parameters["mass"]},
-            ]
-        }
+    values = places.with_mass(values, "armature", location, parameters["mass"])
     laws = {
         "stiffness_N_per_m": parameters["stiffness"],
         "damping_N_s_per_m": parameters["damping"],
