@@ -184,9 +184,9 @@ class MadeUpStudy:
             ),
         )
 
-    def read(self, path, names):
-        """What records.read_record returns of a file of spectra or estimates."""
-        return (self.curves if "ods_re" in names else self.spectra)[path]
+    def read(self, path, names=None):
+        """What records.read_record returns: some of the spectra, or all of the estimates."""
+        return (self.curves if names is None else self.spectra)[path]
 
     def plots(self):
         """The plots of the page."""

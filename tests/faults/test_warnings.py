@@ -52,12 +52,14 @@ redirect_output("job.log")
 
 
 @pytest.mark.slow
-def test_no_job_of_the_smoke_study_warns(tmp_path, reliability):
-    values = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text(encoding="utf-8"))
-    runs = Runs(tmp_path, values)
+@pytest.mark.parametrize("configuration", ["smoke", "study"])
+def test_no_job_of_a_study_warns(configuration, tmp_path, reliability):
+    file = ROOT / "config" / f"{configuration}.yaml"
+    runs = Runs(tmp_path, yaml.safe_load(file.read_text(encoding="utf-8")))
     code, told = runs.run()
     assert code == 0 and " warned; " not in told, told
     logs = list(runs.results.glob("logs/*.log"))
     assert len(logs) > 10 and warnings_text(logs) == ""
     assert [log.name for log in logs if "Warning" in log.read_text(encoding="utf-8")] == []
-    reliability.fault("warnings of numpy in the smoke study", "none in the log of any job")
+    name = {"smoke": "small", "study": "default"}[configuration]
+    reliability.fault(f"warnings of numpy in the {name} study", "none in the log of any job")

@@ -18,9 +18,10 @@ from tests.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_
 from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.interactive.pictures import few_colours
-from vibroimpact.figures.interactive.shape import contact_along_plot
+from vibroimpact.figures.interactive.shape import contact_along_plot, shapes_of
 from vibroimpact.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
 from vibroimpact.figures.interactive.study_plots import MOST_FRAMES, shown_loads
+from vibroimpact.records import read_record, write_record
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.equivalent_answer import Answer, Value
@@ -467,3 +468,13 @@ def test_caption_without_category_or_text_is_refused(tmp_path):
 
 def test_made_up_cases_are_named_as_those_of_a_study(study):
     assert {case_from_id(Path(path).stem).load_rms_N for path in study.paths} == set(LOADS)
+
+
+def test_a_case_without_a_shape_is_left_out_of_the_page(tmp_path):
+    paths = [tmp_path / f"load_4_gap_0.0001_seed_{seed}.nc" for seed in (0, 1)]
+    shape = {"ods_re": ("line_point", [1.0, 2.0]), "ods_im": ("line_point", [0.0, 0.0])}
+    write_record(xr.Dataset({"frequency": ("line", [1.0])}), paths[0])  # no main peak
+    place = (1e-4, 4.0)
+    assert shapes_of(paths[:1], read_record, [place]) == {}
+    write_record(xr.Dataset(shape), paths[1])
+    assert shapes_of(paths, read_record, [place])[place].tolist() == [0.5, 1.0]

@@ -26,7 +26,7 @@ def shapes_of(
 
     The largest component has length one.
 
-    paths: files of estimates named after their cases; read: function (path, names).
+    paths: files of estimates named after their cases; read: function as records.read_record.
     """
     found: dict[Place, np.ndarray] = {}
     for path in paths:
@@ -34,9 +34,8 @@ def shapes_of(
         place = case.gap_m, case.load_rms_N
         if place not in places or place in found:
             continue
-        try:
-            dataset = read(path, ("ods_re", "ods_im"))
-        except KeyError:  # no main peak, no shape
+        dataset = read(path)
+        if "ods_re" not in dataset:  # no main peak, no shape
             continue
         shape = dataset["ods_re"].values + 1j * dataset["ods_im"].values
         found[place] = shape / np.abs(shape).max()
