@@ -11,6 +11,7 @@ import numpy as np
 from vibroimpact.config.reading import check_config
 from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
 
 from . import nuisance as linear
 from .attach import attach, with_channel_points
@@ -45,7 +46,7 @@ class Workbench:
             campaign, config.integration, self.signals.force.shape[-1] / self.signals.rate
         )
         self.forces = Forces(self.signals.force, self.schedule)
-        self._finer = {1: (self.schedule, self.forces)}
+        self._finer = {(1, self.schedule.scheme): (self.schedule, self.forces)}
         self.nuisance, self.measuring, self.late = None, None, None
         # whether the lowest record, though its modes are seen, is not that of a linear structure
         self.nonlinear_low = False
@@ -247,20 +248,23 @@ class Workbench:
     def stepped(self, model):
         """Return (Schedule, Forces) with as many steps as the contact of a model needs, up to FINER
         times the usual; the usual ones where that is too few.
+
+        Where the exact step feeds a damper (integration.step_stability), the finest Newmark steps,
+        which never do: twice as coarse, responses at 1000 N s/m per plate are 3 % off.
         """
-        for finer in (1, *FINER):
+        usual, given = self.schedule.steps_per_second, self.schedule.scheme
+        tried = [(finer, given) for finer in (1, *FINER)]
+        tried += [(FINER[-1], "newmark")]
+        for finer, scheme in tried:
+            dt = 1.0 / (finer * usual)
             if (
-                contact_contraction(
-                    model, 1.0 / (finer * self.schedule.steps_per_second), self.schedule.scheme
-                )
-                < CONTRACTION_LIMIT
+                contact_contraction(model, dt, scheme) < CONTRACTION_LIMIT
+                and step_growth(model, dt, scheme) <= LARGEST_GROWTH
             ):
-                if finer not in self._finer:
-                    schedule = replace(
-                        self.schedule, steps_per_second=finer * self.schedule.steps_per_second
-                    )
-                    self._finer[finer] = schedule, Forces(self.signals.force, schedule)
-                return self._finer[finer]
+                if (finer, scheme) not in self._finer:
+                    schedule = replace(self.schedule, steps_per_second=finer * usual, scheme=scheme)
+                    self._finer[finer, scheme] = schedule, Forces(self.signals.force, schedule)
+                return self._finer[finer, scheme]
         return self.schedule, self.forces
 
     def respond(self, model, runs, measuring=None):
