@@ -80,7 +80,7 @@ def made_up_map(strength, seed=1):
         {
             "measured_dB": (dims, level + discrepancy),
             "simulated_dB": (dims, level),
-            "seed_sd_dB": (dims, seed_sd),
+            "sd_dB": (dims, 1.3 * seed_sd),
             "D": (dims, discrepancy),
             "z": (dims, discrepancy / (1.3 * seed_sd)),
             "band_Hz": (("band", "edge"), np.stack([EDGES[:-1], EDGES[1:]], axis=1)),

@@ -74,6 +74,28 @@ def origin(params: Mapping[str, Any], library: str) -> dict[str, str]:
     }
 
 
+def verdict_origin(
+    params: Mapping[str, Any], campaign: Path | str, seed: int | str | None
+) -> dict[str, Any]:
+    """Return {name: value} of what made a verdict: version, digests of the whole package, of the
+    campaign file and of the configuration, seed, versions of packages.
+
+    params: the configuration in plain values.
+    campaign: the campaign file.
+    seed: of the random streams, None where nothing is drawn.
+    """
+    with open(campaign, "rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()[:DIGEST_LENGTH]
+    return {
+        "version": __version__,
+        "source_digest": package_digest(),
+        "campaign_digest": digest,
+        "configuration_digest": config_digest(params),
+        "seed": seed,
+        "versions": " ".join(f"{name} {version}" for name, version in versions().items()),
+    }
+
+
 def file_attributes(params: Mapping[str, Any], library: str) -> dict[str, str]:
     """Return the global attributes of a netCDF file of a stage: its origin and its configuration.
 

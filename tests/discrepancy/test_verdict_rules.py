@@ -2,7 +2,6 @@
 nobody is named.
 """
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +10,7 @@ import pytest
 from vibroimpact.discrepancy import by_level as levels
 from vibroimpact.discrepancy import naming, verdict
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.misfit import closed_fraction
 from vibroimpact.effects.places import STOP
 
 THRESHOLD, EXPLAINED, LEFT = 15.0, np.array([0.3, -1.0]), np.array([0.3, -9.0])
@@ -314,35 +314,43 @@ def test_contradicted_effect_is_not_added_to_a_linear_one(decided):
     assert (kept.verdict, kept.ambiguity) == ("named", [["modal_damping", "quadratic_stiffness"]])
 
 
-def test_partial_effect_worsening_held_out_records_is_refuted(decided):
+def split(before, after, floor=1.0):
+    """A misfit of one split."""
+    return {
+        "before_dB": before,
+        "after_dB": after,
+        "floor_dB": floor,
+        "closed_fraction": closed_fraction(before, after, floor),
+    }
+
+
+NOTHING = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
+
+
+def test_effect_worsening_held_out_records_is_refuted(decided):
+    """Whatever it closes of the fitted ones: a damping of 1000 N s/m per plate was read as 1291 and
+    brought the others from 8.9 to 10.5 dB.
+    """
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
-    assert (
-        verdict.refuted(part, 0.5, -2.8)
-        and not verdict.refuted(part, 0.5, 0.4)
-        and not verdict.refuted(part, 0.5, None)
-    )
     named = decided([finalist("gap@all", 300.0)])
-    # a record near an onset, of which the model goes both ways, is met by no mean: where the fitted
-    # ones gain, it is no witness alone
-    assert verdict.refuted(named, -0.2, -2.8) and not any(
-        verdict.refuted(named, *shares)
-        for shares in ((0.5, -2.8), (-0.2, -0.5), (-2.8, None), (None, -2.8))
-    )
-    assert not verdict.refuted(replace(named, verdict="none", chosen=None), -0.2, -2.8)
-    assert verdict.refuted(
-        named, -0.52, -0.62
-    )  # an offset of next to nothing, named for a channel that was late
+    fitted = split(9.0, 2.0)
+    for decision in (part, named):
+        assert verdict.refuted(decision, {"fit": fitted, "holdout": split(8.9, 10.5)})
+        assert not verdict.refuted(decision, {"fit": fitted, "holdout": split(8.9, 6.0)})
+        assert not verdict.refuted(decision, {"fit": fitted, "holdout": NOTHING})
+    # both at the floor: a difference of chance
+    assert not verdict.refuted(named, {"fit": fitted, "holdout": split(1.03, 1.07)})
 
 
 def test_partial_effect_improving_no_record_is_refuted(decided):
     """Likelihood may gain by co and quad and kurtosis where no band's power comes nearer."""
     part = decided([finalist("gap@all", 300.0, LEFT)], share=0.7)
-    assert (
-        verdict.refuted(part, -0.01, -0.2)
-        and verdict.refuted(part, 0.05, None)
-        and not verdict.refuted(part, None, None)
-    )
-    assert not verdict.refuted(part, 0.6, -0.2) and not verdict.refuted(part, -0.01, 0.6)
+    near, much = split(5.0, 4.9), split(5.0, 2.5)
+    assert verdict.refuted(part, {"fit": near, "holdout": near})
+    assert verdict.refuted(part, {"fit": near, "holdout": NOTHING})
+    assert not verdict.refuted(part, {"fit": NOTHING, "holdout": NOTHING})
+    assert not verdict.refuted(part, {"fit": much, "holdout": near})
+    assert not verdict.refuted(part, {"fit": near, "holdout": much})
 
 
 def screened(**scores):

@@ -1,14 +1,16 @@
 """Refine a pair of effects by direct simulation."""
 
+from vibroimpact.discrepancy.cost import job_cost
 from vibroimpact.discrepancy.jobs import finalist
 from vibroimpact.discrepancy.run import Run
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_json
 
 redirect_output(snakemake.log[0])
-finalist(
-    Run.opened(snakemake),
-    snakemake.wildcards.pair,
-    read_json(snakemake.input.pairs),
-    snakemake.output.pair,
-)
+with job_cost(snakemake.output.pair, "pairs", begun=0.0):
+    finalist(
+        Run.opened(snakemake),
+        snakemake.wildcards.pair,
+        read_json(snakemake.input.pairs),
+        snakemake.output.pair,
+    )

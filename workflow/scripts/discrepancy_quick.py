@@ -11,14 +11,15 @@ os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", 
 from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.whole import run_campaign
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import verdict_origin
 
 redirect_output(snakemake.log[0])
-source = origin(snakemake.params.config, snakemake.params.library)
+config, campaign = snakemake.params.config, snakemake.input.campaign
+source = verdict_origin(config, campaign, f"{config['seed']}, draw 0")
 with TemporaryDirectory(dir=Path(snakemake.output.verdict).parent) as work:
     run_campaign(
-        snakemake.params.config,
-        snakemake.input.campaign,
+        config,
+        campaign,
         work,
         source,
         longest_s=QUICK_S,

@@ -135,14 +135,7 @@ class Records:
         model, along = trial.model()
         out = [None] * len(self.levels)
         for part, drive, samples in self.groups:
-            if trial.offsets:
-                offset = np.array(
-                    [trial.offsets.get(self.levels[index].name, 0.0) for index in part]
-                )
-                lines, samples = drive.lines.copy(), samples.copy()
-                lines[:, 0] += offset
-                samples[:, 0, : len(part)] += offset
-                drive = replace(drive, lines=lines)
+            drive, samples = self.with_offsets(trial, part, drive, samples)
             try:
                 pushed = (
                     steady_elements(model, drive, samples, periods_before)[1]
@@ -162,6 +155,16 @@ class Records:
                     trial.modes.shapes.T @ (trial.modes.receptance(frequency) * modal)
                 )
         return out
+
+    def with_offsets(self, trial, part, drive, samples):
+        """Return (PeriodicDrive, samples) of a group with the offsets of a Trial."""
+        if not trial.offsets:
+            return drive, samples
+        offset = np.array([trial.offsets.get(self.levels[index].name, 0.0) for index in part])
+        lines, samples = drive.lines.copy(), samples.copy()
+        lines[:, 0] += offset
+        samples[:, 0, : len(part)] += offset
+        return replace(drive, lines=lines), samples
 
     def errors(self, predicted):
         """Return (level, channel) RMS of measured minus predicted over the RMS measured, over the

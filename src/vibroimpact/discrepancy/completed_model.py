@@ -42,6 +42,19 @@ def updated_model(bench, decision, prepared):
     return "\n".join([*lines, yaml.safe_dump(plain_values(values), sort_keys=False, width=140)])
 
 
+def not_offered(withdrawn):
+    """Return the text in the place of a completed configuration that makes records worse that took
+    no part; withdrawn: content.Withdrawn in plain values.
+    """
+    effects = " and ".join(row["id"].replace("_", " ") for row in withdrawn["effects"])
+    held_out = withdrawn["misfit"]["holdout"]
+    return (
+        f"# No model is offered: {effects} was added, and the records that took no part are\n"
+        f"# farther off with it, {held_out['before_dB']:.2f} dB before and"
+        f" {held_out['after_dB']:.2f} dB after.\n"
+    )
+
+
 def computed_modes(values, campaign):
     """Return (mode,): the number that each mode of a configuration in plain values has among those
     computed, before frequency factors let some pass others.

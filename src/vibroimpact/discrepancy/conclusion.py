@@ -3,7 +3,6 @@ verdict.json, ranking.csv, and the model that runs.
 """
 
 import json
-import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.records import plain_values, read_text, write_record, write_table, write_text
+from vibroimpact.records import plain_values, write_record, write_table, write_text
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,
@@ -25,7 +24,8 @@ from vibroimpact.verdict.file import write_verdict
 from . import jobs, mapping, misfit, naming, power_balance, priors, verdict
 from .by_level import by_level
 from .candidates import Pair, candidate_named
-from .completed_model import updated_model
+from .completed_model import not_offered, updated_model
+from .cost import total_cost
 from .estimate_scatter import with_scatter
 from .invariances import broken_invariances
 from .law_directions import within_any_law
@@ -34,17 +34,14 @@ from .prepared import workbench
 from .same_quantity import by_other_laws
 from .survivors import survivors
 
-BEGUN = (
-    time.perf_counter()
-)  # this job, which has no benchmark file until it ends; of a quick run it is all there is
 FRESH = 20000  # first seed of the verification: none of the calibration's
 FRESH_RUNS, LEAST_FRESH = 32, 4  # runs of whole records in all, seeds of each at least
 BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
 
 
-def refused(folder, prepared, provenance):
+def refused(run, provenance, meter):
     """Write the verdict of a campaign that can not be tested."""
-    folder = Path(folder)
+    folder, prepared = Path(run.folder), run.prepared
     empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
     write_verdict(
         not_testable(
@@ -52,6 +49,7 @@ def refused(folder, prepared, provenance):
             provenance,
             next_measurement=prepared.refusal,
             misfit=MisfitBySplit(fit=empty, holdout=empty),
+            cost=total_cost([folder / "prepared.json"], meter.read()),
         ),
         folder / "verdict.json",
     )
@@ -83,14 +81,14 @@ def contract_checks(rows):
     ]
 
 
-def conclude(run, screening, final_files, provenance, quick=False):
+def conclude(run, screening, final_files, provenance, meter, quick=False):
     """Decide, verify on fresh seeds, and write everything into the folder of a Run; screening:
-    content of its file.
+    content of its file; meter: the cost.Meter of this job.
     """
     if run.refused:
-        refused(run.folder, run.prepared, provenance)
+        refused(run, provenance, meter)
         return
-    folder, prepared, bench, null, paths = run.folder, run.prepared, run.bench, run.null, run.paths
+    folder, prepared, bench, null = run.folder, run.prepared, run.bench, run.null
     found, totals = jobs.ordered(bench, null, jobs.known_finalists(final_files))
     measured = bench.measured_features[null.records]
     if found and isinstance(found[0].candidate, Pair) and not quick:
@@ -116,34 +114,23 @@ def conclude(run, screening, final_files, provenance, quick=False):
         before_bench = workbench(
             run.config, run.campaign, replace(prepared, adopted=None, fit=None), prepared.longest_s
         )
+        # the null holds what was adopted; the model as given does not
     before = verified(before_bench, before_bench.model(), seeds, bench)
+    if prepared.adopted is not None:
+        p_before = mapping.global_p(bench, null, measured, before.compared[null.records], law=False)
     most_probable = verdict.effects_of(prepared, decision, bench.bare)
-    after = completed(run, decision, before, seeds)
-    gaps = None if after is None else misfits(whole, before, after)
-    if gaps is None or verdict.refuted(
-        decision, *(gaps[split]["closed_fraction"] for split in ("fit", "holdout"))
-    ):  # nothing is added then
-        decision = replace(
-            decision,
-            verdict="unknown",
-            chosen=None,
-            ambiguity=[],
-            explained=naming.bare_explained(bench, null, measured),
-        )
-        after = completed(run, decision, before, seeds)
-        gaps = misfits(whole, before, after)
+    decision, after, gaps, withdrawn = offered(run, decision, before, seeds)
+    own = null if decision.chosen is None else decision.chosen.own(null)
     p_after = p_before
     if after is not before:
-        p_after = mapping.global_p(
-            bench,
-            null if decision.chosen is None else decision.chosen.own(null),
-            measured,
-            after.compared[null.records],
-        )
-    if prepared.adopted is not None:  # the null holds what was adopted; the model as given does not
-        p_before = mapping.global_p(bench, null, measured, before.compared[null.records], law=False)
-    difference, z, _ = mapping.z_of(before_bench, whole.measured_features, before.features)
-    ranking = ranking_rows(bench, null, prepared, found, totals, screening, measured, decision)
+        p_after = mapping.global_p(bench, own, measured, after.compared[null.records])
+    compared = mapping.z_of(before_bench, null, before.features)
+    compared_after = compared
+    if after is not before:
+        law = None if decision.chosen is None else after.compared
+        compared_after = mapping.z_of(whole, own, after.features, law)
+    ranking = ranking_rows(run, found, totals, screening, decision, (before, gaps))
+    spent = total_cost(outputs(run, final_files), meter.read())
     content = {
         "verdict": decision.verdict,
         "effects": (
@@ -165,23 +152,33 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "broken_invariances": broken_invariances(
             bench, null, prepared, power_balance.broken(before_bench, before.shown)
         ),
-        "regions": mapping.regions(before_bench, difference, z, misfit.counted(whole)),
+        # where the records together are within chance, no band of them is marked
+        "regions": (
+            []
+            if decision.verdict == "none"
+            else mapping.regions(before_bench, *compared[:2], misfit.counted(whole))
+        ),
         "misfit": gaps,
         "p_global_before": p_before,
         "p_global_after": p_after,
         "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
-        "seconds": elapsed(folder),
-        "simulations": simulations(null, paths, found, before.features, after.features),
+        "seconds": spent["cpu_seconds"],
+        "simulations": spent["simulations"],
         "not_testable": prepared.not_testable,
         "linear": prepared.linear[:SHOWN],
         "explained_z": decision.explained.tolist(),
         "most_probable": most_probable,
         "provenance": provenance,
+        "cost": spent,
+        "withdrawn": withdrawn,
     }
     write_verdict(Verdict.from_values(content), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
-    for name, bench, runs in (("map", before_bench, before), ("map_after", whole, after)):
-        mapped = mapping.map_dataset(bench, runs.features, runs.shown)
+    for name, bench_of, runs, told in (
+        ("map", before_bench, before, compared),
+        ("map_after", whole, after, compared_after),
+    ):
+        mapped = mapping.map_dataset(bench_of, told, runs.features, runs.shown)
         write_record(mapped.assign_attrs(provenance), folder / f"{name}.nc")
     levels = (
         {}
@@ -193,29 +190,50 @@ def conclude(run, screening, final_files, provenance, quick=False):
         }
     )
     write_candidates(found, prepared, totals, folder / "candidates", levels)
+    corrected = bench if decision.chosen is None else bench.corrected_by(decision.chosen.nuisance)
+    nothing_added = after is before and withdrawn is not None
     write_text(
-        updated_model(
-            bench if decision.chosen is None else bench.corrected_by(decision.chosen.nuisance),
-            decision,
-            prepared,
-        ),
+        not_offered(withdrawn) if nothing_added else updated_model(corrected, decision, prepared),
         folder / "model_updated.yaml",
     )
+
+
+def offered(run, decision, before, seeds):
+    """Return (Decision, Verified, {split: misfit}, withdrawn) of the model that is offered: what a
+    Decision completes it with, less whatever makes records worse that took no part.
+
+    withdrawn: content.Withdrawn in plain values of what was tried and is not offered, else None.
+    """
+    whole, bench, prepared = run.whole_bench, run.bench, run.prepared
+    after, withdrawn = completed(run, decision, before, seeds), None
+    gaps = None if after is None else misfits(whole, before, after)
+    if gaps is None or verdict.refuted(decision, gaps):  # nothing is added then
+        if gaps is not None and misfit.makes_worse(gaps["holdout"]):
+            effects = verdict.effects_of(prepared, decision, bench.bare)
+            withdrawn = {"effects": effects, "misfit": gaps}
+        measured = bench.measured_features[run.null.records]
+        decision = replace(
+            decision,
+            verdict="unknown",
+            chosen=None,
+            ambiguity=[],
+            explained=naming.bare_explained(bench, run.null, measured),
+        )
+        after = completed(run, decision, before, seeds)
+        gaps = misfits(whole, before, after)
+        if misfit.makes_worse(gaps["holdout"]):  # so does what the lowest record alone told
+            after, gaps = before, misfits(whole, before, before)
+    return decision, after, gaps, withdrawn
 
 
 SHOWN = 8
 
 
-def elapsed(folder):
-    """Return the seconds that the jobs of a folder took so far, summed over them, by their
-    benchmark files, and this one.
-    """
-    total = time.perf_counter() - BEGUN
-    for file in (folder / "benchmarks").glob("*.tsv"):
-        rows = read_text(file).splitlines()
-        if len(rows) > 1 and file.stem != "discrepancy_report":
-            total += float(rows[1].split("\t")[0])
-    return total
+def outputs(run, final_files):
+    """Return [file]: what the jobs of a Run made for this verdict, those of a bank not among it."""
+    own = [file for file in run.path_files if Path(file).parents[1] == Path(run.folder)]
+    jsons = [Path(run.folder) / f"{name}.json" for name in ("prepared", "screening", "pairs")]
+    return [*jsons, *run.nulls, *own, *final_files]
 
 
 def completed(run, decision, before, seeds):
@@ -306,10 +324,17 @@ def verified(whole, model, seeds, bench):
     return Verified(features, compared.mean(axis=1), shown)
 
 
-def ranking_rows(bench, null, prepared, found, totals, screening, measured, decision):
+def ranking_rows(run, found, totals, screening, decision, verified_misfit):
     """Return the rows of ranking.csv: what was simulated directly, what the decision chose and then
     the best first, then what was screened, then linear effects that were not adopted.
+
+    verified_misfit: (Verified of the model as given, {split: misfit} of the completed one).
+    closed_fraction is that of the misfit on the records that took no part, by fresh seeds on whole
+    records for what completes the model, by the runs of its search for all others.
     """
+    bench, null, prepared = run.bench, run.null, run.prepared
+    before, gaps = verified_misfit
+    split = "holdout" if len(bench.signals.holdout()) else "fit"
     rows, seen = [], set()
     prefix = [] if prepared.adopted is None else candidate_named(prepared.adopted["name"]).ids
     for row in found:
@@ -321,7 +346,11 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
                 "location": where(row.candidate.name),
                 "fit_score": on_fit,
                 "heldout_score": held_out,
-                "closed_fraction": float(verdict.closure(bench, null, row, measured)),
+                "closed_fraction": (
+                    gaps[split]["closed_fraction"]
+                    if row is decision.chosen
+                    else closed_by(bench, null, before, row.features)
+                ),
                 "threshold": screening["threshold"],
                 "tested": True,
                 "gain": np.inf if row is decision.chosen else gain,
@@ -335,7 +364,11 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
             "location": where(prepared.adopted["name"]),
             "fit_score": 0.0,
             "heldout_score": 0.0,  # all others are scored against it
-            "closed_fraction": None,
+            "closed_fraction": (
+                gaps[split]["closed_fraction"]
+                if alone
+                else closed_by(bench, null, before, null.features)
+            ),
             "threshold": priors.LINEAR_GAIN,
             "tested": True,
             "gain": np.inf if alone else screening["threshold"],
@@ -374,6 +407,20 @@ def ranking_rows(bench, null, prepared, found, totals, screening, measured, deci
                 }
             )
     return [{key: row[key] for key in COLUMNS} for row in rows]
+
+
+def closed_by(bench, null, before, features):
+    """Return the closed share of the misfit on the records that took no part, by features (record
+    of the null, seed, feature) of a model; before: Verified of the model as given.
+    """
+    records = np.intersect1d(misfit.judged(bench.signals), null.records)
+    if not len(records):
+        return None
+    runs = np.zeros((len(before.compared), *features.shape[1:]))
+    runs[null.records] = features
+    cells = misfit.counted(bench)
+    told = misfit.misfit_of(bench, records, cells, before.compared, runs.mean(axis=1), runs)
+    return told["closed_fraction"]
 
 
 def where(name):
@@ -464,15 +511,3 @@ def write_candidates(found, prepared, totals, folder, levels):
             json.dumps(plain_values(content), indent=1),
             folder / f"{row.candidate.name.replace('@', '_at_').replace('+', '_and_')}.json",
         )
-
-
-def simulations(null, paths, found, before, after):
-    """Return how many records were simulated."""
-    records = len(null.mean)
-    count = records * (null.seeds + 2 * jobs.UNSEEN_SEEDS) + before.shape[0] * before.shape[1] * (
-        1 if after is before else 2
-    )
-    count += sum(int(path.seeds.sum()) * records for path in paths.values())
-    return count + sum(
-        int(row.path.seeds.sum()) * records + row.features.shape[1] * records for row in found
-    )

@@ -7,6 +7,10 @@ import xarray as xr
 from scipy import stats
 
 from . import naming, priors
+from .features import BLEND, compressed
+from .likelihood import feature_sd, free_directions
+from .misfit import counted
+from .null import driven_channels
 
 SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
@@ -14,21 +18,47 @@ SHOWN_SEEDS = 4
 PEAK = 0.5  # of the largest difference in dB: bands beside it that differ by as much belong to it
 
 
-def z_of(bench, measured, seeds):
-    """Return (D, z, sd), each (record, channel, band): measured (record, feature) against seeds
-    (record, seed, feature).
+def z_of(bench, null, seeds, model=None):
+    """Return (D, z, sd), each (record, channel, band): the measured band powers against seeds
+    (record, seed, feature) of a model, in dB, in standard deviations, and these in dB.
+
+    They are those of the covariance that the verdict is decided by; differences beyond what
+    features.BLEND says are drawn in there too. null: Null of the model; model (record, feature):
+    mean of one with an effect, of whose change a share is uncertain as its law.
     """
     layout = bench.layout
-    power = layout.power(seeds)
-    mean = power.mean(axis=1)
-    variance = np.apply_along_axis(
+    difference = layout.power(bench.measured_features) - layout.power(seeds).mean(axis=1)
+    sd = layout.power(standard_deviation(bench, null, seeds, model))
+    drawn_in = BLEND["power"] * np.arcsinh(difference / BLEND["power"])
+    return difference, drawn_in / sd, sd
+
+
+def standard_deviation(bench, null, seeds, model=None):
+    """Return (record, feature): one sigma of a measured record about the mean of a model; arguments
+    as of z_of. A record that the verdict reads by its modes alone has that of its seeds and of what
+    two codes differ by.
+    """
+    layout, common = bench.layout, free_directions(bench.layout, driven_channels(bench))
+    variance = smoothed(seeds.var(axis=1, ddof=1), layout) * (1.0 + 1.0 / seeds.shape[1])
+    variance += feature_sd(layout) ** 2 + np.sum(common**2, axis=0)
+    variance[null.records] = np.diagonal(null.covariance, axis1=1, axis2=2)
+    if model is not None:
+        change = compressed(model[null.records] - null.mean, layout)
+        variance[null.records] += (priors.LAW_SD**2 + priors.LAW_COMMON_SD**2) * change**2
+    return np.sqrt(variance)
+
+
+def smoothed(variance, layout):
+    """Return variances (record, feature), those of band powers shared with the neighbouring bands:
+    they are of few seeds.
+    """
+    out = variance.copy()
+    out[:, layout.kind == "power"] = np.apply_along_axis(
         lambda row: np.convolve(np.pad(row, 1, mode="edge"), SMOOTH, mode="valid"),
         -1,
-        power.var(axis=1, ddof=1),
-    )
-    sd = np.sqrt(variance * (1.0 + 1.0 / power.shape[1]) + priors.FEATURE_SD["power"] ** 2)
-    difference = layout.power(measured) - mean
-    return difference, difference / sd, sd
+        layout.power(variance),
+    ).reshape(len(variance), -1)
+    return out
 
 
 def global_p(bench, null, measured, mean=None, law=True):
@@ -47,13 +77,13 @@ def global_p(bench, null, measured, mean=None, law=True):
 
 
 def significant(z, chosen):
-    """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate (Y.
-    Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995).
+    """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate, the error
+    rate of the verdict (Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995).
     """
     p = 2.0 * stats.t.sf(np.abs(z), priors.NULL_SEEDS - 1)
     inside = np.sort(p[chosen])
     passed = np.flatnonzero(
-        inside <= priors.FALSE_DISCOVERY * (1 + np.arange(inside.size)) / max(inside.size, 1)
+        inside <= priors.SIGNIFICANT * (1 + np.arange(inside.size)) / max(inside.size, 1)
     )
     return chosen & (p <= inside[passed[-1]]) if passed.size else np.zeros_like(chosen)
 
@@ -125,7 +155,9 @@ PSD_UNIT = "square of the unit of the channel per Hz"
 MAP_ABOUT = {
     "measured_dB": _about("measured power of the band", comment="in dB"),
     "simulated_dB": _about("simulated power of the band, mean over seeds", comment="in dB"),
-    "seed_sd_dB": _about("standard deviation over seeds of the simulated power", comment="in dB"),
+    "sd_dB": _about(
+        "standard deviation of the measured power about the simulated", comment="in dB"
+    ),
     "D": _about("measured over simulated power of the band", comment="in dB"),
     "z": _about("difference of the powers in standard deviations", "1"),
     "band_Hz": _about("edges of the band", "Hz"),
@@ -143,13 +175,11 @@ MAP_ABOUT = {
 }
 
 
-def map_dataset(bench, seeds, responses):
-    """Return the map as a Dataset: seeds (record, seed, feature); responses (record, shown seed,
-    channel, sample) of the same model with noise.
+def map_dataset(bench, compared, seeds, responses):
+    """Return the map as a Dataset: compared: as z_of returns it; seeds (record, seed, feature);
+    responses (record, shown seed, channel, sample) of the same model with noise.
     """
-    from .misfit import counted
-
-    difference, z, sd = z_of(bench, bench.measured_features, seeds)
+    difference, z, sd = compared
     layout, signals = bench.layout, bench.signals
     cell, line = ("record", "channel", "band"), ("record", "channel", "frequency")
     frequency, measured = _spectra(signals, signals.response)
@@ -159,7 +189,7 @@ def map_dataset(bench, seeds, responses):
     data = {
         "measured_dB": (cell, layout.power(bench.measured_features)),
         "simulated_dB": (cell, layout.power(seeds).mean(axis=1)),
-        "seed_sd_dB": (cell, sd),
+        "sd_dB": (cell, sd),
         "D": (cell, difference),
         "z": (cell, z),
         "band_Hz": (("band", "edge"), np.stack([layout.edges[:-1], layout.edges[1:]], axis=1)),

@@ -1,4 +1,7 @@
-"""The misfit between measurement and simulation, its floor, and how much of it an effect closes."""
+"""The misfit between measurement and simulation, its floor, and how much of it an effect closes.
+
+There is one definition of the closed share, and one place where it is worked out: closed_fraction.
+"""
 
 import numpy as np
 
@@ -30,8 +33,25 @@ def excess(distance, floor):
 
 def closed_fraction(before, after, floor):
     """Return 1 - excess after / excess before; None where there was next to nothing before."""
-    gap = excess(before, floor)
-    return None if gap <= priors.NO_EXCESS * floor else 1.0 - excess(after, floor) / gap
+    least = priors.NO_EXCESS * floor
+    first = excess(before, floor)
+    return None if first <= least else 1.0 - excess(after, floor) / first
+
+
+def makes_worse(row):
+    """Return whether a completed model makes a misfit grow, {before_dB, after_dB, floor_dB}: what
+    is left is more than before and beyond chance.
+    """
+    if row["after_dB"] is None:
+        return False
+    left = excess(row["after_dB"], row["floor_dB"])
+    return row["after_dB"] > row["before_dB"] and left > priors.NO_EXCESS * row["floor_dB"]
+
+
+def judged(signals):
+    """Return (record,): the records that took no part in the fit, the fitted ones where all did."""
+    held_out = signals.holdout()
+    return held_out if len(held_out) else signals.fit()
 
 
 def floor_of(power, chosen):

@@ -102,21 +102,16 @@ SAME_QUANTITY = 0.75
 NULL_SIGMA = (
     2.054  # of the best gains of null seeds above their mean: the 98th percentile of a normal law
 )
-NO_EXCESS = 0.5  # floors: below it there is no gap to close
+NO_EXCESS = 0.5  # floors: below it there is no excess to close
 EXPLAINED_Z = (
     -3.4
 )  # sigma by which a record's chi-square is too large: the model still misses something
-FALSE_DISCOVERY = 0.05  # rate of cells of the map that are marked though nothing is there
-SIGNIFICANT = 0.01  # global p below which the bare model and the measurement disagree
+# global p below which the bare model and the measurement disagree, and the rate of bands of the map
+# that are marked though nothing is there
+SIGNIFICANT = 0.01
 # of log likelihood on the lowest record: linear effects nearer than this to the best; aliases of
 # the catalogue
 LINEAR_AMBIGUOUS = 3.0
 LINEAR_ALIAS = 8.0
 PARTLY = 0.5  # closed share above which an explanation that leaves something is still partly one
-# closed share of the held-out misfit below which what explained a part of the others is no
-# explanation
-WORSE = -0.25
-# the same where it explained all, yet closes nothing of those fitted: more than the bare model's
-# misfit is none, whatever its scatter forgives
-FAR_WORSE = -0.5
 LEAST_CLOSED = 0.15  # closed share below which a gain of likelihood is no explanation

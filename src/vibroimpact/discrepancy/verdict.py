@@ -1,6 +1,4 @@
-"""The verdict: what is missing, whom the evidence can not tell apart, what to measure next, and how
-far the gap closes on fresh seeds.
-"""
+"""The verdict: what is missing, and whom the evidence can not tell apart."""
 
 from dataclasses import dataclass
 
@@ -8,6 +6,7 @@ import numpy as np
 
 from . import naming, priors
 from .candidates import Candidate, Pair, candidate_named
+from .misfit import makes_worse
 from .scales import clearance
 from .second import least_added
 
@@ -106,18 +105,16 @@ def decide(bench, null, prepared, found, threshold, p_before):
     )
 
 
-def refuted(decision, fitted, held_out):
-    """Return whether an explanation makes all records worse, or a partial one the held-out ones, or
-    none better: shares of the misfit that it closes on those fitted and on those held out, None
-    where there is none to close.
+def refuted(decision, misfit):
+    """Return whether an explanation makes the held-out records worse, or a partial one none better;
+    misfit {split: {before_dB, after_dB, floor_dB, closed_fraction}}.
     """
-    if decision.verdict != "partly_explained":
-        told = decision.chosen is not None and fitted is not None and held_out is not None
-        return told and fitted < 0.0 and held_out < priors.FAR_WORSE
-    known = [share for share in (fitted, held_out) if share is not None]
-    return (held_out is not None and held_out < priors.WORSE) or (
-        bool(known) and max(known) < priors.LEAST_CLOSED
-    )
+    if makes_worse(misfit["holdout"]):
+        return True
+    shares = [misfit[split]["closed_fraction"] for split in ("fit", "holdout")]
+    known = [share for share in shares if share is not None]
+    partly = decision.verdict == "partly_explained"
+    return partly and bool(known) and max(known) < priors.LEAST_CLOSED
 
 
 def simpler(best, found, totals, prepared):

@@ -14,6 +14,7 @@ from . import jobs
 from .bank import lacking
 from .candidates import candidate_named
 from .conclusion import conclude
+from .cost import Meter, job_cost
 from .dag import NULL_PARTS, screened_files
 from .prepared import Prepared, prepare
 from .run import Run
@@ -45,14 +46,22 @@ def run_campaign(
     folder, config = Path(folder), check_config(values, "model")
     prepared_file = folder / "prepared.json"
     if not prepared_file.is_file():
-        prepare(
-            config, campaign, longest_s, tables, without, for_all=for_all, draw=draw, quick=quick
-        ).write(prepared_file)
+        with job_cost(prepared_file, "prepare"):
+            prepare(
+                config,
+                campaign,
+                longest_s,
+                tables,
+                without,
+                for_all=for_all,
+                draw=draw,
+                quick=quick,
+            ).write(prepared_file)
     prepared = Prepared.read(prepared_file)
     nulls = [folder / "null" / f"{part}.npz" for part in range(NULL_PARTS)]
     run = Run(config, str(campaign), folder, prepared, (), tuple(nulls), ())
     if run.refused:
-        conclude(run, None, [], provenance)
+        conclude(run, None, [], provenance, Meter("verdict"))
         return
     bank_nulls = [Path(bank) / "null" / file.name for file in nulls] if bank else []
     if bank_nulls and lacking(run.bench, run.records, bank_nulls[0]):
@@ -78,7 +87,7 @@ def run_campaign(
         }
         _make(workers, made)
         files += made
-    conclude(run, screened, files, provenance, quick)
+    conclude(run, screened, files, provenance, Meter("verdict"), quick)
 
 
 def _path(run, name, quick, file):
@@ -88,6 +97,9 @@ def _path(run, name, quick, file):
 def _finalist(run, name, chosen, quick, file):
     jobs.finalist(run, name, chosen, file, quick)
 
+
+# stage by the folder that its jobs write to
+STAGES = {"null": "null", "paths": "candidates", "finalists": "finalists", "pairs": "pairs"}
 
 # {file: function}: inherited by forked processes, since what the functions hold is too large to be
 # sent
@@ -109,12 +121,14 @@ def _make(workers, makers):
 
 
 def _made(file):
-    SHARED[file](file)
+    with job_cost(file, STAGES[file.parent.name]):
+        SHARED[file](file)
     print(file, flush=True)
 
 
 def _kept(file, make):
     """Return the content of a JSON file, made where it is not there."""
     if not file.is_file():
-        make(file)
+        with job_cost(file, file.stem):
+            make(file)
     return read_json(file)

@@ -15,6 +15,7 @@ from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
 
 from . import nuisance as linear
 from .attach import attach, with_channel_points
+from .cost import count_simulated
 from .features import feature_layout, record_features
 from .forward import Forces, schedule_of, simulate_records
 from .linear_record import LinearRecord
@@ -276,6 +277,7 @@ class Workbench:
         factor = np.prod([fault.force_gain for fault in chain])
         forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
         responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)
+        count_simulated(len(runs))
         gain = self.gains
         for fault in chain:
             gain = gain * fault.gain

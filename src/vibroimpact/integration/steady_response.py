@@ -17,7 +17,7 @@ from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
 from .kernels.lanes import LANES
 from .kernels.march import march
-from .kernels.tables import STEPS_DONE, Trace
+from .kernels.tables import STEPS_DONE
 
 SCHEME = "exact"
 
@@ -75,6 +75,28 @@ def steady_elements(
 
     Raises IntegrationError: an element is too stiff for the step, or the run diverged.
     """
+    count = drive.lines.shape[1]
+    # Step j of the kernel ends at time (j + 1) dt.
+    delay = np.exp(-2j * np.pi * np.arange(count) / drive.steps)
+    displacement, force = (
+        np.fft.rfft(values, axis=-1)[..., :count] * delay / drive.steps
+        for values in steady_series(model, drive, samples, periods_before)
+    )
+    return displacement, force
+
+
+def steady_series(
+    model: ModalModel,
+    drive: PeriodicDrive,
+    samples: np.ndarray | None = None,
+    periods_before: int = 1,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement (m) and force on the structure (N) of every local element at every time step of
+    a period of the steady state: (element, case, step) each, both of one instant.
+
+    A law without memory is a curve in these. In amplitudes of some lines it is a loop: they lack
+    what the law does above them. Arguments and errors are those of steady_elements.
+    """
     samples = drive.samples() if samples is None else samples
     rate = drive.steps / drive.period
     contraction = checked_contraction(model, rate, SCHEME)
@@ -98,23 +120,11 @@ def steady_elements(
                 f"the steady response diverged in period {period}: the element's law has no bounded"
                 " motion under this force"
             )
-    return _element_lines(trace, layout.element_rows(), drive)
-
-
-def _element_lines(
-    trace: Trace, rows: np.ndarray, drive: PeriodicDrive
-) -> tuple[np.ndarray, np.ndarray]:
-    """Complex amplitudes (element, case, line) of displacement and force over one period."""
-    cases, count = drive.lines.shape
-    # Step j of the kernel ends at time (j + 1) dt.
-    delay = np.exp(-2j * np.pi * np.arange(count) / drive.steps)
-    displacement, force = (
-        np.fft.rfft(values[rows][..., :cases], axis=1)[:, :count].transpose(0, 2, 1)
-        * delay
-        / drive.steps
-        for values in (trace.displacement, trace.force)
+    rows, cases = layout.element_rows(), len(drive.lines)
+    displacement, pushed = (
+        values[rows][..., :cases].transpose(0, 2, 1) for values in (trace.displacement, trace.force)
     )
-    return displacement, force
+    return displacement, pushed
 
 
 def _slider_force(model: ModalModel, displacement: np.ndarray) -> np.ndarray:

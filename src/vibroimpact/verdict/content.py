@@ -34,6 +34,11 @@ SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
 
 # An integer stays one, so that a file that is read and written again keeps its bytes.
 Number = Annotated[int | float, WithJsonSchema({"type": "number"})]
+Probability = Annotated[
+    int | float,
+    Field(ge=0, le=1),
+    WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1}),
+]
 
 
 class _Content(BaseModel):
@@ -83,6 +88,12 @@ class FoundEffect(_Content):
     id: str = Field(description="Id of the effect in the catalogue.")
     location: str = Field(description="Where it acts: a named place, or all supports.")
     parameters: dict[str, Estimate] = Field(description="Estimates by parameter name.")
+    family: str | None = Field(
+        default=None, description="Family of effects that it belongs to, whatever its law."
+    )
+    law_fits: Literal["yes", "no", "not tested"] | None = Field(
+        default=None, description="Whether this law of the family explains the records."
+    )
 
 
 class RankedCandidate(_Content):
@@ -95,6 +106,9 @@ class RankedCandidate(_Content):
     closed_fraction: Number | None = Field(description="Share of the excess misfit it closes.")
     location: str | None = Field(default=None, description="Where the effects act.")
     candidate: str | None = Field(default=None, description="Name of the candidate.")
+    probability: Probability | None = Field(
+        default=None, description="Probability that these effects are what is missing."
+    )
 
 
 class Region(_Content):
@@ -135,6 +149,38 @@ class MisfitBySplit(_Content):
 
     fit: Misfit | None
     holdout: Misfit | None
+    selection: Misfit | None = Field(
+        default=None, description="Of the records that the name was chosen with."
+    )
+    verification: Misfit | None = Field(
+        default=None, description="Of the records that nothing was chosen with."
+    )
+
+    def taking_no_part(self) -> Misfit | None:
+        """Return the misfit of the records that took no part, None where there are none."""
+        return self.verification or self.holdout
+
+
+class StageCost(_Content):
+    """What the jobs of one stage cost."""
+
+    cpu_seconds: Number = Field(description="CPU time, s.")
+    simulations: int = Field(description="Number of simulated records.")
+
+
+class Cost(_Content):
+    """What all jobs of a verdict cost, from the first check of the campaign to this file."""
+
+    cpu_seconds: Number = Field(description="CPU time of all jobs, s.")
+    simulations: int = Field(description="Number of records that all jobs simulated.")
+    by_stage: dict[str, StageCost] = Field(description="The same, stage by stage.")
+
+
+class Withdrawn(_Content):
+    """Effects that were added and are not offered: they make records worse that took no part."""
+
+    effects: list[FoundEffect] = Field(description="What was added.")
+    misfit: MisfitBySplit = Field(description="Misfit without and with them.")
 
 
 class CheckResult(_Content):
@@ -172,8 +218,8 @@ class Verdict(_Content):
     )
     p_global_after: Number | None = Field(description="The same with the completed model.")
     checks: list[CheckResult] = Field(description="Checks of the campaign.")
-    seconds: Number = Field(description="Computing time, s.")
-    simulations: int = Field(description="Number of simulated records.")
+    seconds: Number = Field(description="CPU time of all jobs, s.")
+    simulations: int = Field(description="Number of records that all jobs simulated.")
     not_testable: list[str] = Field(
         default=[], description="Ids of effects that this campaign can not show."
     )
@@ -187,7 +233,21 @@ class Verdict(_Content):
         default=[], description="The effects of the best candidate, whatever the verdict."
     )
     provenance: dict[str, Any] = Field(
-        default={}, description="Digests of configuration and source, versions of libraries."
+        default={},
+        description="Version, digests of source, campaign and configuration, seed.",
+    )
+    cost: Cost | None = Field(default=None, description="CPU time and simulations by stage.")
+    ambiguity_probability: list[Probability] = Field(
+        default=[], description="Probability of each set of the ambiguity set, in its order."
+    )
+    probability_none: Probability | None = Field(
+        default=None, description="Probability that nothing is missing."
+    )
+    probability_something_else: Probability | None = Field(
+        default=None, description="Probability that what is missing is not in the catalogue."
+    )
+    withdrawn: Withdrawn | None = Field(
+        default=None, description="What was tried and made records worse that took no part."
     )
 
     @model_validator(mode="after")
@@ -197,6 +257,8 @@ class Verdict(_Content):
         if bool(self.ambiguity_set) != (self.verdict in WITH_AMBIGUITY_SET):
             wanted = "filled" if self.verdict in WITH_AMBIGUITY_SET else "empty"
             raise ValueError(f"ambiguity_set must be {wanted} where the verdict is {self.verdict}")
+        if len(self.ambiguity_probability) not in (0, len(self.ambiguity_set)):
+            raise ValueError("ambiguity_probability must have one number per set of ambiguity_set")
         return self
 
     def shown_effects(self) -> list[FoundEffect]:
@@ -216,12 +278,15 @@ def not_testable(
     next_measurement: str | None = None,
     misfit: MisfitBySplit = NO_MISFIT,
     regions: Sequence[dict[str, Any]] = (),
+    cost: dict[str, Any] | None = None,
 ) -> Verdict:
     """Return the verdict on a campaign that can not be judged.
 
     checks: rows as in CheckResult, at least one with level refuse; next_measurement: a sentence;
-    regions: rows as in Region, where a linear model could be compared with the records.
+    regions: rows as in Region, where a linear model could be compared with the records; cost: as
+    Cost, nothing where None.
     """
+    cost = {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}} if cost is None else cost
     return Verdict.from_values(
         {
             "verdict": "not_testable",
@@ -235,9 +300,10 @@ def not_testable(
             "p_global_before": None,
             "p_global_after": None,
             "checks": checks,
-            "seconds": 0.0,
-            "simulations": 0,
+            "seconds": cost["cpu_seconds"],
+            "simulations": cost["simulations"],
             "provenance": provenance,
+            "cost": cost,
         }
     )
 

@@ -15,14 +15,14 @@ from vibroimpact.completion.trial import Records
 from vibroimpact.config.measured_structure import ELSEWHERE
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, METHODS, ORANGE, RED, ordered_colours
-from vibroimpact.integration.steady_response import steady_elements
+from vibroimpact.integration.steady_response import steady_series
 
 KINDS = (
     ("error_linear", "linear, lowest level", ORANGE),
     ("error_refitted", "linear, identified again", BLUE),
     ("error_completed", "completed", GREEN),
 )
-LOOP_PERIODS = 4
+LOOP_PERIODS, LOOP_POINTS = 4, 12000
 # The participation of an unmeasured place has an arbitrary scale.
 LOOPS = {ELSEWHERE: ("own_displacement", "own_force")}
 RESPONSES = {
@@ -304,8 +304,10 @@ def restoring_force(study, trial, records):
         "restoring_force",
         f"{study.name}: force of what was added",
         "Force of the added law over its displacement in the steady state of the completed model,"
-        " at the highest level (red) and at the lowest (blue). It is the change against the linear"
-        " structure: a straight falling line is a softer spring, a loop takes energy.",
+        " at the highest level (red) and at the lowest (blue): both of one instant, at every time"
+        " step of the simulation, without a filter, so that a law without memory is a curve and"
+        " only one that takes energy is a loop. No sensor measures this force. It is the change"
+        " against the linear structure: a straight falling line is a softer spring.",
         [places],
         size=(7.6, 3.6),
     )
@@ -314,17 +316,14 @@ def restoring_force(study, trial, records):
         [term.place for term in trial.terms], [LAWS[term.law].elements for term in trial.terms]
     )
     for colour, index in ((RED, len(records.levels) - 1), (BLUE, 0)):
-        drive, lane = next(
-            (drive, part.index(index)) for part, drive, _ in records.groups if index in part
-        )
-        motion, force = steady_elements(model, drive, periods_before=LOOP_PERIODS)
+        part, *drive = next(group for group in records.groups if index in group[0])
+        drive, samples = records.with_offsets(trial, part, *drive)
+        motion, force = steady_series(model, drive, samples, LOOP_PERIODS)
+        lane = part.index(index)
         for place in places:
             own = np.flatnonzero(counts == place)
-            signals = [
-                np.fft.irfft(_padded(lines, drive.steps), drive.steps) * drive.steps
-                for lines in (motion[own[0], lane], -force[own, lane].sum(axis=0))
-            ]
-            keep = slice(0, drive.steps, max(1, drive.steps // 12000))
+            signals = motion[own[0], lane], -force[own, lane].sum(axis=0)
+            keep = slice(0, drive.steps, max(1, drive.steps // LOOP_POINTS))
             across, up = (
                 ("output_V", "restoring_V")
                 if study.units
@@ -343,9 +342,3 @@ def restoring_force(study, trial, records):
         sheet.axes[place].set_title(place, fontsize=9)
     sheet.legend(sheet.axes[places[0]], fontsize=7)
     return sheet
-
-
-def _padded(lines, steps):
-    out = np.zeros(steps // 2 + 1, complex)
-    out[: lines.size] = lines
-    return out
