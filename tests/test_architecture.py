@@ -50,6 +50,7 @@ PACKAGES = (
     "effects",
     "discrepancy",
     "completion",
+    "missing_effect",
     "acceptance",
     "validation",
     "reports",

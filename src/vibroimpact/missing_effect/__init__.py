@@ -1,0 +1,1 @@
+"""Names the effect that a model lacks, with a probability for every explanation."""

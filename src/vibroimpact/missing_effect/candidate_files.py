@@ -1,0 +1,69 @@
+"""candidates/<name>.json: the parameters of every explanation that was run more than screened."""
+
+import json
+
+import numpy as np
+
+from vibroimpact.records import plain_values, write_text
+
+from . import constants
+from .decision import weighted_interval
+from .evidence import log_likelihoods
+
+POINTS = 41  # along a parameter
+
+
+def write(search, decision, folder):
+    """Write the file of every explanation of a Search whose runs go beyond screening, and of the
+    one that a Decision chose.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, chance, _ in decision.rows:
+        trial = search.trials[name]
+        if len(trial.noise) > trial.screened:
+            content = {
+                "ids": trial.candidate.ids,
+                "name": name,
+                "gain": search.fits[name].log_evidence,
+                "probability": chance,
+                **parameters_of(search, name),
+                "by_level": [],
+            }
+            file = f"{name.replace('@', '_at_').replace('+', '_and_')}.json"
+            write_text(json.dumps(plain_values(content), indent=1), folder / file)
+
+
+def parameters_of(search, name):
+    """Return {"profile": [...], "parameters": {...}} of an explanation."""
+    trial, found = search.trials[name], search.fits[name]
+    emulator, law = search.emulator(name), constants.LAWS[0][0]
+    low, high = weighted_interval(found.samples, found.weight)
+    profile, parameters, first = [], {}, 0
+    parts = trial.candidate.parts(found.unit)
+    for candidate, own in parts:
+        inside = slice(first, first + len(own))
+        interval = np.stack([low[inside], high[inside]], axis=1)
+        estimate = candidate.estimate(own, interval, search.scales)
+        run = [candidate.physical(unit, search.scales) for unit in trial.unit[:, inside]]
+        for number, parameter in enumerate(candidate.effect.parameters):
+            units = np.repeat(found.unit[None], POINTS, axis=0)
+            units[:, first + number] = np.linspace(0.0, 1.0, POINTS)
+            chance = constants.POWER * log_likelihoods(emulator, units, search.null, law)[0]
+            prefix = "" if len(parts) == 1 else f"{candidate.effect.reported}."
+            profile.append(
+                {
+                    "parameter": prefix + parameter.name,
+                    "unit": parameter.unit,
+                    "values": [
+                        candidate.physical(unit, search.scales)[parameter.name]
+                        for unit in units[:, inside]
+                    ],
+                    "score": chance.tolist(),
+                    "simulated": sorted({point[parameter.name] for point in run}),
+                }
+            )
+            parameters[prefix + parameter.name] = dict(
+                zip(("value", "low", "high"), estimate[parameter.name], strict=True)
+            ) | {"unit": parameter.unit}
+        first += len(own)
+    return {"profile": profile, "parameters": parameters}

@@ -1,0 +1,29 @@
+"""Every constant that decides what is named, with its source."""
+
+# Prior probabilities, stated and not tuned.
+NOTHING = 0.3  # that nothing is missing
+SOMETHING_ELSE = 0.1  # that an effect is missing which the catalogue does not hold
+PAIRS = 0.1  # of all that is left: two effects of the catalogue
+NAMED = 0.9  # probability from which an explanation is named, or a set of them given
+# Power of the likelihood: values of one record are less independent than their covariance, of few
+# runs, says.
+POWER = 0.5
+
+# What laws of one effect differ by, as a share of what the effect changes: of each value, and of
+# all values of a group of channels together. Measured between this code and an independent one.
+# (share, prior probability): none, that between two codes of one law, that between laws of a
+# family.
+LAWS = ((0.02, 0.4), (0.08, 0.4), (0.3, 0.2))
+LAW_COMMON = 2.0  # times the share: all values of a group of channels together
+# Changes smaller than this, squared and in units of the scatter, cannot be told from nothing.
+SEEN = 30.0
+
+# Something else looks like effects do, and in part like none: the share of its variance that is
+# the same in all values; its size, in units of the scatter.
+WHITE = 0.2
+SIZES = (0.3, 30.0)
+
+# Runs.
+NULL_DRAWS = 12  # of nuisances
+SCREENED_S = 12.0
+LENGTHS = (0.1, 0.2, 0.4, 0.8)  # of the searched range: how far a simulated point tells

@@ -1,0 +1,158 @@
+"""What is said of the probabilities: named, ambiguous, partly explained, unknown, or none."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.verdict.content import Conclusion
+
+from . import constants
+
+ELSE = "+?"  # after an explanation beside something else
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The explanation that completes the model: candidate, unit (parameter,) from 0 to 1 and
+    interval (parameter, 2) of 90 %; law_fits: whether its law leaves nothing; probability.
+    """
+
+    candidate: object
+    unit: np.ndarray
+    interval: np.ndarray
+    law_fits: bool
+    probability: float
+    nuisance: object = None
+
+
+@dataclass(frozen=True)
+class Decision:
+    """verdict; chosen: the Chosen, None; ambiguity [[id]] with probabilities (set,); nothing,
+    something_else: probabilities; rows [(name, probability, log probability)] of explanations, the
+    most probable first; linear_ids: what the lowest record told.
+    """
+
+    verdict: Conclusion
+    chosen: Chosen | None
+    ambiguity: list
+    probabilities: list
+    nothing: float
+    something_else: float
+    rows: list
+    linear_ids: tuple = ()
+
+
+def decide(chances, fits, linear):
+    """Return the Decision of {name: log probability} (search.posterior) and {name: Fit}.
+
+    linear: [(ids, probability)] of what the lowest record told, the most probable first, empty
+    where it told nothing: every explanation is beside it, or in its place.
+    """
+    chances = {name: float(np.exp(chance)) for name, chance in chances.items()}
+    rows = explanations(chances)
+    nothing, other = chances["nothing"], chances["something else"]
+    sets = ambiguity_sets(rows, nothing, linear)
+    best = rows[0] if rows and rows[0][1] > nothing else None
+    chosen = None if best is None else chosen_of(best, chances, fits)
+    reached, together = smallest(sets)
+    if best is None or other > 0.5:
+        if linear:
+            verdict = "partly_explained" if other > 0.5 else "named"
+            reached, together = smallest(linear)
+            verdict = "ambiguous" if verdict == "named" and len(together) > 1 else verdict
+        else:
+            verdict = "unknown" if other > nothing else "none"
+        chosen = None
+    elif reached < constants.NAMED:
+        verdict = "partly_explained" if rows[0][1] > 0.5 else "unknown"
+        chosen = chosen if verdict == "partly_explained" else None
+    else:
+        verdict = "named" if len(together) == 1 else "ambiguous"
+    told = verdict in ("named", "ambiguous", "partly_explained")
+    return Decision(
+        verdict,
+        chosen,
+        [list(ids) for ids, _ in together] if told else [],
+        [chance for _, chance in together] if told else [],
+        nothing,
+        other,
+        rows,
+        linear[0][0] if linear else (),
+    )
+
+
+def withdrawn_decision(decision):
+    """Return the Decision where what was chosen is not offered: it makes records worse that took no
+    part.
+    """
+    return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
+
+
+def explanations(chances):
+    """Return [(name, probability, share of it beside something else)] of explanations, with or
+    without something else, the most probable first.
+    """
+    both = {}
+    for name, chance in chances.items():
+        if name in ("nothing", "something else"):
+            continue
+        plain, beside = both.setdefault(name.removesuffix(ELSE), [0.0, 0.0])
+        both[name.removesuffix(ELSE)] = (
+            [plain, beside + chance] if name.endswith(ELSE) else [plain + chance, beside]
+        )
+    rows = [
+        (name, plain + beside, beside / max(plain + beside, 1.0e-300))
+        for name, (plain, beside) in both.items()
+    ]
+    return sorted(rows, key=lambda row: -row[1])
+
+
+def ambiguity_sets(rows, nothing, linear):
+    """Return [(ids, probability)], the most probable first, of sets of ids that explain the
+    campaign.
+    """
+    out = {}
+    beside = linear or [((), 1.0)]
+    for name, chance, _ in rows:
+        candidate = candidate_named(name)
+        for ids, share in [((), 1.0)] if candidate.alone else beside:
+            key = tuple(sorted({*ids, *candidate.ids}))
+            out[key] = out.get(key, 0.0) + chance * share
+    if linear:
+        for ids, share in linear:
+            key = tuple(sorted(ids))
+            out[key] = out.get(key, 0.0) + nothing * share
+    return sorted(out.items(), key=lambda row: -row[1])
+
+
+def smallest(sets):
+    """Return (probability, sets): the fewest that reach constants.NAMED, all where none do."""
+    reached, out = 0.0, []
+    for ids, chance in sets:
+        if reached >= constants.NAMED:
+            break
+        reached, out = reached + chance, [*out, (ids, chance)]
+    return reached, out
+
+
+def chosen_of(row, chances, fits):
+    """Return the Chosen of a row of explanations."""
+    name, chance, beside = row
+    found = fits[name]
+    low, high = weighted_interval(found.samples, found.weight)
+    laws = np.exp(found.by_law - found.by_law.max())
+    other_law = beside > 0.5 or laws[-1] > laws[:-1].sum()
+    return Chosen(
+        candidate_named(name), found.unit, np.stack([low, high], axis=1), not other_law, chance
+    )
+
+
+def weighted_interval(samples, weight, ends=(0.05, 0.95)):
+    """Return (low, high), (parameter,) each, that hold 90 % of samples (sample, parameter)."""
+    out = np.empty((2, samples.shape[1]))
+    for number, column in enumerate(samples.T):
+        order = np.argsort(column)
+        known = np.cumsum(weight[order])
+        out[:, number] = np.interp(ends, known / known[-1], column[order])
+    return out

@@ -1,0 +1,23 @@
+"""How much is spent on a verdict: one dial on one path."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Effort:
+    """compared_s, screened_s: of every record that runs last; rounds: of the race, at most; width:
+    explanations in a round; pairs: second effects that are tried beside each leading one.
+    """
+
+    compared_s: float
+    screened_s: float
+    rounds: int
+    width: int
+    pairs: int
+
+
+EFFORTS = {
+    "quick": Effort(16.0, 8.0, 1, 3, 0),
+    "standard": Effort(24.0, 8.0, 4, 4, 6),
+    "thorough": Effort(48.0, 16.0, 8, 6, 12),
+}

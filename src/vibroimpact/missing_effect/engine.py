@@ -1,0 +1,128 @@
+"""From a campaign and a model to a verdict: every stage in order."""
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.cost import SIMULATED
+from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
+from vibroimpact.stopwatch import Stopwatch
+
+from . import search as searching
+from . import so_far, verdict
+from .decision import decide
+from .effort import EFFORTS, Effort
+from .linear_sets import linear_sets
+from .null import null_of
+from .verification import closing
+
+OPEN = 0.3  # probability of something else, beside an explanation or alone, from which two effects
+# are looked for
+ROOM = 20.0  # of log evidence: two effects can gain no less than they cost
+EXPLAINED = 0.8  # chi-square per value of a model that explains a record
+
+
+@dataclass
+class Engine:
+    """A checked Config against a campaign file; folder of the results; effort: a key of EFFORTS;
+    seed of all draws. cost {stage: CPU seconds}, simulated {stage: records}.
+    """
+
+    config: object
+    campaign: str
+    folder: Path
+    effort: str = "standard"
+    seed: int = 0
+    cost: Stopwatch = field(default_factory=Stopwatch)
+    simulated: dict = field(default_factory=dict)
+
+    @property
+    def spent(self) -> Effort:
+        """Return the Effort."""
+        return EFFORTS[self.effort]
+
+    @contextmanager
+    def stage(self, name):
+        """Count what a `with` block costs under the name of a stage."""
+        known = SIMULATED["records"]
+        with self.cost(name):
+            yield
+        self.simulated[name] = SIMULATED["records"] - known
+
+    def run(self, provenance):
+        """Write verdict.json and what belongs to it into the folder."""
+        with self.stage("linear stage"):
+            prepared = prepare(self.config, self.campaign, draw=self.seed)
+        if prepared.refusal is not None:
+            verdict.refused(self, prepared, provenance)
+            return
+        search = self.null_stage(prepared)
+        so_far.write(self.folder, search, prepared)
+        with self.stage("screening"):
+            searching.screen(search, searching.first_explanations(screened(prepared)))
+        so_far.write(self.folder, search, prepared)
+        with self.stage("refinement"):
+            self.refine(search)
+        with self.stage("two effects"):
+            self.seek_pairs(search)
+        decision = decide(searching.posterior(search), search.fits, linear_sets(prepared))
+        with self.stage("verification"):
+            given, whole = self.whole_benches(prepared)
+            closed = closing(given, whole, decision.chosen, prepared.scales)
+        verdict.write(self, prepared, search, decision, closed, provenance)
+
+    def null_stage(self, prepared):
+        """Return the Search with its Null."""
+        with self.stage("null"):
+            bench = workbench(self.config, self.campaign, prepared, self.spent.compared_s)
+            short = workbench(self.config, self.campaign, prepared, self.spent.screened_s)
+            records = bench.signals.fit()
+            if bench.reads_lowest:
+                records = records[records != bench.signals.lowest]
+            null = null_of(bench, short, records, 0)
+        return searching.Search(bench, short, null, prepared.scales)
+
+    def refine(self, search):
+        """Run what may be the answer until it is known, its other places too."""
+        searching.race(search, self.spent.rounds, self.spent.width)
+        chances = searching.posterior(search)
+        for name in searching.leaders(search, 1):
+            if chances[name] > chances["nothing"]:
+                searching.elsewhere_too(search, search.bench.values, name)
+                searching.race(search, self.spent.rounds, self.spent.width)
+
+    def seek_pairs(self, search):
+        """Look for two effects where one leaves room for a second."""
+        chances = searching.posterior(search)
+        open_ = sum(
+            np.exp(chance)
+            for name, chance in chances.items()
+            if name == "something else" or name.endswith("+?")
+        )
+        left = min([search.fits[name].left for name in searching.leaders(search, 3)], default=0.0)
+        room = 0.25 * (left - EXPLAINED * search.null.values)
+        if self.spent.pairs and open_ > OPEN and room > ROOM:
+            searching.seek_pairs(search, seconds=self.spent.pairs)
+            searching.race(search, self.spent.rounds, self.spent.width, pairs=True)
+
+    def whole_benches(self, prepared):
+        """Return (Workbench of the model as given, Workbench with what was adopted), of whole
+        records.
+        """
+        whole = workbench(self.config, self.campaign, prepared, prepared.longest_s)
+        if prepared.adopted is None:
+            return whole, whole
+        bare = replace(prepared, adopted=None, fit=None)
+        return workbench(self.config, self.campaign, bare, prepared.longest_s), whole
+
+
+def screened(prepared: Prepared):
+    """Return the names of what is run: beside what the lowest record told, or in its place."""
+    return [
+        candidate.name
+        for name in prepared.screened
+        for candidate in prepared.beside_or_in_place(candidate_named(name))
+    ] or prepared.screened

@@ -1,0 +1,120 @@
+"""What records look like where nothing is missing: the bare model with its nuisances drawn."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy import linalg, stats
+
+from vibroimpact.discrepancy.features import FeatureLayout, compressed
+from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, shrunk
+from vibroimpact.discrepancy.null import bursting, driven_channels
+from vibroimpact.integration.kernels.lanes import LANES
+
+from . import constants
+from .nuisances import nuisance_draws
+
+
+@dataclass(frozen=True)
+class Null:
+    """records (record,) that are compared; layout: FeatureLayout; features (record, run, feature)
+    of the model's runs, of which mean (record, feature); screened_mean: the same of the shorter
+    stretch; factor (record, feature, feature): Cholesky factors of the covariance of a record about
+    the mean; measured (value,): the whitened difference of the measurement from it; groups
+    (value,): whether the force drives the channel.
+
+    A value is a feature of a record in units of the covariance, all records in a row.
+    """
+
+    records: np.ndarray
+    layout: FeatureLayout
+    features: np.ndarray
+    screened_mean: np.ndarray
+    factor: np.ndarray
+    measured: np.ndarray
+    groups: np.ndarray
+
+    @cached_property
+    def mean(self):
+        """Return (record, feature)."""
+        return self.features.mean(axis=1)
+
+    @property
+    def covariance(self):
+        """Return (record, feature, feature)."""
+        return self.factor @ self.factor.transpose(0, 2, 1)
+
+    @property
+    def seed_variance(self):
+        """Return (record, feature): the variance of one run."""
+        return self.features.var(axis=1, ddof=1)
+
+    @property
+    def seeds(self):
+        """Return the number of runs of every record."""
+        return self.features.shape[1]
+
+    @property
+    def values(self):
+        """Return the number of values."""
+        return self.measured.size
+
+    def change(self, features, screened=False):
+        """Return (value,): what features (record, feature) differ by from the mean; screened: they
+        are of the shorter stretch.
+        """
+        mean = self.screened_mean if screened else self.mean
+        return np.concatenate(
+            [
+                linalg.solve_triangular(factor, row, lower=True)
+                for factor, row in zip(
+                    self.factor, compressed(features - mean, self.layout), strict=True
+                )
+            ]
+        )
+
+    def probability(self, rest=None):
+        """Return how probable a measurement as far off a model as rest (value,) is by chance; as
+        far off the null as it is where None.
+        """
+        rest = self.measured if rest is None else rest
+        return float(stats.chi2.sf(rest @ rest, self.values))
+
+
+def null_of(bench, short, records, seed):
+    """Return the Null of the records of a Workbench of whole records and of one of the stretch that
+    is screened.
+    """
+    seeds = max(1, LANES // len(records))
+    whole, screened = [], []
+    for number, nuisance in enumerate(nuisance_draws(bench, constants.NULL_DRAWS, seed)):
+        there = bench.corrected_by(nuisance)
+        runs = bench.runs(records, seeds, seed + seeds * number)
+        responses = there.respond(there.model(), runs)
+        whole.append(bench.noisy_features(runs, responses).reshape(len(records), seeds, -1))
+        screened.append(short.noisy_features(runs, responses).reshape(len(records), seeds, -1))
+    whole, screened = np.concatenate(whole, axis=1), np.concatenate(screened, axis=1)
+    null = _scatter(bench, records, whole, screened.mean(axis=1))
+    return replace(null, measured=null.change(bench.measured_features[records]))
+
+
+def _scatter(bench, records, features, screened_mean):
+    """Return the Null of features (record, run, feature) without its measurement."""
+    layout, driven = bench.layout, driven_channels(bench)
+    count, common = features.shape[1], free_directions(layout, driven)
+    factors = []
+    for row, burst in zip(features, bursting(bench, records, driven), strict=True):
+        covariance = shrunk(compressed(row - row.mean(axis=0), layout), count - 1)
+        covariance = covariance * (1.0 + 1.0 / count) + common.T @ common
+        covariance += np.diag(feature_sd(layout) ** 2 + (burst * layout.blend) ** 2)
+        factors.append(linalg.cholesky(covariance, lower=True))
+    groups = np.tile(driven[layout.channel].astype(int), len(records))
+    return Null(
+        np.asarray(records),
+        layout,
+        features,
+        screened_mean,
+        np.array(factors),
+        np.zeros(0),
+        groups,
+    )

@@ -1,0 +1,299 @@
+"""The search: every explanation is run at a few points, the likely ones at more, until one is sure
+or nothing more is to be learned.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.special import logsumexp
+
+from vibroimpact.config.reading import ConfigError
+from vibroimpact.discrepancy.candidates import Pair, candidate_named, elsewhere, other_places
+from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.kernels.lanes import LANES
+
+from . import constants
+from .evidence import SomethingElse, fit
+from .null import Null
+from .trials import Emulator, PairEmulator, Trial
+
+
+@dataclass
+class Search:
+    """A Workbench of what is compared and one of what is screened, the Null, and all Trials so far
+    {name: Trial} with their Fits {name: Fit}.
+    """
+
+    bench: Workbench
+    short: Workbench
+    null: Null
+    scales: dict
+    trials: dict = field(default_factory=dict)
+    fits: dict = field(default_factory=dict)
+    seed: int = 1000
+
+    def run(self, name, units, screened=False):
+        """Run an explanation at units (point, parameter) and fit it again; what cannot be run is
+        kept as failed.
+        """
+        candidate = candidate_named(name)
+        trial = self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
+        for unit in np.atleast_2d(units):
+            try:
+                trial.add(unit, *self._change(candidate, unit, screened))
+            except (IntegrationError, ConfigError) as error:
+                trial.failed.append((unit, str(error)))
+        if screened:
+            trial.screened = len(trial.noise)
+        self.fit(name)
+
+    def fit(self, name):
+        """Fit an explanation again, if it has runs."""
+        trial = self.trials[name]
+        if not len(trial.noise):
+            return
+        start = trial.unit[np.argmin(np.sum((self.null.measured - trial.change) ** 2, axis=1))]
+        self.fits[name] = fit(self.emulator(name), trial.unit.shape[1], self.null, start)
+
+    def emulator(self, name):
+        """Return the Emulator, or PairEmulator, of an explanation that has runs."""
+        trial = self.trials[name]
+        if isinstance(trial.candidate, Pair):
+            first, second = (
+                self.emulator(part.name) for part in (trial.candidate.first, trial.candidate.second)
+            )
+            return PairEmulator(trial, first, second, trial.candidate.split)
+        return Emulator(trial, neutral_unit(trial.candidate, self.scales))
+
+    def _change(self, candidate, unit, screened):
+        """Return (change (value,), variance of a value) of one batch of runs."""
+        bench = self.short if screened else self.bench
+        records, physical = self.null.records, candidate.physical(unit, self.scales)
+        seeds = max(1, LANES // len(records))
+        runs = bench.runs(records, seeds, self.seed)
+        self.seed += seeds
+        features = bench.features(
+            bench.model(bench.variant(candidate, physical)),
+            runs,
+            candidate.measuring(physical, bench.signals.names),
+        ).reshape(len(records), seeds, -1)
+        if np.isnan(features).any():
+            raise IntegrationError("a run was thrown off")
+        each = np.array([self.null.change(features[:, run], screened) for run in range(seeds)])
+        noise = each.var(axis=0, ddof=1).mean() if seeds > 1 else 1.0
+        return self.null.change(features.mean(axis=1), screened), noise / seeds
+
+    def something_else(self):
+        """Return the SomethingElse of all trials."""
+        trials = [trial for trial in self.trials.values() if trial.screened]
+        return SomethingElse(
+            np.vstack([trial.change[: trial.screened] for trial in trials]),
+            np.concatenate([trial.noise[: trial.screened] for trial in trials]),
+            self.null,
+        )
+
+    def explains(self, rest):
+        """Return {name: chi-square of rest (value,) that the best direction of an explanation's
+        runs takes away}, of those screened.
+        """
+        out = {}
+        for name, trial in self.trials.items():
+            if not trial.screened:
+                continue
+            size = np.sum(trial.change**2, axis=1) - trial.noise * self.null.values
+            seen = size > constants.SEEN
+            along = np.maximum(trial.change @ rest, 0.0)
+            out[name] = float(np.max(np.where(seen, along**2 / np.maximum(size, 1.0), 0.0)))
+        return out
+
+
+BELOW = -0.2  # of the searched range: where an effect is nothing whose size is searched in its
+# logarithm from little to much
+
+
+def neutral_unit(candidate, scales):
+    """Return (parameter,) normalised where an explanation changes nothing, None where its range
+    holds no such place and does not lead to one.
+    """
+    unit = candidate.neutral_unit(scales)
+    for number, parameter in enumerate(candidate.effect.parameters):
+        if parameter.log and parameter.neutral == 0.0:
+            unit[number] = BELOW
+    return unit if np.isfinite(unit).all() else None
+
+
+def posterior(search):
+    """Return {name: log probability}, the most probable first, of nothing, something else, every
+    explanation, and every one of them beside something else (its name with "+?").
+    """
+    else_ = search.something_else()
+    families = {}
+    for name in search.fits:
+        families.setdefault(family_of(name), []).append(name)
+    pairs = [family for family in families if "+" in family]
+    rest = 1.0 - constants.NOTHING - constants.SOMETHING_ELSE
+    out = {
+        "nothing": np.log(constants.NOTHING),
+        "something else": np.log(constants.SOMETHING_ELSE)
+        + else_.log_evidence(np.zeros(search.null.values)),
+    }
+    catalogue = {candidate_named(name).effect_id for name in search.fits if "+" not in name}
+    for family, names in families.items():
+        share = (
+            constants.PAIRS / max(len(catalogue) ** 2 / 2.0, 1.0)
+            if family in pairs
+            else (1.0 - constants.PAIRS) / max(len(families) - len(pairs), 1)
+        )
+        for name in names:
+            known = np.log(rest * share / len(names))
+            found = search.fits[name]
+            out[name] = known + found.log_evidence
+            gone = 0.5 * (search.null.measured @ search.null.measured - found.left)
+            occam = found.log_evidence - constants.POWER * gone  # what its parameters cost
+            out[name + "+?"] = (
+                known
+                + np.log(constants.SOMETHING_ELSE)
+                + else_.log_evidence(found.mean)
+                + min(occam, 0.0)
+            )
+    total = logsumexp(list(out.values()))
+    return {name: value - total for name, value in sorted(out.items(), key=lambda row: -row[1])}
+
+
+def family_of(name):
+    """Return the ids of an explanation's effects."""
+    return "+".join(sorted(candidate_named(name).ids))
+
+
+FIRST = {1: ((0.3,), (0.75,)), 2: ((0.3, 0.3), (0.7, 0.7)), 3: ((0.3, 0.3, 0.3), (0.7, 0.7, 0.7))}
+SECOND = {1: ((0.55,), (0.92,)), 2: ((0.3, 0.7), (0.7, 0.3)), 3: ((0.3, 0.7, 0.5), (0.7, 0.3, 0.5))}
+VECTOR = ((0.65, 0.5), (0.5, 0.65)), ((0.35, 0.5), (0.5, 0.35))
+
+
+def first_points(candidate, again=False):
+    """Return (point, parameter): where an explanation is run first; where it is run again."""
+    count = len(candidate.effect.parameters)
+    if count == 2 and len(candidate.signed) == 2:
+        return np.array(VECTOR[again])
+    return np.array((SECOND if again else FIRST)[count])
+
+
+def first_explanations(screened, places=3):
+    """Return the names to begin with: of every effect `places` places at most."""
+    by_effect = {}
+    for name in screened:
+        by_effect.setdefault(candidate_named(name).effect_id, []).append(name)
+    return [name for names in by_effect.values() for name in names[:places]]
+
+
+MAY = 0.25  # of the chi-square that the best direction takes away
+LEAST = 5
+
+
+def screen(search, names):
+    """Run every explanation at its first points, and those that may explain the measurement at
+    more.
+    """
+    for name in names:
+        search.run(name, first_points(candidate_named(name)), screened=True)
+    explains = search.explains(search.null.measured)
+    order = sorted(explains, key=lambda name: -explains[name])
+    for name in order:
+        if explains[name] > MAY * explains[order[0]] or name in order[:LEAST]:
+            search.run(name, first_points(candidate_named(name), again=True), screened=True)
+
+
+def refine(search, names, points):
+    """Run explanations at `points` points each, drawn from what is known of their parameters."""
+    random = np.random.default_rng(search.seed)
+    for name in names:
+        found = search.fits[name]
+        drawn = found.samples[random.choice(len(found.samples), points - 1, p=found.weight)]
+        moved = drawn + 0.04 * random.standard_normal(drawn.shape)
+        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0))
+
+
+DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
+RUNS = 12  # of an explanation at most, beside those screened
+LEAST_RUNS = 3
+KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
+
+
+def contenders(search, chances, pairs=False):
+    """Return the names of explanations that may yet be as probable as the best and are not known
+    well enough, the most probable first.
+
+    chances {name: log probability}. What an emulator does not know may hide some.
+    """
+    likely, upper = {}, {}
+    for name, chance in chances.items():
+        plain = name.removesuffix("+?")
+        if plain in search.fits and ("+" in plain) == pairs:
+            more = 0.5 * constants.POWER * search.fits[plain].hidden
+            likely[plain] = max(likely.get(plain, -np.inf), chance)
+            upper[plain] = likely[plain] + more
+    best = max(chances.values())
+    left = [
+        name
+        for name in upper
+        if upper[name] > best - DECIDED
+        and search.trials[name].refined < RUNS
+        and (upper[name] - likely[name] > KNOWN or search.trials[name].refined < LEAST_RUNS)
+    ]
+    # by turns the likeliest, and those that may be likelier than is known
+    rows = [sorted(left, key=lambda name: -known[name]) for known in (likely, upper)]
+    return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
+
+
+def race(search, rounds, width=4, pairs=False, points=2):
+    """Run contenders, `width` at a time, until none is left or the rounds are over."""
+    for _ in range(rounds):
+        names = contenders(search, posterior(search), pairs)[:width]
+        if not names:
+            return
+        refine(search, names, points)
+
+
+def leaders(search, count, pairs=False):
+    """Return the `count` most probable explanations, with or without something else."""
+    names = dict.fromkeys(name.removesuffix("+?") for name in posterior(search))
+    found = [name for name in names if name in search.fits and ("+" in name) == pairs]
+    return found[:count]
+
+
+def elsewhere_too(search, values, name):
+    """Run a leading explanation at other places: of an effect at a point at the other points, of
+    one at all supports at each of them alone.
+    """
+    candidate, unit = candidate_named(name), search.fits[name].unit
+    for other in [*other_places(candidate, values), *elsewhere(candidate, values)]:
+        if other.name not in search.trials:
+            search.run(other.name, unit)
+
+
+def seek_pairs(search, firsts=2, seconds=6):
+    """Run the leading explanations with a second effect each, of those that may explain what the
+    first leaves; return the pairs' names.
+    """
+    out = []
+    for first in leaders(search, firsts):
+        found = search.fits[first]
+        explains = search.explains(search.null.measured - found.mean)
+        own = candidate_named(first)
+        order = [
+            name
+            for name in sorted(explains, key=lambda name: -explains[name])
+            if not set(candidate_named(name).ids) & set(own.ids) and "+" not in name
+        ]
+        for second in order[:seconds]:
+            pair = Pair(own, candidate_named(second)).name
+            reverse = Pair(candidate_named(second), own).name
+            if pair in search.trials or reverse in search.trials:
+                continue
+            rest = search.null.measured - found.mean
+            trial = search.trials[second]
+            near = trial.unit[np.argsort(np.sum((rest - trial.change) ** 2, axis=1))[:2]]
+            search.run(pair, np.hstack([np.tile(found.unit, (len(near), 1)), near]))
+            out.append(pair)
+    return out

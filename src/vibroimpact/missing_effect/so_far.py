@@ -1,0 +1,58 @@
+"""What is known while the search goes on: whether anything is missing, where, and which effects are
+left.
+"""
+
+import json
+
+import numpy as np
+
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.records import plain_values, write_text
+
+from .search import posterior
+
+WORST = 5  # places that are told
+
+
+def write(folder, search, prepared):
+    """Write so_far.json of a Search into the folder."""
+    null = search.null
+    content = {
+        "probability_by_chance": null.probability(),
+        "lowest_record": None if prepared.adopted is None else prepared.adopted["name"],
+        "where": where(null, search.bench.signals),
+        "effects": [],
+    }
+    if search.fits:
+        chances = posterior(search)
+        content["probability_none"] = np.exp(chances["nothing"])
+        content["probability_something_else"] = np.exp(chances["something else"])
+        content["effects"] = [
+            {"ids": list(ids), "probability": chance} for ids, chance in by_effect(chances)
+        ]
+    write_text(json.dumps(plain_values(content), indent=1), folder / "so_far.json")
+
+
+def by_effect(chances):
+    """Return [(ids, probability)] of {name: log probability}, the most probable first."""
+    out = {}
+    for name, chance in chances.items():
+        if name not in ("nothing", "something else"):
+            ids = tuple(sorted(candidate_named(name.removesuffix("+?")).ids))
+            out[ids] = out.get(ids, 0.0) + float(np.exp(chance))
+    return sorted(out.items(), key=lambda row: -row[1])
+
+
+def where(null, signals):
+    """Return the rows of channels and records that are farthest off, in sigmas of a feature."""
+    whole = null.measured.reshape(len(null.records), -1)
+    rows = [
+        {
+            "record": signals.record_names[record],
+            "channel": name,
+            "rms_z": float(np.sqrt(np.mean(row[null.layout.channel == channel] ** 2))),
+        }
+        for record, row in zip(null.records, whole, strict=True)
+        for channel, name in enumerate(signals.names)
+    ]
+    return sorted(rows, key=lambda row: -row["rms_z"])[:WORST]

@@ -1,0 +1,219 @@
+"""The files of a verdict: verdict.json, ranking.csv, the maps before and after, the candidates and
+the model that runs.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.discrepancy import mapping, misfit, power_balance
+from vibroimpact.discrepancy.completed_model import not_offered, updated_model
+from vibroimpact.discrepancy.conclusion import COLUMNS, SHOWN, bounds, contract_checks, where
+from vibroimpact.discrepancy.invariances import broken_invariances
+from vibroimpact.discrepancy.next_measurement import next_measurement
+from vibroimpact.discrepancy.verdict import effects_of
+from vibroimpact.records import write_record, write_table, write_text
+from vibroimpact.verdict.content import (
+    WITH_AMBIGUITY_SET,
+    WITH_EFFECTS,
+    Misfit,
+    MisfitBySplit,
+    Verdict,
+    not_testable,
+)
+from vibroimpact.verdict.file import write_verdict
+
+from . import candidate_files
+from .decision import withdrawn_decision
+from .search import Search
+from .verification import without_chosen
+
+EMPTY = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
+
+
+def refused(engine, prepared, provenance):
+    """Write the verdict of a campaign that can not be tested."""
+    folder, nothing = Path(engine.folder), Misfit(**EMPTY)
+    write_verdict(
+        not_testable(
+            contract_checks(prepared.checks),
+            provenance,
+            next_measurement=prepared.refusal,
+            misfit=MisfitBySplit(fit=nothing, holdout=nothing),
+            cost=cost_rows(engine.cost, {}),
+        ),
+        folder / "verdict.json",
+    )
+    write_table([], folder / "ranking.csv", columns=COLUMNS)
+    for name in ("map", "map_after"):
+        write_record(
+            xr.Dataset(attrs={"title": "no map: the campaign can not be tested"}),
+            folder / f"{name}.nc",
+        )
+    write_text("# not testable: the model is as it was\n", folder / "model_updated.yaml")
+
+
+def write(engine, prepared, search, decision, closed, provenance):
+    """Write everything into the folder of an Engine."""
+    folder, bench = Path(engine.folder), search.bench
+    withdrawn = None
+    if closed.worse and decision.chosen is not None:
+        withdrawn = {
+            "effects": effects_of(prepared, decision, bench.bare),
+            "misfit": closed.misfit,
+        }
+        decision = withdrawn_decision(decision)
+        closed = without_chosen(closed)
+    given, whole = closed.benches
+    compared = mapping.z_of(given, search.null, closed.before.features)
+    after = compared
+    if closed.after is not closed.before:
+        law = None if decision.chosen is None else closed.after.compared
+        after = mapping.z_of(whole, search.null, closed.after.features, law)
+    ranking = ranking_rows(search, prepared, decision)
+    content = {
+        **decision_rows(search, prepared, decision, ranking),
+        **evidence_rows(search, prepared, decision, closed, compared),
+        "cost": cost_rows(engine.cost, engine.simulated),
+        "withdrawn": withdrawn,
+        "provenance": provenance,
+    }
+    content["seconds"] = content["cost"]["cpu_seconds"]
+    content["simulations"] = content["cost"]["simulations"]
+    write_verdict(Verdict.from_values(content), folder / "verdict.json")
+    write_table(ranking, folder / "ranking.csv", columns=(*COLUMNS, "probability"))
+    for name, of, runs, told in (
+        ("map", given, closed.before, compared),
+        ("map_after", whole, closed.after, after),
+    ):
+        mapped = mapping.map_dataset(of, told, runs.features, runs.shown)
+        write_record(mapped.assign_attrs(plain_attributes(provenance)), folder / f"{name}.nc")
+    candidate_files.write(search, decision, folder / "candidates")
+    write_text(
+        not_offered(withdrawn)
+        if withdrawn is not None and closed.after is closed.before
+        else updated_model(bench, decision, prepared),
+        folder / "model_updated.yaml",
+    )
+
+
+def decision_rows(search, prepared, decision, ranking):
+    """Return the part of verdict.json that says what is missing, and how sure that is."""
+    effects = effects_of(prepared, decision, search.bench.bare)
+    chosen = decision.chosen
+    fitting = "not tested" if chosen is None else "yes" if chosen.law_fits else "no"
+    own = set() if chosen is None else set(chosen.candidate.ids)
+    for row in effects:
+        row["law_fits"] = fitting if row["id"] in own else "yes"
+    filled = decision.verdict in WITH_AMBIGUITY_SET
+    return {
+        "verdict": decision.verdict,
+        "effects": effects if decision.verdict in WITH_EFFECTS else [],
+        "ambiguity_set": decision.ambiguity if filled else [],
+        "ambiguity_probability": decision.probabilities if filled else [],
+        "probability_none": decision.nothing,
+        "probability_something_else": decision.something_else,
+        "ranking": [
+            {
+                "ids": row["ids"].split("+"),
+                "heldout_score": row["heldout_score"],
+                "closed_fraction": row["closed_fraction"],
+                "location": row["location"],
+                "probability": row["probability"],
+            }
+            for row in ranking
+        ],
+        "next_measurement": next_measurement(decision.ambiguity),
+        "most_probable": effects,
+        "linear": prepared.linear[:SHOWN],
+        "not_testable": prepared.not_testable,
+    }
+
+
+def evidence_rows(search, prepared, decision, closed, compared):
+    """Return the part of verdict.json that says how far model and measurement are apart."""
+    null, (given, _) = search.null, closed.benches
+    rest = null.measured
+    if decision.chosen is not None:
+        rest = rest - search.fits[decision.chosen.candidate.name].mean
+    own = rest.reshape(len(null.records), -1)
+    count = own.shape[1]
+    return {
+        "broken_invariances": broken_invariances(
+            search.bench, null, prepared, power_balance.broken(given, closed.before.shown)
+        ),
+        "regions": (
+            []
+            if decision.verdict == "none"
+            else mapping.regions(given, *compared[:2], misfit.counted(given))
+        ),
+        "misfit": closed.misfit,
+        "p_global_before": null.probability(),
+        "p_global_after": null.probability(rest),
+        "explained_z": ((count - np.sum(own**2, axis=1)) / np.sqrt(2.0 * count)).tolist(),
+        "checks": contract_checks(prepared.checks) + bounds(decision, prepared) + left_out(search),
+    }
+
+
+def left_out(search: Search):
+    """Return the rows of checks for explanations that could not be run at all."""
+    return [
+        {
+            "check": "left out",
+            "level": "warn",
+            "record": None,
+            "channel": None,
+            "message": f"{name} could not be run and is not among the explanations:"
+            f" {trial.failed[0][1]}",
+        }
+        for name, trial in search.trials.items()
+        if trial.failed and not len(trial.noise)
+    ]
+
+
+def ranking_rows(search, prepared, decision):
+    """Return the rows of ranking.csv, the most probable first."""
+    prefix = [] if prepared.adopted is None else list(decision.linear_ids)
+    rows = []
+    excess = beyond(search.null.measured @ search.null.measured, search.null)
+    for name, chance, _ in decision.rows:
+        candidate, found = search.trials[name].candidate, search.fits[name]
+        trial = search.trials[name]
+        rows.append(
+            {
+                "ids": "+".join([*([] if candidate.alone else prefix), *candidate.ids]),
+                "location": where(name),
+                "fit_score": found.log_evidence,
+                "heldout_score": None,
+                "closed_fraction": (
+                    1.0 - beyond(found.left, search.null) / excess if excess > 0.0 else None
+                ),
+                "threshold": None,
+                "tested": len(trial.noise) > trial.screened,
+                "probability": chance,
+            }
+        )
+    return rows
+
+
+def beyond(chi_square, null):
+    """Return by how many sigmas, RMS over all values, a chi-square is beyond chance."""
+    return float(np.sqrt(max(0.0, chi_square / null.values - 1.0)))
+
+
+def cost_rows(stages, simulated):
+    """Return the `cost` of verdict.json of {stage: CPU seconds} and {stage: records simulated}."""
+    return {
+        "cpu_seconds": sum(stages.values()),
+        "simulations": int(sum(simulated.values())),
+        "by_stage": {
+            stage: {"cpu_seconds": seconds, "simulations": int(simulated.get(stage, 0))}
+            for stage, seconds in stages.items()
+        },
+    }
+
+
+def plain_attributes(provenance):
+    """Return the texts and numbers of a provenance, as attributes of a file."""
+    return {key: value for key, value in provenance.items() if isinstance(value, str | int | float)}

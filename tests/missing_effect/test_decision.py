@@ -1,0 +1,91 @@
+"""From probabilities to a verdict."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.missing_effect.decision import decide, smallest, weighted_interval
+from vibroimpact.missing_effect.evidence import Fit
+
+MASS, FRICTION, DAMPING, CROSSLEY = (
+    "added_mass@apex",
+    "dry_friction@all",
+    "contact_damping@all",
+    "hunt_crossley@all",
+)
+
+
+def fit_at(laws=(0.0, -9.0, -9.0)):
+    samples = np.linspace(0.0, 1.0, 101)[:, None]
+    return Fit(
+        50.0, np.array(laws), np.array([0.5]), samples, np.full(101, 1 / 101), np.zeros(9), 9.0, 0.0
+    )
+
+
+def decided(linear=(), fits=None, **chances):
+    names = {"friction": FRICTION, "damping": DAMPING, "crossley": CROSSLEY}
+    chances = {
+        names.get(name.removesuffix("_beside"), name.replace("_", " "))
+        + "+?" * name.endswith("_beside"): np.log(chance)
+        for name, chance in chances.items()
+    }
+    known = {name: fit_at() for name in names.values()} | (fits or {})
+    return decide(chances, known, list(linear))
+
+
+def test_one_explanation_above_nine_in_ten_is_named():
+    found = decided(nothing=0.01, something_else=0.02, friction=0.95, damping=0.02)
+    assert (found.verdict, found.ambiguity) == ("named", [["dry_friction"]])
+    assert found.probabilities == pytest.approx([0.95])
+    assert found.chosen.candidate.name == FRICTION and found.chosen.law_fits
+
+
+def test_laws_that_share_the_probability_are_ambiguous():
+    found = decided(nothing=0.01, something_else=0.02, damping=0.55, crossley=0.42)
+    assert found.verdict == "ambiguous"
+    assert found.ambiguity == [["contact_damping"], ["hunt_crossley"]]
+    assert sum(found.probabilities) >= 0.9
+
+
+def test_nothing_and_something_else_name_nothing():
+    none = decided(nothing=0.9, something_else=0.05, friction=0.05)
+    unknown = decided(nothing=0.01, something_else=0.94, friction=0.05)
+    assert (none.verdict, none.ambiguity, none.chosen) == ("none", [], None)
+    assert (unknown.verdict, unknown.ambiguity, unknown.chosen) == ("unknown", [], None)
+
+
+def test_family_is_named_where_its_law_leaves_something():
+    found = decided(nothing=0.001, something_else=0.019, friction=0.02, friction_beside=0.96)
+    assert found.verdict == "named" and not found.chosen.law_fits
+    other = decided(
+        fits={FRICTION: fit_at((-9.0, -9.0, 0.0))},
+        nothing=0.001,
+        something_else=0.019,
+        friction=0.98,
+    )
+    assert other.verdict == "named" and not other.chosen.law_fits
+
+
+def test_half_a_probability_is_part_of_an_explanation():
+    found = decided(nothing=0.01, something_else=0.39, friction=0.6)
+    assert found.verdict == "partly_explained" and found.chosen is not None
+
+
+def test_linear_effect_is_beside_every_explanation():
+    linear = [(("added_mass",), 0.96), (("root_stiffness",), 0.04)]
+    alone = decided(linear, nothing=0.97, something_else=0.02, friction=0.01)
+    assert (alone.verdict, alone.ambiguity) == ("named", [["added_mass"]])
+    both = decided(linear, nothing=0.01, something_else=0.02, friction=0.97)
+    assert both.ambiguity == [["added_mass", "dry_friction"]]
+
+
+def test_smallest_set_reaches_the_probability_that_is_stated():
+    reached, sets = smallest([("a", 0.5), ("b", 0.3), ("c", 0.15), ("d", 0.05)])
+    assert reached == pytest.approx(0.95) and [name for name, _ in sets] == ["a", "b", "c"]
+
+
+def test_interval_holds_nine_tenths_of_a_normal_law():
+    random = np.random.default_rng(4)
+    samples = random.uniform(0.0, 1.0, (20000, 1))
+    weight = np.exp(-0.5 * ((samples[:, 0] - 0.5) / 0.05) ** 2)
+    low, high = weighted_interval(samples, weight)
+    assert [low[0], high[0]] == pytest.approx([0.5 - 1.645 * 0.05, 0.5 + 1.645 * 0.05], abs=0.005)

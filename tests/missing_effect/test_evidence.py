@@ -1,0 +1,139 @@
+"""Evidence against textbook results: normal laws, a peak in a flat prior, a Gaussian process."""
+
+import numpy as np
+import pytest
+from scipy import integrate, stats
+
+from vibroimpact.missing_effect import constants, evidence
+from vibroimpact.missing_effect.evidence import SomethingElse, fit, log_likelihoods
+from vibroimpact.missing_effect.null import Null
+from vibroimpact.missing_effect.trials import Emulator, PairEmulator, Trial
+
+VALUES = 40
+AXES = np.linalg.qr(np.random.default_rng(5).standard_normal((VALUES, VALUES)))[0].T
+
+
+class Line:
+    """A candidate of one parameter, not periodic."""
+
+    periodic = ()
+
+
+class Known:
+    """An emulator of a change that is known: size times the parameter along one direction."""
+
+    directions = AXES[:1]
+
+    def __init__(self, size, variance=0.0):
+        self.size, self.variance = size, variance
+
+    def __call__(self, unit):
+        unit = np.atleast_2d(unit)
+        return self.size * unit[:, :1], np.full((len(unit), 1), self.variance)
+
+
+def normal(covariance):
+    return stats.multivariate_normal(np.zeros(VALUES), covariance)
+
+
+def null_with(measured):
+    return Null(
+        records=np.array([0]),
+        layout=None,
+        features=np.zeros((1, 2, VALUES)),
+        screened_mean=np.zeros((1, VALUES)),
+        factor=np.eye(VALUES)[None],
+        measured=measured,
+        groups=np.repeat([0, 1], VALUES // 2),
+    )
+
+
+def trial_of(units, changes, noise):
+    return Trial(Line(), units, changes, np.full(len(units), noise), screened=len(units))
+
+
+@pytest.mark.parametrize("law", [0.0, 0.3])
+def test_likelihood_is_that_of_a_normal_law(law):
+    measured = np.random.default_rng(1).standard_normal(VALUES) + 9.0 * AXES[0]
+    emulator, null = Known(12.0, variance=4.0), null_with(measured)
+    (chance,), _ = log_likelihoods(emulator, [[0.7]], null, law)
+    change = 0.7 * 12.0 * AXES[0]
+    covariance = np.eye(VALUES) + np.diag((law * change) ** 2) + 4.0 * np.outer(AXES[0], AXES[0])
+    for group in (0, 1):
+        common = constants.LAW_COMMON * law * change * (null.groups == group)
+        covariance += np.outer(common, common)
+    wanted = stats.multivariate_normal(change, covariance).logpdf(measured)
+    nothing = normal(np.eye(VALUES)).logpdf(measured)
+    assert chance == pytest.approx(wanted - nothing, abs=1.0e-8)
+
+
+def test_evidence_is_the_integral_over_the_prior(monkeypatch):
+    monkeypatch.setattr(constants, "LAWS", ((0.0, 1.0),))
+    measured = np.random.default_rng(2).standard_normal(VALUES) + 14.0 * AXES[0]
+    size, null = 30.0, null_with(measured)
+    seen = np.sqrt(constants.SEEN) / size  # the prior is flat where the change is seen
+    along = AXES[0] @ measured
+
+    def chance(unit):
+        gain = along * size * unit - 0.5 * (size * unit) ** 2
+        return np.exp(constants.POWER * gain) / (1.0 - seen)
+
+    wanted = np.log(integrate.quad(chance, seen, 1.0, points=[along / size])[0])
+    found = fit(Known(size), 1, null)
+    assert found.log_evidence == pytest.approx(wanted, abs=0.15)
+    assert found.unit[0] == pytest.approx(along / size, abs=0.02)
+    assert found.left == pytest.approx(measured @ measured - along**2, rel=0.05)
+
+
+def test_something_else_is_a_normal_law_of_unknown_size():
+    random = np.random.default_rng(3)
+    measured = 6.0 * random.standard_normal(VALUES)
+    changes = 20.0 * AXES[:3]
+    else_ = SomethingElse(changes, np.zeros(3), null_with(measured))
+    looks = constants.WHITE * np.eye(VALUES)
+    looks += (1.0 - constants.WHITE) * VALUES / 3.0 * AXES[:3].T @ AXES[:3]
+    rows = [
+        stats.multivariate_normal(np.zeros(VALUES), np.eye(VALUES) + size**2 * looks).logpdf(
+            measured
+        )
+        for size in else_.sizes
+    ]
+    nothing = normal(np.eye(VALUES)).logpdf(measured)
+    tempered = constants.POWER * (np.array(rows) - nothing)
+    wanted = np.logaddexp.reduce(tempered) - np.log(len(rows))
+    assert else_.log_evidence(np.zeros(VALUES)) == pytest.approx(wanted, abs=1.0e-8)
+
+
+def test_emulator_returns_runs_and_tells_what_it_lacks():
+    units = np.array([[0.1], [0.3], [0.5], [0.7], [0.9]])
+    changes = 50.0 * np.sin(2.0 * units) * AXES[0] + 20.0 * units**2 * AXES[1]
+    emulator = Emulator(trial_of(units, changes, 1.0e-4), neutral=np.array([0.0]))
+    mean, variance = emulator(np.array([[0.0], [0.5], [0.6], [3.0]]))
+    change = mean @ emulator.directions
+    assert np.abs(change[0]).max() < 0.1  # nothing where it is neutral
+    assert change[1] == pytest.approx(changes[2], abs=0.1)
+    wanted = 50.0 * np.sin(1.2) * AXES[0] + 20.0 * 0.36 * AXES[1]
+    assert change[2] == pytest.approx(wanted, abs=0.3)
+    assert variance[1].max() < 0.1 < 100.0 < variance[3].max()
+
+
+def test_two_effects_add_until_a_run_corrects_the_sum():
+    units = np.linspace(0.0, 1.0, 6)[:, None]
+    first, second = (
+        Emulator(trial_of(units, 30.0 * units * axis, 1.0e-4), np.array([0.0])) for axis in AXES[:2]
+    )
+    both = np.array([[0.5, 0.4]])
+    sum_ = (15.0 * AXES[0] + 12.0 * AXES[1])[None]
+    for more in (0.0, 8.0):
+        emulator = PairEmulator(
+            trial_of(both, sum_ + more * AXES[2], 1.0e-4), first, second, split=1
+        )
+        change = emulator(both)[0] @ emulator.directions
+        assert change == pytest.approx(sum_ + more * AXES[2], abs=0.5)
+
+
+def test_peak_narrower_than_the_samples_is_found():
+    measured = 900.0 * AXES[0]
+    found = fit(Known(2000.0), 1, null_with(measured), start=np.array([0.44]))
+    assert found.unit[0] == pytest.approx(0.45, abs=0.01)
+    assert evidence.SAMPLES < 2000.0  # the peak is a two thousandth of the range wide
