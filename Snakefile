@@ -28,7 +28,7 @@ include: "workflow/rules/study_page.smk"
 include: "workflow/rules/import.smk"
 include: "workflow/rules/supports_prediction.smk"
 include: "workflow/rules/discrepancy_files.smk"
-include: "workflow/rules/discrepancy_quick.smk" if QUICK else "workflow/rules/discrepancy.smk"
+include: "workflow/rules/missing_effect.smk" if EFFORT else "workflow/rules/discrepancy.smk"
 include: "workflow/rules/discrepancy_report.smk"
 include: "workflow/rules/suite_files.smk"
 include: "workflow/rules/suite.smk"
@@ -70,7 +70,7 @@ rule all:
 
 
 rule discrepancy:
-    """Compare a measured campaign with a model: --config campaign=FILE [model=FILE] [quick=yes]."""
+    """Compare a measured campaign with a model: --config campaign=FILE [model=FILE] [effort=NAME]."""
     input:
         verdict=f"{DISCREPANCY}/verdict.json",
         model=f"{DISCREPANCY}/model_updated.yaml",

@@ -56,7 +56,7 @@ def trial_of(units, changes, noise):
 def test_likelihood_is_that_of_a_normal_law(law):
     measured = np.random.default_rng(1).standard_normal(VALUES) + 9.0 * AXES[0]
     emulator, null = Known(12.0, variance=4.0), null_with(measured)
-    (chance,), _ = log_likelihoods(emulator, [[0.7]], null, law)
+    (chance,), *_ = log_likelihoods(emulator, [[0.7]], null, law)
     change = 0.7 * 12.0 * AXES[0]
     covariance = np.eye(VALUES) + np.diag((law * change) ** 2) + 4.0 * np.outer(AXES[0], AXES[0])
     for group in (0, 1):

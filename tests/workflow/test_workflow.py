@@ -405,9 +405,9 @@ def test_campaign_faults_are_reported_before_any_job(study, tmp_path):
         assert "Traceback" not in told and "delete it" not in told
 
 
-def test_an_example_in_quick_mode_is_planned_all_the_same(study, tmp_path):
+def test_an_example_is_planned_with_an_effort_all_the_same(study, tmp_path):
     (tmp_path / "F16Data_FullMSine_Level1.mat").touch()
-    run = study.snakemake("--dry-run", "f16", "--config", f"f16_data={tmp_path}", "quick=yes")
+    run = study.snakemake("--dry-run", "f16", "--config", f"f16_data={tmp_path}", "effort=quick")
     assert run.returncode == 0, run.stdout + run.stderr
 
 
@@ -444,35 +444,18 @@ def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
     )
 
 
-def test_quick_run_is_one_job_full_run_one_per_candidate(study, tmp_path):
+def test_search_with_an_effort_is_one_job(study, tmp_path):
     write_campaign(sound_campaign(), tmp_path / "bench.nc")
-    planned = {}
-    for quick in ("yes", "no"):
-        run = study.snakemake(
-            "--dry-run",
-            "discrepancy",
-            "--config",
-            f"campaign={tmp_path}/bench.nc",
-            f"quick={quick}",
-        )
-        planned[quick] = jobs_of(run)
-    assert planned["yes"]["discrepancy_quick"] == 1
-    assert "discrepancy_candidate" not in planned["yes"]
-    assert planned["no"]["discrepancy_null"] > 1  # candidates follow from the lowest record
-    assert "discrepancy_quick" not in planned["no"]
-    run = study.snakemake(
-        "--dry-run",
-        "discrepancy",
-        "--config",
-        f"campaign={tmp_path}/bench.nc",
-        "model=identified",
-        "quick=yes",
-    )
-    assert (
-        run.returncode == 1
-        and "quick = 'yes'" in run.stdout + run.stderr
-        and "leave it out" in run.stdout + run.stderr
-    )
+    asked = ["--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc"]
+    one, many = (jobs_of(study.snakemake(*asked, *more)) for more in (["effort=quick"], []))
+    assert one["missing_effect"] == 1 and "discrepancy_null" not in one
+    assert many["discrepancy_null"] > 1 and "missing_effect" not in many
+    for more, told in (
+        (["effort=much"], "effort = 'much': give one of quick, standard, thorough"),
+        (["effort=quick", "model=identified"], "effort = 'quick'"),
+    ):
+        run = study.snakemake(*asked, *more)
+        assert run.returncode == 1 and told in run.stdout + run.stderr
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@
 # identified and has no modes.
 
 
-if not QUICK:
+if not EFFORT:
 
     ruleorder: _completion_outcome > _discrepancy_verdict
 

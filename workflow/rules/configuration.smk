@@ -47,6 +47,7 @@ os.environ.update(
 from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
+from vibroimpact.missing_effect.effort import EFFORTS
 
 # Values of --config that are not keys of the study.
 REQUEST = {
@@ -55,7 +56,7 @@ REQUEST = {
         "import",
         "campaign",
         "model",
-        "quick",
+        "effort",
         "bank",
         "suite_seed",
         "count",
@@ -91,19 +92,22 @@ def number_asked(name, example, whole=False):
         sys.exit(str(problem))
 
 
-def said_yes(name):
-    """Whether --config name=yes is given. Exits with a sentence where it is neither yes nor no."""
-    value = REQUEST.get(name, "no").lower()
-    if value not in ("yes", "true", "1", "no", "false", "0"):
-        sys.exit(f"{name} = '{REQUEST[name]}': give yes or no")
-    return value in ("yes", "true", "1")
+def asked_effort():
+    """The value of --config effort=NAME, None where it is not given.
+
+    Exits with a sentence where it is none that there is.
+    """
+    value = REQUEST.get("effort")
+    if value is not None and value not in EFFORTS:
+        sys.exit(f"effort = '{value}': give one of {', '.join(EFFORTS)}, or leave it out")
+    return value
 
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
 COMPARED_S = number_asked("compared_s", example="49")
 DRAW = int(number_asked("draw", example="1", whole=True) or 0)
-QUICK = said_yes("quick")
+EFFORT = asked_effort()
 
 
 def requested(name, example):
@@ -162,10 +166,10 @@ def own_structure():
 STUDY = checked_config()
 STUDY_FILES = " + ".join(os.path.relpath(file) for file in workflow.configfiles)
 OWN = own_structure()
-if OWN is not None and QUICK:
+if OWN is not None and EFFORT:
     sys.exit(
-        f"quick = '{REQUEST['quick']}': a structure that is identified from its campaign has no"
-        " quick mode: leave it out, or narrow band_Hz and candidates"
+        f"effort = '{EFFORT}': a structure that is identified from its campaign has another search:"
+        " leave it out, or narrow band_Hz and candidates"
     )
 MODEL = checked_model()
 MODEL_FILES = STUDY_FILES if MODEL is STUDY else REQUEST["model"]

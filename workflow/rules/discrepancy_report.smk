@@ -9,7 +9,7 @@ DISCREPANCY_FIGURES = (
 )
 
 
-# The mode is a parameter: a full run does not take the products of a quick one for its own.
+# The mode is a parameter: one search does not take the products of another for its own.
 rule _discrepancy_mode:
     output:
         mode=f"{DISCREPANCY}/mode.txt",
@@ -23,7 +23,7 @@ rule _discrepancy_mode:
         runtime=minutes(10),
     params:
         library=library("discrepancy_mode"),
-        mode="quick" if QUICK else "full",
+        mode=EFFORT or "full",
     message:
         "Mode of the discrepancy run: {params.mode}"
     script:
@@ -55,7 +55,6 @@ rule _discrepancy_report:
     params:
         library=library("discrepancy_report"),
         name=LOOKED_AT,
-        quick=QUICK,
     message:
         f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"
     script:

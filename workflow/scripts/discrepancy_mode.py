@@ -1,4 +1,4 @@
-"""Write down whether a discrepancy run is a quick or a full one."""
+"""Write down by which search, and with what effort, a discrepancy run was made."""
 
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_text

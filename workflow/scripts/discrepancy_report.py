@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.results_folder import read_results
 from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
 from vibroimpact.job_log import redirect_output
@@ -17,12 +16,7 @@ for sheet in sheets:
     sheet.save(folder / "figures")
 shown = [folder / "figures" / f"{sheet.name}.png" for sheet in sheets if sheet.tables]
 write_text(
-    discrepancy_page(
-        snakemake.params.name,
-        results.verdict,
-        shown,
-        quick_s=QUICK_S if snakemake.params.quick else None,
-    ),
+    discrepancy_page(snakemake.params.name, results.verdict, shown),
     snakemake.output.page,
 )
 print(f"{snakemake.output.page} written, {len(shown)} figures")

@@ -14,7 +14,7 @@ POWER = 0.5
 # (share, prior probability): none, that between two codes of one law, that between laws of a
 # family.
 LAWS = ((0.02, 0.4), (0.08, 0.4), (0.3, 0.2))
-LAW_COMMON = 2.0  # times the share: all values of a group of channels together
+LAW_COMMON = 1.0  # times the share: all values of a group of channels together
 # Changes smaller than this, squared and in units of the scatter, cannot be told from nothing.
 SEEN = 30.0
 

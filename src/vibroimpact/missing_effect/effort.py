@@ -18,6 +18,6 @@ class Effort:
 
 EFFORTS = {
     "quick": Effort(16.0, 8.0, 1, 3, 0),
-    "standard": Effort(24.0, 8.0, 4, 4, 6),
+    "standard": Effort(24.0, 10.0, 4, 3, 6),
     "thorough": Effort(48.0, 16.0, 8, 6, 12),
 }

@@ -14,6 +14,7 @@ from . import constants
 SAMPLES = 256
 NEAR = 128  # samples about the best so far
 SPREAD = 0.06  # of the searched range: of those
+FAR = 1.0e6  # of log likelihood
 
 
 @dataclass(frozen=True)
@@ -41,26 +42,18 @@ def fit(emulator, count, null, start=None, seed=3):
     first = qmc.Sobol(count, seed=seed).random(SAMPLES)
     if start is not None:
         first[0] = start
-    shares = [law for law, _ in constants.LAWS]
-    even = [log_likelihoods(emulator, first, null, law) for law in shares]
-    best = first[np.argmax(np.logaddexp.reduce([chance for chance, _ in even]))]
+    even = Likelihoods.of(emulator, first, null)
+    best = first[np.argmax(even.over_laws)]
     near = np.clip(
         best + SPREAD * np.random.default_rng(seed).standard_normal((NEAR, count)), 0.0, 1.0
     )
-    about = [log_likelihoods(emulator, near, null, law) for law in shares]
-    by_law = np.array(
-        [
-            np.log(prior) + _evidence(*pair, best, near)
-            for (_, prior), *pair in zip(constants.LAWS, even, about, strict=True)
-        ]
-    )
+    about = Likelihoods.of(emulator, near, null)
+    density = _proposal(near, best)
+    by_law = even.evidence(about, density)
     samples = np.vstack([first, near])
-    chances = constants.POWER * np.concatenate(
-        [np.stack([chance for chance, _ in rows], axis=1) for rows in (even, about)]
-    )
-    chances = logsumexp(chances + np.log([prior for _, prior in constants.LAWS]), axis=1)
-    weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(_proposal(near, best), 1.0)))
+    chances = np.append(even.over_laws, about.over_laws)
     unit = samples[np.argmax(chances)]
+    weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
     mean, variance = emulator(unit)
     change = mean[0] @ emulator.directions
     rest = null.measured - change
@@ -72,16 +65,56 @@ def fit(emulator, count, null, start=None, seed=3):
         np.exp(weight - logsumexp(weight)),
         change,
         float(rest @ rest),
-        _hidden(emulator.directions @ rest, variance[0]),
+        float(hidden(emulator.directions @ rest, variance[0])),
     )
 
 
-def _hidden(rest, variance):
+@dataclass(frozen=True)
+class Likelihoods:
+    """chance (law, point): tempered log likelihoods against nothing, with constants.LAWS' priors;
+    seen (point,): whether the change there is; nearer (point,): whether it brings the model nearer
+    to the measurement.
+    """
+
+    chance: np.ndarray
+    seen: np.ndarray
+    nearer: np.ndarray
+
+    @classmethod
+    def of(cls, emulator, units, null):
+        """Return the Likelihoods at units (point, parameter)."""
+        rows = [log_likelihoods(emulator, units, null, law) for law, _ in constants.LAWS]
+        prior = np.log([prior for _, prior in constants.LAWS])
+        chance = constants.POWER * np.array([row[0] for row in rows]) + prior[:, None]
+        return cls(chance, *rows[0][1:])
+
+    @property
+    def over_laws(self):
+        """Return (point,): whatever the law; far below all others where nothing is explained."""
+        return logsumexp(self.chance, axis=0) - FAR * ~(self.seen & self.nearer)
+
+    def evidence(self, about, density):
+        """Return (law,): log evidence over a prior that is flat where the effect is seen; about:
+        Likelihoods of samples of a density (point,) about the best, which find a peak that even
+        samples step over.
+        """
+        allowed = [row.seen & row.nearer for row in (self, about)]
+        if not (allowed[0].any() or allowed[1].any()):
+            return np.full(len(self.chance), -np.inf)
+        even = np.where(allowed[0], self.chance, -np.inf)
+        peak = np.where(allowed[1], about.chance - np.log(np.maximum(density, 1.0)), -np.inf)
+        share = max(self.seen.mean(), 1.0 / SAMPLES)
+        return np.maximum(
+            logsumexp(even, axis=1) - np.log(SAMPLES), logsumexp(peak, axis=1) - np.log(NEAR)
+        ) - np.log(share)
+
+
+def hidden(rest, variance):
     """Return by how much less chi-square may remain within two standard deviations of the emulator:
-    rest, variance (direction,).
+    rest, variance (..., direction).
     """
     near = np.maximum(np.abs(rest) - 2.0 * np.sqrt(variance), 0.0)
-    return float(np.sum(rest**2 - near**2))
+    return np.sum(rest**2 - near**2, axis=-1)
 
 
 def _proposal(near, best):
@@ -92,28 +125,13 @@ def _proposal(near, best):
     )
 
 
-def _evidence(first, nearby, best, near):
-    """Return the log evidence, tempered, over the prior: evenly over the range where the effect is
-    seen. first, nearby: (log likelihood, seen) of even samples and of those about the best.
-    """
-    whole = np.concatenate([first[1], nearby[1]])
-    share = max(first[1].mean(), 1.0 / SAMPLES)
-    if not whole.any():
-        return -np.inf
-    even = logsumexp(constants.POWER * np.where(first[1], first[0], -np.inf)) - np.log(SAMPLES)
-    # about the best: importance samples, which find a peak that even samples step over
-    peak = logsumexp(
-        np.where(nearby[1], constants.POWER * nearby[0], -np.inf)
-        - np.log(np.maximum(_proposal(near, best), 1.0))
-    ) - np.log(NEAR)
-    return float(max(even, peak) - np.log(share))
-
-
 def log_likelihoods(emulator, units, null, law):
-    """Return (log likelihood against nothing, seen), (point,) each, at units (point, parameter).
+    """Return (log likelihood against nothing, seen, nearer), (point,) each, at units (point,
+    parameter).
 
     The covariance is that of the null, what the law may differ by, and what the emulator does not
-    know along its directions.
+    know along its directions. A change that does not bring the model nearer to the measurement, as
+    far as the emulator knows, explains nothing, however wide its law is.
     """
     mean, variance = emulator(units)
     change = mean @ emulator.directions
@@ -129,10 +147,10 @@ def log_likelihoods(emulator, units, null, law):
     solved = np.linalg.solve(inner, along[..., None])[..., 0]
     square = np.sum(rest**2 / diagonal, axis=1) - np.sum(along * solved, axis=1)
     size = np.sum(np.log(diagonal), axis=1) + np.linalg.slogdet(inner)[1]
-    return (
-        -0.5 * (square + size - null.measured @ null.measured),
-        np.sum(change**2, axis=1) > constants.SEEN,
-    )
+    before = null.measured @ null.measured
+    left = np.sum(rest**2, axis=1) - hidden(rest @ emulator.directions.T, variance)
+    seen = np.sum(change**2, axis=1) > constants.SEEN
+    return -0.5 * (square + size - before), seen, left < before
 
 
 class SomethingElse:

@@ -33,18 +33,18 @@ class Search:
     fits: dict = field(default_factory=dict)
     seed: int = 1000
 
-    def run(self, name, units, screened=False):
+    def run(self, name, units, short=True, first=False):
         """Run an explanation at units (point, parameter) and fit it again; what cannot be run is
-        kept as failed.
+        kept as failed. short: on the stretch that is screened; first: of the first points.
         """
         candidate = candidate_named(name)
         trial = self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
         for unit in np.atleast_2d(units):
             try:
-                trial.add(unit, *self._change(candidate, unit, screened))
+                trial.add(unit, *self._change(candidate, unit, short))
             except (IntegrationError, ConfigError) as error:
                 trial.failed.append((unit, str(error)))
-        if screened:
+        if first:
             trial.screened = len(trial.noise)
         self.fit(name)
 
@@ -66,9 +66,9 @@ class Search:
             return PairEmulator(trial, first, second, trial.candidate.split)
         return Emulator(trial, neutral_unit(trial.candidate, self.scales))
 
-    def _change(self, candidate, unit, screened):
+    def _change(self, candidate, unit, short):
         """Return (change (value,), variance of a value) of one batch of runs."""
-        bench = self.short if screened else self.bench
+        bench = self.short if short else self.bench
         records, physical = self.null.records, candidate.physical(unit, self.scales)
         seeds = max(1, LANES // len(records))
         runs = bench.runs(records, seeds, self.seed)
@@ -80,9 +80,9 @@ class Search:
         ).reshape(len(records), seeds, -1)
         if np.isnan(features).any():
             raise IntegrationError("a run was thrown off")
-        each = np.array([self.null.change(features[:, run], screened) for run in range(seeds)])
+        each = np.array([self.null.change(features[:, run], short) for run in range(seeds)])
         noise = each.var(axis=0, ddof=1).mean() if seeds > 1 else 1.0
-        return self.null.change(features.mean(axis=1), screened), noise / seeds
+        return self.null.change(features.mean(axis=1), short), noise / seeds
 
     def something_else(self):
         """Return the SomethingElse of all trials."""
@@ -196,22 +196,24 @@ def screen(search, names):
     more.
     """
     for name in names:
-        search.run(name, first_points(candidate_named(name)), screened=True)
+        search.run(name, first_points(candidate_named(name)), first=True)
     explains = search.explains(search.null.measured)
     order = sorted(explains, key=lambda name: -explains[name])
     for name in order:
         if explains[name] > MAY * explains[order[0]] or name in order[:LEAST]:
-            search.run(name, first_points(candidate_named(name), again=True), screened=True)
+            search.run(name, first_points(candidate_named(name), again=True), first=True)
 
 
-def refine(search, names, points):
-    """Run explanations at `points` points each, drawn from what is known of their parameters."""
+def refine(search, names, points, short=True):
+    """Run explanations at `points` points each: the most probable, and others drawn from what is
+    known of their parameters.
+    """
     random = np.random.default_rng(search.seed)
     for name in names:
         found = search.fits[name]
         drawn = found.samples[random.choice(len(found.samples), points - 1, p=found.weight)]
         moved = drawn + 0.04 * random.standard_normal(drawn.shape)
-        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0))
+        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0), short)
 
 
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
@@ -246,13 +248,17 @@ def contenders(search, chances, pairs=False):
     return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
 
 
+CONFIRMED = 2  # explanations that lead are run on all that is compared
+
+
 def race(search, rounds, width=4, pairs=False, points=2):
     """Run contenders, `width` at a time, until none is left or the rounds are over."""
     for _ in range(rounds):
         names = contenders(search, posterior(search), pairs)[:width]
         if not names:
-            return
+            break
         refine(search, names, points)
+    refine(search, leaders(search, CONFIRMED, pairs), points, short=False)
 
 
 def leaders(search, count, pairs=False):

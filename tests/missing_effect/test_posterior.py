@@ -1,0 +1,79 @@
+"""Who is believed: nothing, an effect of the catalogue, two of them, or something else."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.missing_effect.null import Null
+from vibroimpact.missing_effect.search import Search, contenders, posterior
+from vibroimpact.missing_effect.trials import Trial
+
+VALUES = 200
+FRICTION, DAMPING, STIFFNESS = "dry_friction@all", "contact_damping@all", "contact_stiffness@all"
+DIRECTIONS = dict(
+    zip(
+        (FRICTION, DAMPING, STIFFNESS, "none of them"),
+        np.linalg.qr(np.random.default_rng(6).standard_normal((VALUES, 4)))[0].T,
+        strict=True,
+    )
+)
+UNITS = np.array([[0.2], [0.4], [0.6], [0.8]])
+SIZE = 60.0  # of a change at the end of the range, in units of the scatter
+
+
+def searched(measured):
+    """Return a Search in which three effects were run, each changing one direction evenly."""
+    null = Null(
+        records=np.array([0]),
+        layout=None,
+        features=np.zeros((1, 2, VALUES)),
+        screened_mean=np.zeros((1, VALUES)),
+        factor=np.eye(VALUES)[None],
+        measured=measured,
+        groups=np.zeros(VALUES, int),
+    )
+    search = Search(None, None, null, dict.fromkeys(("one", "contact_stiffness"), 1.0))
+    for name in (FRICTION, DAMPING, STIFFNESS):
+        changes = SIZE * UNITS * DIRECTIONS[name]
+        trial = Trial(candidate_named(name), UNITS, changes, np.full(4, 1.0e-3), screened=4)
+        search.trials[name] = trial
+        search.fit(name)
+    return search
+
+
+def chance():
+    return np.random.default_rng(7).standard_normal(VALUES)
+
+
+def test_chance_alone_is_nothing():
+    found = posterior(searched(chance()))
+    assert next(iter(found)) == "nothing" and np.exp(found["nothing"]) > 0.8
+    assert np.exp(list(found.values())).sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("name", [FRICTION, DAMPING])
+def test_effect_of_the_catalogue_is_believed(name):
+    search = searched(chance() + 30.0 * DIRECTIONS[name])
+    found = posterior(search)
+    assert next(iter(found)) == name and np.exp(found[name]) > 0.9
+    assert search.fits[name].unit[0] == pytest.approx(0.5, abs=0.05)
+
+
+def test_direction_of_no_effect_is_something_else():
+    found = posterior(searched(chance() + 30.0 * DIRECTIONS["none of them"]))
+    assert next(iter(found)) == "something else" and np.exp(found["something else"]) > 0.7
+
+
+def test_effect_beside_another_is_half_of_the_story():
+    both = 30.0 * DIRECTIONS[FRICTION] + 30.0 * DIRECTIONS[DAMPING]
+    search = searched(chance() + both)
+    found = posterior(search)
+    assert found[FRICTION] < -5.0 and found[DAMPING] < -5.0  # neither is enough
+    explains = search.explains(search.null.measured - search.fits[FRICTION].mean)
+    assert max(explains, key=lambda name: explains[name] * (name != FRICTION)) == DAMPING
+
+
+def test_race_leaves_out_what_is_known_to_be_worse():
+    search = searched(chance() + 30.0 * DIRECTIONS[FRICTION])
+    left = contenders(search, posterior(search))
+    assert left == [FRICTION]  # until it has been run a few times more

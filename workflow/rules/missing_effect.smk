@@ -1,0 +1,32 @@
+# One job from the campaign to the verdict:
+# `snakemake -j2 discrepancy --config campaign=FILE effort=quick|standard|thorough`.
+
+
+rule _missing_effect:
+    input:
+        campaign=after_model_checks(MODEL, MODEL_FILES, compared_campaign),
+        mode=f"{DISCREPANCY}/mode.txt",
+    output:
+        verdict=f"{DISCREPANCY}/verdict.json",
+        map=f"{DISCREPANCY}/map.nc",
+        map_after=f"{DISCREPANCY}/map_after.nc",
+        ranking=f"{DISCREPANCY}/ranking.csv",
+        model=f"{DISCREPANCY}/model_updated.yaml",
+        so_far=f"{DISCREPANCY}/so_far.json",
+    log:
+        f"{DISCREPANCY}/logs/missing_effect.log",
+    benchmark:
+        f"{DISCREPANCY}/benchmarks/missing_effect.tsv"
+    threads: 1
+    resources:
+        mem_mb=memory(2000),
+        runtime=minutes(60),
+    params:
+        library=library("missing_effect"),
+        config=MODEL.model_dump(mode="json"),
+        effort=EFFORT,
+        draw=DRAW,
+    message:
+        "Search for what is missing, effort {params.effort}"
+    script:
+        "../scripts/missing_effect.py"
