@@ -160,11 +160,15 @@ class SomethingElse:
 
     def __init__(self, changes, noise, null):
         self.null = null
-        size = np.sqrt(np.maximum(np.sum(changes**2, axis=1) - noise * null.values, 0.0))
-        told = size > np.sqrt(constants.SEEN)
-        unit = changes[told] / np.linalg.norm(changes[told], axis=1, keepdims=True)
-        _, singular, self.directions = linalg.svd(unit, full_matrices=False)
-        self.share = (1.0 - constants.WHITE) * null.values * singular**2 / max(len(unit), 1)
+        whole = np.sum(changes**2, axis=1)
+        told = whole - noise * null.values > constants.SEEN
+        unit = changes[told] / np.sqrt(whole[told])[:, None]
+        count = max(len(unit), 1)
+        scattered = np.sum(noise[told] * null.values / whole[told]) / count**2
+        _, singular, directions = linalg.svd(unit, full_matrices=False)
+        share = singular**2 / count - scattered
+        self.directions, share = directions[share > 0.0], share[share > 0.0]
+        self.share = (1.0 - constants.WHITE) * null.values * share / max(share.sum(), 1.0e-12)
         self.sizes = np.geomspace(*constants.SIZES, 24)
 
     def log_evidence(self, mean):

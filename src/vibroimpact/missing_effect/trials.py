@@ -7,6 +7,9 @@ from scipy import linalg
 
 from . import constants
 
+LEAST_SIGNAL = 0.1  # of the scatter: no change is known to be less
+NEGLIGIBLE = 1.0e-3  # of what the runs change: directions below it are left out
+
 
 @dataclass
 class Trial:
@@ -45,63 +48,59 @@ class Trial:
 
 
 class Emulator:
-    """The change (value,) at any parameters, by a Gaussian process along the leading directions of
-    the runs of a Trial; neutral (parameter,): where nothing changes, None: far from all runs the
-    change is their mean then, 0 where it is not centred.
+    """The change (value,) at any parameters, by a Gaussian process that all values share, of the
+    length that predicts left-out runs best; neutral (parameter,): where nothing changes, None: far
+    from all runs the change is their mean then, 0 where it is not centred.
 
-    directions (direction, value) are orthonormal.
+    directions (direction, value) are orthonormal: those that the runs, smoothed, lie along.
     """
 
     def __init__(self, trial, neutral=None, centred=True):
         unit, change, noise = trial.unit, trial.change, trial.noise
         self.periodic = list(trial.candidate.periodic)
-        _, size, directions = linalg.svd(change, full_matrices=False)
-        signal = size**2 / len(change) - noise.mean()
-        kept = signal > 0.5 * noise.mean()
-        kept[0] = True
-        self.directions = directions[kept]
-        self.signal = np.maximum(signal[kept], 0.1 * noise.mean())
-        known = change @ self.directions.T
-        self.centre = np.zeros(len(self.signal))
-        if neutral is None and centred:
-            self.centre = np.average(known, axis=0, weights=1.0 / noise)
-        elif neutral is not None:
+        centre = np.zeros(change.shape[1])
+        if neutral is not None:
             unit = np.vstack([unit, neutral])
-            known = np.vstack([known, np.zeros(known.shape[1])])
+            change = np.vstack([change, centre])
             noise = np.append(noise, 0.01 * noise.min())
-        self.unit = unit
-        fits = [
-            max(
-                (self._fit(number, row, noise, length) for length in constants.LENGTHS),
-                key=lambda found: found[0],
-            )
-            for number, row in enumerate((known - self.centre).T)
-        ]
-        _, self.lengths, self.solved, self.inverse = zip(*fits, strict=True)
+        elif centred:
+            centre = np.average(change, axis=0, weights=1.0 / noise)
+        scatter = noise * change.shape[1]
+        size = np.sum(change**2, axis=1) - scatter
+        self.size = max(float(size.mean()), float(scatter.mean()) * LEAST_SIGNAL)
+        self.unit, self.ratio = unit, scatter / self.size + 1.0e-6
+        self._learn(change - centre)
+        smooth = self._kernel(unit, unit) @ self.inverse @ (change - centre) + centre
+        _, sizes, directions = linalg.svd(smooth, full_matrices=False)
+        kept = sizes**2 > NEGLIGIBLE * np.sum(sizes**2)
+        self.directions = directions[kept]
+        self.centre = self.directions @ centre
+        self.solved = self.inverse @ (change - centre) @ self.directions.T
+        self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
 
-    def _kernel(self, one, other, length):
+    def _learn(self, change):
+        """Take the length that predicts left-out runs best; of one run, the shortest."""
+        best = np.inf
+        for length in constants.LENGTHS:
+            self.length = length
+            inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
+            error = np.sum((inverse @ change / np.diag(inverse)[:, None]) ** 2)
+            if error < best:
+                best, found = error, (length, inverse)
+        self.length, self.inverse = found
+
+    def _kernel(self, one, other):
         distance = one[:, None] - other[None]
         for number in self.periodic:
             distance[..., number] = np.sin(np.pi * distance[..., number]) / np.pi
-        return np.exp(-0.5 * np.sum(distance**2, axis=-1) / length**2)
-
-    def _fit(self, number, known, noise, length):
-        """Return (log likelihood, length, solved (run,), inverse (run, run)) of a direction."""
-        kernel = 2.0 * self.signal[number] * self._kernel(self.unit, self.unit, length)
-        factor = linalg.cholesky(kernel + np.diag(noise + 1.0e-6 * self.signal[number]), lower=True)
-        solved = linalg.cho_solve((factor, True), known)
-        chance = -0.5 * known @ solved - np.log(np.diag(factor)).sum()
-        return chance, length, solved, linalg.cho_solve((factor, True), np.eye(len(known)))
+        return np.exp(-0.5 * np.sum(distance**2, axis=-1) / self.length**2)
 
     def __call__(self, unit):
         """Return (mean, variance), (point, direction) each, at unit (point, parameter)."""
-        unit, mean, variance = np.atleast_2d(unit), [], []
-        for number, signal in enumerate(self.signal):
-            against = 2.0 * signal * self._kernel(unit, self.unit, self.lengths[number])
-            mean.append(self.centre[number] + against @ self.solved[number])
-            told = np.sum((against @ self.inverse[number]) * against, axis=1)
-            variance.append(np.maximum(2.0 * signal - told, 0.0))
-        return np.array(mean).T, np.array(variance).T
+        against = self._kernel(np.atleast_2d(unit), self.unit)
+        told = np.sum((against @ self.inverse) * against, axis=1)
+        mean = self.centre + against @ self.solved
+        return mean, np.clip(1.0 - told, 0.0, None)[:, None] * self.signal
 
 
 class PairEmulator:
