@@ -181,19 +181,34 @@ def test_profiles_show_the_simulated_points(folder, figures):
     assert [float(value) for value in rows] == [0.1, 0.15, 0.3]
 
 
-def test_parameters_are_shown_in_units_of_the_field():
-    assert display_unit("m", [2.5e-4, 4e-4]) == ("mm", 1e3) and display_unit("m", [1.2]) == (
-        "m",
-        1.0,
-    )
-    assert (
-        display_unit("N/m", [4e6]) == ("MN/m", 1e-6)
-        and display_unit("N/m", [5e3, 1e4]) == ("kN/m", 1e-3)
-        and display_unit("1", [0.15]) == ("1", 1.0)
-    )
-    assert display_unit("N/m^3", [7e11, None]) == ("GN/m³", 1e-9) and display_unit(
-        "N/m^2", [np.nan, 1.03e6]
-    ) == ("kN/m²", 1e-3)
+@pytest.mark.parametrize(
+    ("unit", "values", "shown", "number"),
+    [
+        ("m", [2.5e-4, 4e-4], "mm", 0.4),
+        ("m", [3.0e-5], "µm", 30.0),
+        ("m", [1.2], "m", 1.2),
+        ("N/m", [8.0e3], "kN/m", 8.0),
+        ("N/m", [8.0e5, np.nan], "kN/m", 800.0),
+        ("N/m", [4.0e6, None], "MN/m", 4.0),
+        ("N/m", [820.0], "N/m", 820.0),
+        ("N/m^1.5", [1.0e9], "GN/m^1.5", 1.0),
+        ("N/m^2", [np.nan, 1.03e6], "MN/m²", 1.03),
+        ("N/m3", [7.0e5], "kN/m³", 700.0),
+        ("N/m^3", [-7e11, None], "GN/m³", 700.0),
+        ("N s/m", [1291.0], "kN s/m", 1.291),
+        ("kg", [0.298], "g", 298.0),
+        ("rad", [np.pi], "deg", 180.0),
+        ("1", [0.15], "1", 0.15),
+        ("N", [0.0, None], "N", 0.0),
+    ],
+)
+def test_prefix_of_a_unit_follows_from_the_value(unit, values, shown, number):
+    name, factor = display_unit(unit, values)
+    largest = max(abs(value) for value in values if value is not None and value == value)
+    assert name == shown and factor * largest == pytest.approx(number)
+
+
+def test_labels_of_axes_have_the_unit_shown():
     assert axis_label("offset_x", "mm") == "offset x (mm)" and axis_label("mu", "1") == "mu (-)"
 
 

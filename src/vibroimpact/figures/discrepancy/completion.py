@@ -204,6 +204,11 @@ def equivalent_support(study, rows):
         "broadband": METHODS["broadband"],
         "frf": ("all levels together", BLACK, "x"),
     }
+    for column, of_rows, si_unit in (
+        (COLUMNS["stiffness"], "k_N_per_m", "N/m"),
+        (COLUMNS["damping"], "c_N_s_per_m", "N s/m"),
+    ):
+        sheet.show_in_prefix(column, si_unit, [float(row[of_rows]) for row in rows])
     for method, (name, colour, marker) in styles.items():
         own = [row for row in rows if row["method"] == method]
         for panel, column in (("stiffness", "k_N_per_m"), ("damping", "c_N_s_per_m")):
@@ -311,19 +316,19 @@ def restoring_force(study, trial, records):
         [places],
         size=(7.6, 3.6),
     )
-    model, along = trial.model()
+    model, _ = trial.model()
     counts = np.repeat(
         [term.place for term in trial.terms], [LAWS[term.law].elements for term in trial.terms]
     )
-    for colour, index in ((RED, len(records.levels) - 1), (BLUE, 0)):
-        part, *drive = next(group for group in records.groups if index in group[0])
-        drive, samples = records.with_offsets(trial, part, *drive)
-        motion, force = steady_series(model, drive, samples, LOOP_PERIODS)
-        lane = part.index(index)
+    loops = [
+        (colour, index, *_loops(records, trial, model, counts, places, index))
+        for colour, index in ((RED, len(records.levels) - 1), (BLUE, 0))
+    ]
+    for column, si_unit, axis in (("relative_displacement", "m", 2), ("restoring_force", "N", 3)):
+        largest = [np.abs(values).max() for loop in loops for values in loop[axis].values()]
+        sheet.show_in_prefix(column, si_unit, largest)
+    for colour, index, displacement, force in loops:
         for place in places:
-            own = np.flatnonzero(counts == place)
-            signals = motion[own[0], lane], -force[own, lane].sum(axis=0)
-            keep = slice(0, drive.steps, max(1, drive.steps // LOOP_POINTS))
             across, up = (
                 ("output_V", "restoring_V")
                 if study.units
@@ -331,8 +336,8 @@ def restoring_force(study, trial, records):
             )
             sheet.line(
                 sheet.axes[place],
-                (across, signals[0][keep]),
-                (up, signals[1][keep]),
+                (across, displacement[place]),
+                (up, force[place]),
                 records.levels[index].name,
                 color=colour,
                 linewidth=0.4,
@@ -342,3 +347,16 @@ def restoring_force(study, trial, records):
         sheet.axes[place].set_title(place, fontsize=9)
     sheet.legend(sheet.axes[places[0]], fontsize=7)
     return sheet
+
+
+def _loops(records, trial, model, counts, places, index):
+    """Return ({place: displacement m}, {place: force N}) of a level at the steps of a period."""
+    part, *drive = next(group for group in records.groups if index in group[0])
+    drive, samples = records.with_offsets(trial, part, *drive)
+    motion, force = steady_series(model, drive, samples, LOOP_PERIODS)
+    lane, keep = part.index(index), slice(0, drive.steps, max(1, drive.steps // LOOP_POINTS))
+    own = {place: np.flatnonzero(counts == place) for place in places}
+    return (
+        {place: motion[rows[0], lane, keep] for place, rows in own.items()},
+        {place: -force[rows, lane, keep].sum(axis=0) for place, rows in own.items()},
+    )
