@@ -25,14 +25,20 @@ class OutputFilter:
 
     first (2 * half + 1,): at the step rate.
     second (tap,): at the step rate / RATIO.
-    second_derivative (tap,): the same with two time derivatives, 1/s².
+    first_derivative, second_derivative (tap,): the same with one and two time derivatives, 1/s and
+    1/s².
     step: decimation of the second stage.
     """
 
     first: np.ndarray
     second: np.ndarray
+    first_derivative: np.ndarray
     second_derivative: np.ndarray
     step: int
+
+    def taps(self, order: int) -> np.ndarray:
+        """Second stage with so many time derivatives, 0 to 2; it is correlated, not convolved."""
+        return (self.second, self.first_derivative, self.second_derivative)[order]
 
     @property
     def delay(self) -> int:
@@ -86,11 +92,11 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
         ),
         LONGEST_DIFFERENCE,
     )
-    difference = _second_difference(order) * middle_rate**2
     return OutputFilter(
         first=first,
         second=np.pad(second, order),
-        second_derivative=np.convolve(second, difference),
+        first_derivative=np.convolve(second, _first_difference(order) * middle_rate),
+        second_derivative=np.convolve(second, _second_difference(order) * middle_rate**2),
         step=round(ratio / RATIO),
     )
 
@@ -139,6 +145,16 @@ def _kaiser_lowpass(passband: float, stopband: float) -> np.ndarray:
     cut = passband + stopband
     taps = cut * np.sinc(cut * n) * np.kaiser(2 * half + 1, 0.1102 * (KAISER_ATTENUATION_DB - 8.7))
     return taps / taps.sum()
+
+
+def _first_difference(order: int) -> np.ndarray:
+    """Central-difference weights of the first derivative at unit spacing, 2 * order + 1 points
+    (Fornberg), in the order of the samples.
+    """
+    n = np.arange(1, order + 1)
+    powers = n[None, :].astype(float) ** (2 * n[:, None] - 1)
+    side = np.linalg.solve(powers, np.where(n == 1, 0.5, 0.0))
+    return np.concatenate([-side[::-1], [0.0], side])
 
 
 def _second_difference(order: int) -> np.ndarray:
