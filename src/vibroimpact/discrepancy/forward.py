@@ -12,6 +12,7 @@ from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO, SLOTS
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
 
 from .sensed import force_weights, moving, orders
@@ -25,10 +26,11 @@ NO_GAP_M = 1.0  # where a record has no clearance
 
 def schedule_of(campaign, integration, duration_s):
     """Return the Schedule of runs from rest at the campaign's sampling frequency, its steps at
-    least those of the model's configuration.
+    least those of the model's configuration and as many as the output filter needs.
     """
     sampling = float(campaign.attrs["sampling_frequency"])
-    ratio = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
+    needed = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
+    ratio = max(LEAST_STAGES, needed)
     return Schedule(RATIO * ratio * sampling, sampling, 0.0, duration_s, integration.scheme)
 
 

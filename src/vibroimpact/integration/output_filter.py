@@ -12,6 +12,7 @@ import numpy as np
 
 from .kernels.decimation import BEHIND, RATIO, SLOTS
 
+LEAST_STAGES = 2  # decimation of the second stage at least
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
 DIFFERENCE_ERROR = 1e-6  # relative, of the second derivative up to the end of the passband
@@ -68,14 +69,15 @@ class OutputFilter:
 def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputFilter:
     """The filter for one pair of rates [Hz].
 
-    Raises ValueError when the ratio of the rates is not a multiple of RATIO.
+    Raises ValueError when the ratio of the rates is not a multiple of RATIO, or no more than RATIO:
+    the first stage then stops what is to pass, and no second stage makes it good (6 % were left).
     """
     ratio = steps_per_second / sampling_frequency
-    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < RATIO:
+    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < LEAST_STAGES * RATIO - 1e-9:
         raise ValueError(
-            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}:"
-            f" choose a sampling frequency of {steps_per_second / RATIO:g} Hz divided by a whole"
-            " number"
+            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}, at"
+            f" least {LEAST_STAGES * RATIO}: choose a sampling frequency of"
+            f" {steps_per_second / RATIO:g} Hz divided by a whole number, {LEAST_STAGES} or more"
         )
     middle_rate = steps_per_second / RATIO
     stop = 0.5 * sampling_frequency
