@@ -469,9 +469,9 @@ def mixed_up(bench):
         return []
     omega, model = 2.0 * np.pi * spectra.frequency, bench.bare
     receptance = np.einsum(
-        "mc,m,ml->cl",
+        "mc,ml,ml->cl",
         model.sensor_shapes,
-        model.drive_shapes[:, 0],
+        model.drive_shapes @ beside_first(measured, bench.signals.lowest, omega.size),
         1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega),
     )
     motion = np.array([differentiated(omega, kind) for kind in measured.kinds])
@@ -482,6 +482,17 @@ def mixed_up(bench):
         measured.kinds,
         measured.records[bench.signals.lowest],
     )
+
+
+def beside_first(measured, record, lines):
+    """Return (force_channel, line): what of each force of CampaignSignals goes with the first in a
+    record, 1 for that itself, at the lines of its transfer.
+    """
+    others = [force[1:] for force in measured.force]
+    if not len(others[record]):
+        return np.ones((1, lines))
+    alone = replace(measured, response=others)
+    return np.concatenate([np.ones((1, lines)), transfer(alone, record).h1])
 
 
 CONTRADICTED = (

@@ -298,7 +298,8 @@ def _linear(measured, spectra, record):
             name,
             measured.forces[0],
         )
-    yield from _mix_ups(measured, spectra, name)
+    if len(measured.forces) == 1:  # of several, each may drive what does not follow the first
+        yield from _mix_ups(measured, spectra, name)
 
 
 def _mix_ups(measured, spectra, name):
