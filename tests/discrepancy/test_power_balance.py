@@ -17,7 +17,11 @@ def test_damper_power_is_force_squared_over_its_constant():
     velocity = np.fft.rfft(force) / 50.0  # through a damper of 50 N s/m
     acceleration = np.fft.irfft(1j * omega * velocity, len(force))
     displacement = np.fft.irfft(velocity / np.where(inside, 1j * omega, 1.0), len(force))
-    for kind, response in (("acceleration", acceleration), ("displacement", displacement)):
+    for kind, response in (
+        ("acceleration", acceleration),
+        ("velocity", np.fft.irfft(velocity, len(force))),
+        ("displacement", displacement),
+    ):
         assert input_power(force, response, kind, RATE, (10.0, 210.0)) == pytest.approx(
             np.mean(force**2) / 50.0, rel=0.02
         )
@@ -34,11 +38,12 @@ def test_a_spring_takes_no_power():
     )
 
 
-def campaign(point, direction):
+def campaign(point, direction, kind="velocity"):
     return xr.Dataset(
         {
             "channel_point": (("channel", "xyz"), [[0.0, 0.0, 1.0], point]),
             "channel_direction": (("channel", "xyz"), [[0.0, 1.0, 0.0], direction]),
+            "channel_kind": ("channel", ["acceleration", kind]),
             "force_channel_point": (("force_channel", "xyz"), [[0.2, 0.0, 0.9]]),
             "force_channel_direction": (("force_channel", "xyz"), [[0.0, 1.0, 0.0]]),
         }
@@ -49,3 +54,4 @@ def test_drive_point_channel_is_found_with_its_sign():
     assert drive_channel(campaign([0.2, 0.0, 0.9], [0.0, -1.0, 0.0])) == (1, -1.0)
     assert drive_channel(campaign([0.2, 0.0, 0.9], [1.0, 0.0, 0.0])) is None
     assert drive_channel(campaign([0.2, 0.0, 0.8], [0.0, 1.0, 0.0])) is None
+    assert drive_channel(campaign([0.2, 0.0, 0.9], [0.0, 1.0, 0.0], "contact_force")) is None

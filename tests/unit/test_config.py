@@ -258,6 +258,11 @@ REFUSALS = [
         ["steps_per_second = 50000", "5 times a whole multiple", "51200 is near"],
     ),
     (
+        "record.sampling_frequency_Hz",
+        4096,
+        ["steps_per_second = 20480", "5 times a whole multiple", "by 2 or more", "40960 is near"],
+    ),
+    (
         "integration.steps_per_second",
         49152,
         ["steps_per_second = 49152", "5 times a whole multiple", "51200 is near"],

@@ -52,6 +52,30 @@ def test_second_derivative_of_a_sine():
         )
 
 
+def test_first_derivative_of_a_sine():
+    """Of a cosine the derivative is less sine, a quarter of a period later in the filter's taps."""
+    design = output_filter(RATE, SAMPLING)
+    delay, middle = design.delay, RATE / 5
+    n = np.arange(-delay, delay + 1)
+    for frequency in (16.0, 200.0, 790.0):
+        phase = 2 * np.pi * frequency * n / middle
+        displacement, velocity = design.second @ np.cos(phase), design.taps(1) @ np.sin(phase)
+        assert velocity / displacement == pytest.approx(2 * np.pi * frequency, rel=1e-5)
+        assert abs(design.taps(1) @ np.cos(phase)) < 1e-9 * 2 * np.pi * frequency
+
+
+@pytest.mark.parametrize(
+    ("rate", "stages"), [(1024.0, 4), (2048.0, 2), (5000.0, 2), (5000.0, 3), (8192.0, 2)]
+)
+def test_pass_band_is_flat_at_any_sampling_rate(rate, stages):
+    design = output_filter(5 * stages * rate, rate)
+    frequency = np.linspace(0.0, 0.78 * rate / 2, 500)
+    level = 20 * np.log10(design.response(frequency, 5 * stages * rate))
+    assert np.max(np.abs(level)) < 0.05
+
+
 def test_rates_that_do_not_fit_are_refused():
     with pytest.raises(ValueError, match="must be a multiple of 5"):
         output_filter(25600.0, 2048.0)
+    with pytest.raises(ValueError, match="at least 10: choose a sampling frequency of 4096 Hz"):
+        output_filter(20480.0, 4096.0)

@@ -6,7 +6,8 @@ Required variables:
 
 - force (record, force_channel, time): N, or force_channel_units (force_channel)
 - response (record, channel, time): channel_units (channel), any UDUNITS text
-- channel_kind (channel): acceleration, velocity, displacement, contact_force or generic
+- channel_kind (channel): acceleration, velocity, displacement, contact_force (of the support at
+  channel_point on the structure, the sum over its contact points) or generic
 - channel_name (channel), channel_point (channel, xyz) m
 - channel_direction (channel, xyz): unit vector of the positive sense
 - force_channel_name, force_channel_point, force_channel_direction: the same for forces

@@ -304,18 +304,22 @@ def transfer_band(signals: CampaignSignals) -> tuple[float, float] | None:
 
 
 def excited_band(force: np.ndarray, rate: float) -> tuple[float, float]:
-    """Return (low, high) in Hz of the band that the first force excites.
+    """Return (low, high) in Hz of the band that the forces excite.
 
     force (record, force_channel, sample): N, NaN beyond valid samples.
     rate: Hz.
 
-    In the band the PSD, summed over all records, is above EXCITED_PSD of its largest lines. Ends
-    close to DEFAULT_BAND_HZ become those.
+    In the band the PSD, summed over all records, is above EXCITED_PSD of its largest lines; several
+    forces count alike, whatever their sizes. Ends close to DEFAULT_BAND_HZ become those.
     """
     length = int(4.0 * rate)
     window = np.hanning(length)
     power = np.zeros(length // 2 + 1)
-    for series in np.nan_to_num(force[:, 0]):
+    force = np.nan_to_num(force)
+    if force.shape[1] > 1:
+        rms = np.sqrt(np.mean(force**2, axis=(0, 2), keepdims=True))
+        force = force / np.where(rms > 0.0, rms, 1.0)
+    for series in force.reshape(-1, force.shape[-1]):
         for first in range(0, max(len(series) - length, 0) + 1, length // 2):
             power += (
                 np.abs(np.fft.rfft(window * np.resize(series[first : first + length], length))) ** 2

@@ -29,7 +29,8 @@ from .structure import Structure
 Problems = Iterator[tuple[str, Any, str]]
 
 STEPS_PER_EXCITED_PERIOD = 20
-FILTER_RATIO = 5  # kernels.RATIO, which only what integrates may import
+# kernels.RATIO and output_filter.LEAST_STAGES, which only what integrates may import
+FILTER_RATIO, FILTER_STAGES = 5, 2
 # In rad. The exact scheme has no error in a mode alone; below pi, a mode is not aliased.
 LARGEST_OMEGA_STEP = {"newmark": 1.0, "exact": 2.8}
 MOST_STEPS_KEPT = 2e6
@@ -271,15 +272,15 @@ def _step_and_samples(integration: Integration, record: RecordKeys) -> Problems:
         return
     ratio = integration.steps_per_second / record.sampling_frequency_Hz
     stages = ratio / FILTER_RATIO
-    if stages < 1 or abs(stages - round(stages)) > TOLERANCE:
-        nearest = max(1, round(stages)) * FILTER_RATIO * record.sampling_frequency_Hz
+    if stages < FILTER_STAGES - TOLERANCE or abs(stages - round(stages)) > TOLERANCE:
+        nearest = max(FILTER_STAGES, round(stages)) * FILTER_RATIO * record.sampling_frequency_Hz
         yield (
             "integration.steps_per_second",
             integration.steps_per_second,
             (
                 f"must be {FILTER_RATIO} times a whole multiple of record.sampling_frequency_Hz ="
                 f" {record.sampling_frequency_Hz:g} (the output filter's first stage divides by"
-                f" {FILTER_RATIO}): {nearest:g} is near"
+                f" {FILTER_RATIO}, its second by {FILTER_STAGES} or more): {nearest:g} is near"
             ),
         )
 

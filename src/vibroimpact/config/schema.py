@@ -85,7 +85,7 @@ class Integration(Section):
         ),
     ] = Field(
         20480,
-        description="Integration steps per second: 5 times a whole multiple of"
+        description="Integration steps per second: 5 times a whole multiple, 2 or more, of"
         " record.sampling_frequency_Hz, unless record.every_step is true.",
         examples=[20480],
     )

@@ -12,6 +12,8 @@ from vibroimpact.config.schema import Sensors
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.reduced_model import build_model
 
+from .sensed import moving
+
 NEAR_M = 5.0e-3  # farther from the structure is no place on it
 SAME_POINT_M = 1.0e-3
 
@@ -21,7 +23,8 @@ def attach(config, campaign):
     as drives, and nothing else to keep.
 
     config: a checked Config or StageSettings of a tube. Sensors are the displacements along
-    channel_direction, positive in its sense, in the order of the channels. Raises CampaignError
+    channel_direction, positive in its sense, in the order of the channels; none of it, zero, for a
+    channel that measures no motion. Raises CampaignError
     when a channel or force is farther than 5 mm from the structure; the message lists all of them.
     """
     places = np.vstack([campaign["channel_point"].values, campaign["force_channel_point"].values])
@@ -53,6 +56,7 @@ def attach(config, campaign):
         "mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), acting
     )
     channels = campaign.sizes["channel"]
+    shapes[:, :channels] *= moving(campaign["channel_kind"].values)
     return replace(
         model,
         gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
@@ -66,12 +70,12 @@ def attach(config, campaign):
 
 def with_channel_points(config, campaign):
     """Return the configuration with a named point at every channel where it has none: what sits
-    there, or was put there with it, may be missing in it.
+    there, or was put there with it, may be missing in it. A support's load cell is no such thing.
     """
     points, taken = dict(config.points), list(config.points.values())
-    for name, place in zip(
-        campaign["channel_name"].values, campaign["channel_point"].values, strict=True
-    ):
+    names, places = campaign["channel_name"].values, campaign["channel_point"].values
+    for channel in np.flatnonzero(moving(campaign["channel_kind"].values)):
+        name, place = names[channel], places[channel]
         if all(np.linalg.norm(np.subtract(place, other)) > SAME_POINT_M for other in taken):
             new = re.sub(r"[^A-Za-z0-9_.-]", "_", str(name))
             while (

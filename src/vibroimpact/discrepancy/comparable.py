@@ -1,8 +1,8 @@
 """What of a campaign is compared with a model, and why a campaign and a model can not be compared.
 
-Simulated are accelerations and displacements of a tube under forces in N. Nothing else is simulated
-in their place: other channels are left out, and what leaves too little is refused, both with a
-sentence.
+Simulated are motions of a tube under forces in N, and the forces of its supports on it. Nothing
+else is simulated in their place: other channels are left out, and what leaves too little is
+refused, both with a sentence.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ from vibroimpact.geometry.sections import outer_width
 from vibroimpact.units import UnitError, si_factor
 
 from .measuring import NO_CHANNELS
+from .sensed import CONTACT_FORCE, SENSED, across, support_at
 
-SIMULATED = ("acceleration", "displacement")
-READ = " and ".join(SIMULATED)
+READ = ", ".join(SENSED).replace("_", " ")
+LEFT_OUT = "channels"  # name of the check
+ACROSS = 0.1  # cosine between a contact force and the directions in which its support acts
 NO_DIRECTION = 1.0e-6  # length below which a vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
@@ -32,10 +34,10 @@ def channel_faults(campaign: xr.Dataset) -> dict[int, str]:
     faults = {}
     for channel in range(campaign.sizes["channel"]):
         name, kind = (str(campaign[f"channel_{key}"].values[channel]) for key in ("name", "kind"))
-        if kind not in SIMULATED:
+        if kind not in SENSED:
             faults[channel] = (
-                f"{name} measures {kind.replace('_', ' ')}; a comparison with a model reads {READ}:"
-                " it is left out"
+                f"{name} is of kind {kind.replace('_', ' ')}; a comparison with a model reads"
+                f" {READ}: it is left out"
             )
         elif _nowhere(campaign, "channel", channel):
             faults[channel] = (
@@ -55,9 +57,53 @@ def channel_rows(campaign: xr.Dataset) -> list[dict]:
     """Return the rows of checks that tell which channels are left out."""
     names = campaign["channel_name"].values
     return [
-        check_row("channels", "warn", f"{sentence}.", channel=str(names[channel]))
+        _left_out(str(names[channel]), sentence)
         for channel, sentence in channel_faults(campaign).items()
     ]
+
+
+def contact_force_rows(model: Any, signals: Any) -> list[dict]:
+    """Return the rows of checks that tell which contact forces are left out beside a model.
+
+    model: ModalModel attached to the campaign; signals: its Signals.
+    """
+    rows = []
+    for channel in np.flatnonzero(np.asarray(signals.kinds) == CONTACT_FORCE):
+        why = _not_a_support(model, channel)
+        if why is None and not signals.noise[channel] > 0.0:
+            why = (
+                "of which nothing but noise is left where the tube does not touch, and its noise is"
+                " not known: it is left out; give noise_floor_rms"
+            )
+        if why:
+            name = signals.names[channel]
+            rows.append(_left_out(name, f"{name} is a contact force {why}"))
+    return rows
+
+
+def _not_a_support(model, channel):
+    """Return why a channel can be no force of a support of the model, None where it can."""
+    support = support_at(model, model.sensor_positions[channel])
+    if support is None:
+        return (
+            f"at no support of the model ({', '.join(model.support_names) or 'it has none'}): it is"
+            " left out; give as channel_point the middle of its support"
+        )
+    if np.abs(across(model, support) @ model.sensor_directions[channel]).max() < ACROSS:
+        return (
+            f"along the tube, in which direction {model.support_names[support]} has none in the"
+            " model: it is left out"
+        )
+    return None
+
+
+def left_out(checks: list[dict]) -> set[str]:
+    """Return the names of channels that rows of checks leave out of a comparison with a model."""
+    return {row["channel"] for row in checks if row["check"] == LEFT_OUT and row["channel"]}
+
+
+def _left_out(name: str, sentence: str) -> dict:
+    return check_row(LEFT_OUT, "warn", f"{sentence}.", channel=name)
 
 
 def model_problems(config: Any) -> list[str]:

@@ -15,6 +15,8 @@ COARSE = 8  # bands of the coherences
 SEGMENT_S = 5.0
 LEAST_SEGMENTS = 7
 SAME_POINT_M = 1.0e-3
+# variance in SI of a channel that does not move: its shape is taken for that of noise
+STILL = 1.0e-100
 BLEND = {
     "power": 10.0,
     "coherence": 1.0,
@@ -121,9 +123,13 @@ def record_features(layout, force, response):
         axis=-1, keepdims=True, dtype=np.float64
     )
     square = centred * centred
-    variance = np.maximum(square.mean(axis=-1), 1.0e-300)
-    values.append(np.cbrt(np.mean(square * centred, axis=-1) / variance**1.5))
-    values.append(np.log(np.mean(square * square, axis=-1) / (3.0 * variance**2)))
+    variance = square.mean(axis=-1)
+    still = variance < STILL
+    variance = np.where(still, 1.0, variance)
+    skewness = np.mean(square * centred, axis=-1) / variance**1.5
+    kurtosis = np.mean(square * square, axis=-1) / (3.0 * variance**2)
+    values.append(np.cbrt(np.where(still, 0.0, skewness)))
+    values.append(np.log(np.where(still, 1.0, kurtosis)))
     return np.concatenate(values)
 
 

@@ -12,7 +12,10 @@ from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO, SLOTS
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
+
+from .sensed import force_weights, moving, orders
 
 IMPERFECTION = 1.0e-6  # of the gap: what tells one run of the same force from another
 LOST = (
@@ -23,10 +26,11 @@ NO_GAP_M = 1.0  # where a record has no clearance
 
 def schedule_of(campaign, integration, duration_s):
     """Return the Schedule of runs from rest at the campaign's sampling frequency, its steps at
-    least those of the model's configuration.
+    least those of the model's configuration and as many as the output filter needs.
     """
     sampling = float(campaign.attrs["sampling_frequency"])
-    ratio = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
+    needed = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
+    ratio = max(LEAST_STAGES, needed)
     return Schedule(RATIO * ratio * sampling, sampling, 0.0, duration_s, integration.scheme)
 
 
@@ -56,14 +60,15 @@ def simulate_records(model, schedule, forces, runs, kinds):
     """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed),
     LANES of them at a time.
 
-    kinds: (channel,) of the campaign; accelerations and displacements are simulated, velocity is
-    the integral of neither: refused by the checks. A run that diverges is NaN where few of its
-    batch do, IntegrationError where more. Before a record begins, the structure rests under its
-    dead loads, against its supports where it must. A run's seed draws the tiny offset of the
-    obstacles that makes two runs of an impacting tube differ.
+    kinds: (channel,) of the campaign, see sensed.SENSED; each channel is simulated as its own.
+    Raises ValueError for another kind, and for a contact force that is at no support. A run that
+    diverges is NaN where few of its batch do, IntegrationError where more. Before a record begins,
+    the structure rests under its dead loads, against its supports where it must. A run's seed draws
+    the tiny offset of the obstacles that makes two runs of an impacting tube differ.
     """
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
-    acceleration = np.array([kind == "acceleration" for kind in kinds])
+    moves, weights = moving(kinds), force_weights(model, kinds)
+    schedule = replace(schedule, derivatives=tuple(map(int, orders(kinds))))
     for first in range(0, len(runs), LANES):
         batch = runs[first : first + LANES]
         gaps = np.array([gap if np.isfinite(gap) else NO_GAP_M for _, gap, _ in batch])
@@ -96,10 +101,11 @@ def simulate_records(model, schedule, forces, runs, kinds):
             force[..., list(lost)] = 0.0
             return np.pad(force, ((silent, 0), (0, 0), (0, 0)))
 
-        def receive(at, displacement, accelerations, _, first=first, size=len(batch)):
-            stop = at + displacement.shape[-1]
-            out[first : first + size, acceleration, at:stop] = accelerations[:, acceleration]
-            out[first : first + size, ~acceleration, at:stop] = displacement[:, ~acceleration]
+        def receive(at, _, motion, force, first=first, size=len(batch)):
+            rows, columns = slice(first, first + size), slice(at, at + motion.shape[-1])
+            out[rows, moves, columns] = motion[:, moves]
+            if len(weights):
+                out[rows, ~moves, columns] = weights @ force[:, : weights.shape[1]]
 
         while True:
             try:

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .sensed import orders
+
 LONGEST_LAG_S = 0.02
 HEARD, FEWEST = 3.0, 50  # times the noise of a line, and so many lines
 EXCITED = 1.0e-3  # of the strongest line of the force
@@ -44,7 +46,7 @@ def from_phases(lines, noise):
     lines of a record (ModalLines) alone; noise (channel,) RMS in the band.
 
     Modes damped in proportion answer in phase or against it away from their resonances, so that
-    twice the phase per force is zero on most lines.
+    twice the phase per force is zero on most lines; half a turn for velocities.
     """
     record = lines.record
     force = record.short_spectra(record.spectrum[:1])[0]
@@ -53,11 +55,12 @@ def from_phases(lines, noise):
     )  # of periodic forces most lines are empty
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / record.frequency[-1])
     out = np.zeros(len(lines.measured))
+    sense = 1.0 - 2.0 * (orders(lines.kinds) % 2)
     for channel, own in enumerate(lines.measured):
         heard = (np.abs(own) > HEARD * noise[channel] / np.sqrt(own.size)) & driven
         if heard.sum() < FEWEST:
             continue
-        squared = (own[heard] / force[heard]) ** 2
+        squared = sense[channel] * (own[heard] / force[heard]) ** 2
         score = (
             np.real(
                 (squared / np.abs(squared))

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy import fft
 
+from .sensed import differentiated
+
 DISCARDED = 0.2  # of a record that did not start from rest
 RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band's upper end
 
@@ -26,7 +28,6 @@ class LinearRecord:
         self.omega = 2.0 * np.pi * fft.rfftfreq(self.length, 1.0 / rate)[:kept]
         self.spectrum = fft.rfft(force[..., :samples], self.length)[..., :kept]
         self.squared = self.omega**2
-        self.accelerating = -self.squared * self.spectrum
         frequency = fft.rfftfreq(samples - self.first, 1.0 / rate)
         self.lines = np.flatnonzero((frequency >= band_Hz[0]) & (frequency <= band_Hz[1]))
         self.frequency = frequency[self.lines]
@@ -37,29 +38,29 @@ class LinearRecord:
             ..., self.lines
         ] * np.sqrt(2.0 / (self.samples - self.first) ** 2)
 
-    def responses(self, omega, damping, drive_shapes, kinds):
+    def responses(self, omega, damping, drive_shapes, kind):
         """Return (mode, line) complex for modes of omega rad/s, damping = 2 zeta omega 1/s and
         drive_shapes (mode, force_channel).
 
-        kinds: acceleration or displacement, of all of them.
+        kind: of motion: displacement, velocity or acceleration.
         """
         return self.short_spectra(
-            self._driving(drive_shapes, kinds) / self._stiffness(omega, damping)
+            self._driving(drive_shapes, kind) / self._stiffness(omega, damping)
         )
 
-    def changes(self, omega, damping, drive_shapes, kinds):
+    def changes(self, omega, damping, drive_shapes, kind):
         """Return (by ln omega, by ln damping ratio) of what responses returns, each (mode,
         line).
         """
         stiffness, damped = self._stiffness(omega, damping), 1j * damping[:, None] * self.omega
-        falling = -self._driving(drive_shapes, kinds) / stiffness**2
+        falling = -self._driving(drive_shapes, kind) / stiffness**2
         return self.short_spectra(
             falling * (2.0 * omega[:, None] ** 2 + damped)
         ), self.short_spectra(falling * damped)
 
-    def _driving(self, drive_shapes, kinds):
-        """Return (mode, line): the modal force, for displacements or accelerations."""
-        return drive_shapes @ (self.accelerating if kinds == "acceleration" else self.spectrum)
+    def _driving(self, drive_shapes, kind):
+        """Return (mode, line): the modal force, differentiated as a kind of motion is."""
+        return drive_shapes @ (differentiated(self.omega, kind) * self.spectrum)
 
     def _stiffness(self, omega, damping):
         """Return (mode, line) dynamic stiffness of modes."""

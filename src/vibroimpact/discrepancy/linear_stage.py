@@ -5,11 +5,14 @@ The same fit reads the measured and a simulated record, so that what it can not 
 which modes, from where, and by which participations; see modal_fit for a fit itself.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from .lags import driven_modes, from_phases, lags
-from .modal_fit import LARGEST_LOG_DAMPING, ModalLines
+from .modal_fit import LARGEST_LOG_DAMPING, ModalLines, combined, responses_of
 from .pursuit import assigned, pursued
+from .sensed import differentiated, kind_groups, moving
 
 MODEL_ERROR = (
     3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
@@ -30,18 +33,50 @@ LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the 
 def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=True):
     """Return the ModalFit of responses (channel, sample) to the force of a LinearRecord.
 
-    model: ModalModel attached to the campaign; kinds (channel,), all of one kind; noise_rms
+    model: ModalModel attached to the campaign; kinds (channel,), see sensed.SENSED; noise_rms
     (channel,) in the band. visible: the modes to fit, as another fit had them; chosen by their
     predicted share where it is None; search: where the model's frequencies lead nowhere, look for
-    resonances without it. Returns None where no mode is visible.
+    resonances without it. Channels that measure no motion take no part: participation, delay and
+    share are 0 and the residual is 1, that of noise. Returns None where no mode is visible.
     """
+    moves, kinds = moving(kinds), np.asarray(kinds)
+    if not moves.any():
+        return None
+    if not moves.all():
+        responses, noise_rms, kinds = responses[moves], noise_rms[moves], kinds[moves]
+        model = with_sensors(model, moves)
     found = _fit(record, responses, model, kinds, noise_rms, visible)
-    if found is None or visible is not None or not search or left(found, model) < LOST:
-        return found
-    return min(
-        found,
-        _fit(record, responses, model, kinds, noise_rms, visible, True),
-        key=lambda fit: left(fit, model),
+    if found is not None and visible is None and search and left(found, model) >= LOST:
+        found = min(
+            found,
+            _fit(record, responses, model, kinds, noise_rms, visible, True),
+            key=lambda fit: left(fit, model),
+        )
+    return found if found is None or moves.all() else _among_all(found, moves)
+
+
+def with_sensors(model, chosen):
+    """Return the ModalModel with the sensors chosen (sensor,) bool alone."""
+    return replace(
+        model,
+        sensor_shapes=model.sensor_shapes[:, chosen],
+        sensor_names=tuple(np.array(model.sensor_names, dtype=object)[chosen]),
+        sensor_positions=model.sensor_positions[chosen],
+        sensor_directions=model.sensor_directions[chosen],
+    )
+
+
+def _among_all(found, moves):
+    """Return a ModalFit of the channels that measure a motion, moves (channel,), as one of all."""
+
+    def placed(values, other):
+        out = np.full((len(moves), *values.shape[1:]), other, values.dtype)
+        out[moves] = values
+        return out
+
+    neutral = {"participation": 0.0, "delay": 0.0, "residual": 1.0, "share": 0.0}
+    return replace(
+        found, **{name: placed(getattr(found, name), other) for name, other in neutral.items()}
     )
 
 
@@ -49,19 +84,19 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     """Return the ModalFit from the model's frequencies, or from where the resonances are found
     without it.
     """
-    kind = "acceleration" if kinds[0] == "acceleration" else "displacement"
     measured = record.spectra(np.asarray(responses, float))
     near = np.flatnonzero(
         (model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1])
     )
-    expected = record.responses(
-        model.omega[near], model.damping[near], model.drive_shapes[near], kind
+    expected = responses_of(
+        record, model.omega[near], model.damping[near], model.drive_shapes[near], kinds
     )
-    size = np.sqrt(np.sum(np.abs(expected) ** 2, axis=-1))
+    sizes = {kind: np.sqrt(np.sum(np.abs(own) ** 2, axis=-1)) for kind, own in expected.items()}
+    size = np.array([sizes[kind] for kind in kinds]).T
     noise = np.maximum(noise_rms, 1.0e-12)
     fixed = visible is not None
     if not fixed:
-        chosen = ((np.abs(model.sensor_shapes[near]) * size[:, None]) > VISIBLE * noise).any(axis=1)
+        chosen = ((np.abs(model.sensor_shapes[near]) * size) > VISIBLE * noise).any(axis=1)
         inside = model.omega[near] < 2.0 * np.pi * record.frequency[-1] * 1.02
         visible = near[chosen & inside]
     if len(visible) == 0:
@@ -79,7 +114,7 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     ):  # modes that the model does not excite, and delays, are seen once the rest is taken out
         drive = model.drive_shapes[visible].copy()
         drive[~driven_modes(model, visible), 0] = 1.0
-        rest = _rest(record, model, visible, kind)
+        rest = _rest(record, model, visible, kinds)
         strict, more = _seen(model, visible, True), _seen(model, visible, False)
 
         def lines_at(delay, rest=rest, visible=visible, drive=drive):
@@ -90,14 +125,14 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
                 model,
                 visible,
                 drive,
-                kind,
+                kinds,
             )
 
         if (
             not fixed and lag is None
         ):  # a late channel would pull the fit of all: first with a phase for every participation
             start = (
-                _elsewhere(record, lines_at(delay).measured, weights, model, visible, kind)
+                _elsewhere(record, lines_at(delay).measured, weights, model, visible, kinds)
                 if elsewhere
                 else None
             )
@@ -120,7 +155,7 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
             lag, start, visible = None, None, visible[~nothing]
             continue
         extra = _unexpected(
-            record, _turned_back(measured, record, delay), found, weights, drive, model, near, kind
+            record, _turned_back(measured, record, delay), found, weights, drive, model, near, kinds
         )
         if not len(extra):
             break
@@ -156,12 +191,12 @@ def _told(lag):
     return np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
 
 
-def _elsewhere(record, measured, weights, model, visible, kind):
+def _elsewhere(record, measured, weights, model, visible, kinds):
     """Return (visible,) ln of the frequencies at which the record has its strongest resonances over
     those of the model.
     """
     zeta = np.median(model.damping[visible] / (2.0 * model.omega[visible]))
-    return assigned(*pursued(record, measured, weights, len(visible), zeta, kind), model, visible)
+    return assigned(*pursued(record, measured, weights, len(visible), zeta, kinds), model, visible)
 
 
 def left(found, model):
@@ -174,11 +209,12 @@ def left(found, model):
     return found.residual[driven > 1.0e-3 * driven.max()].max()
 
 
-def _fitted(record, found, drive, model, kind):
+def _fitted(record, found, drive, model, kinds):
     """Return (channel, line) the response that a fit gives, without what the other modes add."""
     omega = model.omega[found.modes] * np.exp(found.log_frequency)
     zeta = model.damping[found.modes] / (2.0 * model.omega[found.modes]) * np.exp(found.log_damping)
-    return found.participation @ record.responses(omega, 2.0 * zeta * omega, drive, kind)
+    basis = responses_of(record, omega, 2.0 * zeta * omega, drive, kinds)
+    return combined(found.participation, basis, kinds)
 
 
 def _implausible(found):
@@ -200,25 +236,24 @@ def _seen(model, modes, strict):
     return shown if strict else shown | ~(shown.astype(int) @ beside.astype(int) > 0)
 
 
-def _unexpected(record, measured, found, weights, drive, model, near, kind):
+def _unexpected(record, measured, found, weights, drive, model, near, kinds):
     """Return the modes that the model does not excite visibly but the record holds."""
     residual = (
         measured
-        - _fitted(record, found, drive, model, kind)
-        - _rest(record, model, found.modes, kind)
+        - _fitted(record, found, drive, model, kinds)
+        - _rest(record, model, found.modes, kinds)
     )
     extra = []
     for mode in np.setdiff1d(near, found.modes):
         if model.omega[mode] > 2.0 * np.pi * record.frequency[-1]:
             continue
-        basis = record.responses(
-            model.omega[[mode]], model.damping[[mode]], np.eye(1, model.drive_shapes.shape[1]), kind
-        )[0]
+        drive = np.eye(1, model.drive_shapes.shape[1])
+        basis = responses_of(record, model.omega[[mode]], model.damping[[mode]], drive, kinds)
         gain = 0.0
         for channel in np.flatnonzero(
             np.abs(model.sensor_shapes[mode]) > 1.0e-6 * np.abs(model.sensor_shapes).max()
         ):
-            y, b = weights[channel] * residual[channel], weights[channel] * basis
+            y, b = weights[channel] * residual[channel], weights[channel] * basis[kinds[channel]][0]
             gain += np.vdot(b, y).real ** 2 / np.vdot(b, b).real
         if gain > UNEXPECTED and not _covered(model, mode, found):
             extra.append(mode)
@@ -238,7 +273,7 @@ def _covered(model, mode, found):
     return False
 
 
-def _rest(record, model, visible, kind):
+def _rest(record, model, visible, kinds):
     """Return (channel, line): what the modes that are not fitted add, those far above the band as
     their static response.
     """
@@ -254,8 +289,8 @@ def _rest(record, model, visible, kind):
         lines[:, reach] += model.sensor_shapes[part].T @ (
             transfer * (model.drive_shapes[part] @ force)
         )
-    if kind == "acceleration":
-        lines *= -(record.omega**2)
+    for kind, own in kind_groups(kinds).items():
+        lines[own] *= differentiated(record.omega, kind)
     return record.short_spectra(lines)
 
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
+from .sensed import kind_groups
+
 ITERATIONS = 12  # of Gauss-Newton at most
 RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
 LARGEST_LOG_DAMPING = 3.0
@@ -47,17 +49,18 @@ class ModalLines:
     """The lines of a record to which modes are fitted.
 
     record: LinearRecord; measured, weights: (channel, line); model: ModalModel; modes (fitted,):
-    indices of its modes that are fitted; drive (fitted, force_channel); kind: of all channels.
+    indices of its modes that are fitted; drive (fitted, force_channel); kinds (channel,): of
+    motion.
     """
 
-    def __init__(self, record, measured, weights, model, modes, drive, kind):
-        self.record, self.measured, self.weights, self.modes, self.drive, self.kind = (
+    def __init__(self, record, measured, weights, model, modes, drive, kinds):
+        self.record, self.measured, self.weights, self.modes, self.drive, self.kinds = (
             record,
             measured,
             weights,
             modes,
             drive,
-            kind,
+            np.asarray(kinds),
         )
         self.omega, self.zeta, self.count = (
             model.omega[modes],
@@ -81,7 +84,7 @@ class ModalLines:
         for _ in range(ITERATIONS):
             basis = self._basis(logs)
             shapes = self._participations(basis, seen, phases)
-            residual = self.weights * (self.measured - shapes @ basis)
+            residual = self.weights * (self.measured - combined(shapes, basis, self.kinds))
             cost = np.sum(np.abs(residual) ** 2)
             if cost < best_cost:
                 converged = best is not None and best_cost - cost < SETTLED * cost
@@ -124,7 +127,13 @@ class ModalLines:
         basis = self._basis(np.concatenate([found.log_frequency, found.log_damping]))
         one, other = (
             np.sum(
-                np.abs(self.weights * (self.measured - self._participations(basis, which) @ basis))
+                np.abs(
+                    self.weights
+                    * (
+                        self.measured
+                        - combined(self._participations(basis, which), basis, self.kinds)
+                    )
+                )
                 ** 2
             )
             for which in (seen, more)
@@ -137,14 +146,15 @@ class ModalLines:
         return omega, 2.0 * self.zeta * np.exp(logs[self.count :]) * omega
 
     def _basis(self, logs):
-        """Return (fitted, line): the response of each mode alone."""
-        return self.record.responses(*self._at(logs), self.drive, self.kind)
+        """Return {kind: (fitted, line)}: the response of each mode alone."""
+        return responses_of(self.record, *self._at(logs), self.drive, self.kinds)
 
     def _participations(self, basis, seen, phases=False):
         """Return (channel, fitted): those with which the modes leave least."""
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
-            rows, target = self.weights[c] * basis[seen[c]], self.weights[c] * self.measured[c]
+            rows = self.weights[c] * basis[self.kinds[c]][seen[c]]
+            target = self.weights[c] * self.measured[c]
             shapes[c, seen[c]] = (
                 linalg.lstsq(rows.T, target)[0]
                 if phases
@@ -160,11 +170,16 @@ class ModalLines:
         the basis, channel by channel.
         """
         logs, shapes, basis, _ = best
-        change = np.concatenate(self.record.changes(*self._at(logs), self.drive, self.kind))
-        slopes = np.zeros((len(shapes), 2 * basis.shape[1], 2 * self.count))
-        for channel in range(len(shapes)):
-            own = _real((np.tile(shapes[channel], 2)[:, None] * self.weights[channel]) * change).T
-            known = self.weights[channel] * basis[seen[channel]]
+        change = {
+            kind: np.concatenate(self.record.changes(*self._at(logs), self.drive, kind))
+            for kind in basis
+        }
+        slopes = np.zeros((len(shapes), 2 * self.measured.shape[1], 2 * self.count))
+        for channel, kind in enumerate(self.kinds):
+            own = _real(
+                (np.tile(shapes[channel], 2)[:, None] * self.weights[channel]) * change[kind]
+            ).T
+            known = self.weights[channel] * basis[kind][seen[channel]]
             columns = [_real(known)] + [_real(1j * known)] * np.iscomplexobj(shapes)
             span, _ = np.linalg.qr(np.vstack(columns).T)
             slopes[channel] = own - span @ (span.T @ own)
@@ -201,15 +216,12 @@ class ModalLines:
                 continue
             grid = np.arange(-SEARCH, SEARCH + 1.0e-9, max(self.zeta[number], SEARCH / 40.0))
             w = omega * np.exp(grid)
-            basis = self.record.responses(
-                w,
-                2.0 * self.zeta[number] * w,
-                np.repeat(self.drive[number][None], len(w), axis=0),
-                self.kind,
-            )[:, near]
+            drive = np.repeat(self.drive[number][None], len(w), axis=0)
+            basis = responses_of(self.record, w, 2.0 * self.zeta[number] * w, drive, self.kinds)
             explained = np.zeros(len(grid))
-            for c in range(len(self.measured)):
-                y, b = self.weights[c, near] * self.measured[c, near], self.weights[c, near] * basis
+            for c, kind in enumerate(self.kinds):
+                y = self.weights[c, near] * self.measured[c, near]
+                b = self.weights[c, near] * basis[kind][:, near]
                 explained += np.real(b.conj() @ y) ** 2 / np.maximum(
                     np.sum(np.abs(b) ** 2, axis=-1), 1.0e-300
                 )
@@ -218,6 +230,24 @@ class ModalLines:
             )  # between equals the one near the model
             out[number] = grid[np.argmax(explained + prior)]
         return out
+
+
+def responses_of(record, omega, damping, drive_shapes, kinds):
+    """Return {kind: (mode, line)}: LinearRecord.responses of each kind of motion in kinds."""
+    return {
+        kind: record.responses(omega, damping, drive_shapes, kind) for kind in kind_groups(kinds)
+    }
+
+
+def combined(shapes, basis, kinds):
+    """Return (channel, line): what channels of participations shapes (channel, mode) show of
+    responses {kind: (mode, line)}, each by its own kind (channel,).
+    """
+    lines = next(iter(basis.values()))
+    out = np.empty((len(shapes), lines.shape[1]), complex)
+    for kind, own in kind_groups(kinds).items():
+        out[own] = shapes[own] @ basis[kind]
+    return out
 
 
 def _real(values):

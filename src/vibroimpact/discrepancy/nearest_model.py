@@ -13,6 +13,7 @@ from . import priors
 from .candidates import Pair, linear_candidates, unit_grid
 from .linear_stage import fit_modes, left
 from .linearised import matched
+from .sensed import moving, orders
 
 BANDS_PER_OCTAVE = 8
 # a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however
@@ -131,19 +132,23 @@ class BandSpectra:
 
     def __init__(self, bench):
         record, lowest = bench.linear_record, bench.signals.lowest
-        self.acceleration = bench.signals.kinds[0] == "acceleration"
+        self.moves = moving(bench.signals.kinds)
         self.frequency, self.force = (
             record.frequency,
             record.spectra(bench.valid(bench.signals.force[lowest])),
         )
+        # from displacements to what each channel measures
+        self.factor = (2.0 * np.pi * self.frequency) ** orders(bench.signals.kinds[self.moves])[
+            :, None
+        ]
         octaves = np.log2(self.frequency / self.frequency[0])
         self.starts = np.unique(
             np.searchsorted(octaves, np.arange(0.0, octaves[-1], 1.0 / BANDS_PER_OCTAVE))
         )
-        measured = record.spectra(bench.valid(bench.signals.response[lowest]))
-        self.noise = (bench.signals.noise_in_band**2 / len(self.frequency))[:, None] * np.diff(
-            [*self.starts, len(self.frequency)]
-        )
+        measured = record.spectra(bench.valid(bench.signals.response[lowest])[self.moves])
+        self.noise = (bench.signals.noise_in_band[self.moves] ** 2 / len(self.frequency))[
+            :, None
+        ] * np.diff([*self.starts, len(self.frequency)])
         self.measured = self._bands(measured)
 
     def distance(self, model):
@@ -155,7 +160,7 @@ class BandSpectra:
         modal = (model.drive_shapes[near] @ self.force) / (
             model.omega[near, None] ** 2 - omega**2 + 1j * model.damping[near, None] * omega
         )
-        response = model.sensor_shapes[near].T @ modal * (omega**2 if self.acceleration else 1.0)
+        response = model.sensor_shapes[near][:, self.moves].T @ modal * self.factor
         difference = 10.0 * np.log10(self.measured / (self._bands(response) + self.noise))
         return float(np.sqrt(np.mean(np.clip(difference, -FARTHEST_DB, FARTHEST_DB) ** 2)))
 

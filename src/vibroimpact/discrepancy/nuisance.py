@@ -45,20 +45,19 @@ class Nuisance:
 def reading_of_fit(fit, model):
     """Return the Reading of a ModalFit of responses to the force on `model`."""
     omega, damping = model.omega[fit.modes], model.damping[fit.modes]
-    driven = fit.drive[:, 0]
     return Reading(
         fit.modes,
         np.log(omega) + fit.log_frequency,
         np.log(damping / (2.0 * omega)) + fit.log_damping,
-        fit.participation * driven,
+        fit.participation * driven(fit.drive),
         fit.residual,
     )
 
 
 def reading_of_model(model, modes):
-    """Return the Reading that a linear model gives without noise, for the first force channel."""
+    """Return the Reading that a linear model gives without noise."""
     omega = model.omega[modes]
-    participation = model.sensor_shapes[modes].T * model.drive_shapes[modes, 0]
+    participation = model.sensor_shapes[modes].T * driven(model.drive_shapes[modes])
     return Reading(
         modes,
         np.log(omega),
@@ -66,6 +65,20 @@ def reading_of_model(model, modes):
         participation,
         np.ones(participation.shape[0]),
     )
+
+
+def driven(drive_shapes):
+    """Return (mode,): how much the forces drive each mode, from drive_shapes (mode, force_channel).
+
+    One force: its shape. Several: their root sum of squares, with the sign of the first force that
+    drives the mode at least half as much as any, so that the sense of a mode does not matter.
+    """
+    if drive_shapes.shape[1] == 1:
+        return drive_shapes[:, 0]
+    size = np.abs(drive_shapes)
+    leading = np.argmax(size >= 0.5 * size.max(axis=1, keepdims=True), axis=1)
+    sense = np.take_along_axis(np.sign(drive_shapes), leading[:, None], axis=1)[:, 0]
+    return sense * np.linalg.norm(drive_shapes, axis=1)
 
 
 def gained(reading, measuring):

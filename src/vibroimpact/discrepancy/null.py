@@ -11,6 +11,7 @@ from . import priors
 from .features import compressed
 from .likelihood import feature_sd, free_directions, log_likelihood, scatter_of, shrunk
 from .linearised import same_modes
+from .sensed import motion_there
 from .survivors import of_survivors
 
 UNSEEN = (
@@ -176,8 +177,11 @@ def bursting(bench, records, driven):
 
 
 def driven_channels(bench):
-    """Return (channel,): whether the linear structure answers to the force there."""
-    size = np.abs(bench.bare.sensor_shapes.T * bench.bare.drive_shapes[:, 0]).max(axis=1)
+    """Return (channel,): whether the linear structure answers to a force there; a contact force,
+    whether it does at its support.
+    """
+    shapes, drive = motion_there(bench.bare, bench.signals.kinds), np.abs(bench.bare.drive_shapes)
+    size = (np.abs(shapes)[:, :, None] * drive[:, None, :]).max(axis=(0, 2))
     return size > 1.0e-3 * size.max()
 
 

@@ -4,7 +4,10 @@ channel sits at the drive and looks along the force.
 
 import numpy as np
 
+from vibroimpact.units import TIME_DERIVATIVES
+
 from . import priors
+from .sensed import moving
 
 DRIVE_M = 5.0e-3  # a channel nearer to the drive than this is at it
 ALONG = 0.999  # cosine between the channel and the force
@@ -12,7 +15,9 @@ POWER_Z = 4.0
 
 
 def drive_channel(campaign):
-    """Return (channel, sense 1 or -1) at the first force and along it, None where there is none."""
+    """Return (channel, sense 1 or -1) of a motion at the first force and along it, None where there
+    is none.
+    """
     away = np.linalg.norm(
         campaign["channel_point"].values - campaign["force_channel_point"].values[0], axis=1
     )
@@ -23,23 +28,21 @@ def drive_channel(campaign):
         @ force
         / np.maximum(np.linalg.norm(directions, axis=1) * np.linalg.norm(force), 1.0e-300)
     )
-    found = np.flatnonzero((away < DRIVE_M) & (np.abs(cosine) > ALONG))
+    found = np.flatnonzero(
+        (away < DRIVE_M) & (np.abs(cosine) > ALONG) & moving(campaign["channel_kind"].values)
+    )
     return (int(found[0]), float(np.sign(cosine[found[0]]))) if found.size else None
 
 
 def input_power(force, response, kind, rate, band_Hz):
     """Return W, the mean of force times velocity in a band (Hz): force (sample,) N, response
-    (sample,) an acceleration or a displacement in SI.
+    (sample,) of a kind of motion in SI.
     """
     window = np.hanning(len(force))
     omega = 2.0 * np.pi * np.fft.rfftfreq(len(force), 1.0 / rate)
     inside = (omega >= 2.0 * np.pi * band_Hz[0]) & (omega <= 2.0 * np.pi * band_Hz[1])
     spectra = [np.fft.rfft(window * series)[inside] for series in (force, response)]
-    velocity = (
-        spectra[1] / (1j * omega[inside])
-        if kind == "acceleration"
-        else spectra[1] * 1j * omega[inside]
-    )
+    velocity = spectra[1] * (1j * omega[inside]) ** (1.0 - TIME_DERIVATIVES[kind])
     return float(
         2.0 * np.sum((spectra[0].conj() * velocity).real) / (len(force) * np.sum(window**2))
     )

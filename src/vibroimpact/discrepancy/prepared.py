@@ -14,10 +14,19 @@ from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.records import read_json, write_text
+from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
 from .candidates import candidate_named, local_candidates, not_testable
-from .comparable import campaign_problems, channel_rows, compared_channels, comparison_problems
+from .comparable import (
+    LEFT_OUT,
+    campaign_problems,
+    channel_rows,
+    compared_channels,
+    comparison_problems,
+    contact_force_rows,
+    left_out,
+)
 from .in_place import in_place
 from .linear_fit import LinearChanges
 from .linear_rows import held, linear_rows, nameable, nearest_linear
@@ -28,6 +37,7 @@ from .nearest_model import fit_from_nearest, translated
 from .nuisance import neutral, plausible
 from .null import driven_channels
 from .scales import scales
+from .sensed import differentiated, kind_groups
 from .windows import compared_s, screened_s
 from .workbench import Workbench, corrected_nuisance
 
@@ -110,9 +120,13 @@ def usable_campaign(path, checks):
     except (CampaignError, ValueError) as error:
         return None, str(error)
     force, response = usable_signals(campaign, checks)
-    compared = np.flatnonzero(compared_channels(campaign))
-    if not compared.size:
+    names = campaign["channel_name"].values
+    known = compared_channels(campaign)
+    compared = np.flatnonzero(known & ~np.isin(names, list(left_out(checks))))
+    if not known.any():
         return None, campaign_problems(campaign)[0]
+    if not compared.size:
+        return None, next(row["message"] for row in checks if row["check"] == LEFT_OUT)
     campaign, response = campaign.isel(channel=compared), response[:, compared]
     records = np.flatnonzero(force)
     channels = np.flatnonzero(response[records].all(axis=0)) if len(records) else []
@@ -224,7 +238,7 @@ def prepare(
                 campaign.sizes["record"], min(whole_s, longest_s or whole_s), asked_s
             )
             bench = Workbench(config, campaign, seconds)
-            mixed = mixed_up(bench)
+            mixed = [*mixed_up(bench), *contact_force_rows(bench.bare, bench.signals)]
             if mixed:
                 before, checks = campaign.sizes, [*checks, *mixed]
                 campaign, refusal = usable_campaign(campaign_path, checks)
@@ -254,14 +268,7 @@ def prepare(
         draw=draw,
     )
     gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
-    reach = (
-        float(gap.max())
-        if len(gap)
-        else float(
-            np.nanstd(bench.signals.response[bench.signals.load.argmax()])
-            / (2.0 * np.pi * bench.signals.band_Hz[0]) ** 2
-        )
-    )
+    reach = float(gap.max()) if len(gap) else largest_motion(bench.signals)
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
     out.scales = {
         name: float(value)
@@ -286,6 +293,21 @@ def prepare(
     if out.linear_stage and out.nonlinear_low:
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
+
+
+def largest_motion(signals):
+    """Return m, what the response at the highest load would be at the low end of the band, of the
+    kind of motion that tells most; 0 where no channel measures a motion.
+    """
+    response, low = signals.response[signals.load.argmax()], 2.0 * np.pi * signals.band_Hz[0]
+    return max(
+        (
+            float(np.nanstd(response[own]) / low ** TIME_DERIVATIVES[kind])
+            for kind, own in kind_groups(signals.kinds).items()
+            if kind in TIME_DERIVATIVES
+        ),
+        default=0.0,
+    )
 
 
 def taken_for_linear(bench, fresh, prepared, candidates):
@@ -447,21 +469,30 @@ def mixed_up(bench):
         return []
     omega, model = 2.0 * np.pi * spectra.frequency, bench.bare
     receptance = np.einsum(
-        "mc,m,ml->cl",
+        "mc,ml,ml->cl",
         model.sensor_shapes,
-        model.drive_shapes[:, 0],
+        model.drive_shapes @ beside_first(measured, bench.signals.lowest, omega.size),
         1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega),
     )
-    power = np.where(
-        np.array([kind == "acceleration" for kind in measured.kinds])[:, None], -(omega**2), 1.0
-    )
+    motion = np.array([differentiated(omega, kind) for kind in measured.kinds])
     return compare_with_model(
         spectra,
-        power * receptance,
+        motion * receptance,
         measured.channels,
         measured.kinds,
         measured.records[bench.signals.lowest],
     )
+
+
+def beside_first(measured, record, lines):
+    """Return (force_channel, line): what of each force of CampaignSignals goes with the first in a
+    record, 1 for that itself, at the lines of its transfer.
+    """
+    others = [force[1:] for force in measured.force]
+    if not len(others[record]):
+        return np.ones((1, lines))
+    alone = replace(measured, response=others)
+    return np.concatenate([np.ones((1, lines)), transfer(alone, record).h1])
 
 
 CONTRADICTED = (

@@ -9,17 +9,21 @@ shape and frequency.
 import numpy as np
 from scipy import linalg, optimize
 
+from .modal_fit import combined
+from .sensed import kind_groups
+
 SPACING = 2.0e-3  # of ln frequency between the resonances that are tried
 BESIDE = 6  # of them: nearer ones are the same mode
 AT_ONCE = 32
 FAR = 0.3  # of ln frequency: as bad a match as another shape altogether
 
 
-def pursued(record, measured, weights, count, zeta, kind):
+def pursued(record, measured, weights, count, zeta, kinds):
     """Return (ln rad/s (count,), shapes (channel, count)) of the resonances of measured (channel,
     line), weighted by weights of the same shape.
 
-    record: LinearRecord; count: how many; zeta: damping ratio of the resonances that are tried.
+    record: LinearRecord; count: how many; zeta: damping ratio of the resonances that are tried;
+    kinds (channel,): of motion.
     """
     logs = np.arange(
         np.log(2.0 * np.pi * record.frequency[0]),
@@ -28,33 +32,42 @@ def pursued(record, measured, weights, count, zeta, kind):
     )
     omega = np.exp(logs)
     drive = np.eye(1, record.spectrum.shape[0])
-    # the largest array of the linear stage: in single precision, and not at once from one of double
-    # precision and several times its length
-    basis = np.concatenate(
-        [
-            record.responses(part, 2.0 * zeta * part, drive, kind).astype(np.complex64)
-            for part in np.array_split(omega, len(omega) // AT_ONCE + 1)
-        ]
-    )
-    power = (np.abs(basis) ** 2 @ (weights**2).astype(np.float32).T).T.astype(float)
+    # the largest arrays of the linear stage: in single precision, and not at once from one of
+    # double precision and several times its length
+    basis, channels = {}, kind_groups(kinds)
+    for kind in channels:
+        basis[kind] = np.concatenate(
+            [
+                record.responses(part, 2.0 * zeta * part, drive, kind).astype(np.complex64)
+                for part in np.array_split(omega, len(omega) // AT_ONCE + 1)
+            ]
+        )
+
+    def against(values, lines):
+        """(channel, tried): values (channel, line) times the lines of each channel's basis."""
+        out = np.empty((len(values), len(omega)), values.dtype)
+        for kind, own in channels.items():
+            out[own] = (lines(basis[kind]) @ values[own].T).T
+        return out
+
+    power = against((weights**2).astype(np.float32), lambda lines: np.abs(lines) ** 2).astype(float)
     open_, chosen, rest = np.ones(len(omega), bool), [], measured
     shapes = np.zeros((len(measured), 0))
     for _ in range(count):
-        gain = np.sum(
-            np.real(basis @ (weights**2 * rest).conj().T.astype(np.complex64)).T.astype(float) ** 2
-            / power,
-            axis=0,
-        )
+        weighted = (weights**2 * rest).conj().astype(np.complex64)
+        alike = np.real(against(weighted, lambda lines: lines)).astype(float)
+        gain = np.sum(alike**2 / power, axis=0)
         best = int(np.argmax(np.where(open_, gain, -1.0)))
         chosen.append(best)
         open_[max(0, best - BESIDE) : best + BESIDE + 1] = False
+        taken = {kind: lines[chosen] for kind, lines in basis.items()}
         shapes = np.array(
             [
-                linalg.lstsq(_real(row * basis[chosen]).T, _real(row * values))[0]
-                for row, values in zip(weights, measured, strict=True)
+                linalg.lstsq(_real(row * taken[kind]).T, _real(row * values))[0]
+                for row, values, kind in zip(weights, measured, kinds, strict=True)
             ]
         )
-        rest = measured - shapes @ basis[chosen]
+        rest = measured - combined(shapes, taken, kinds)
     return logs[chosen], shapes
 
 

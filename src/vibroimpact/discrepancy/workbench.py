@@ -21,6 +21,7 @@ from .forward import Forces, schedule_of, simulate_records
 from .linear_record import LinearRecord
 from .linear_stage import fit_modes
 from .linearised import linearised
+from .sensed import kind_groups
 from .signals import signals_of
 
 FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
@@ -303,10 +304,12 @@ class Workbench:
         """Return the Reading, nuisances taken out, of a variant's lowest record (channel, sample),
         None where it answers as the bare model does.
         """
-        change = np.sqrt(np.mean((response - self.low_response) ** 2)) / np.sqrt(
-            np.mean(self.low_response**2)
-        )
-        if not change > SAME:
+        changed = [
+            np.mean((response[own] - self.low_response[own]) ** 2)
+            > SAME**2 * np.mean(self.low_response[own] ** 2)
+            for own in kind_groups(self.signals.kinds).values()  # each in its own unit
+        ]
+        if not any(changed):
             return None
         if self.late is not None:  # the fit of the measured record took the delays out
             response = replace(self.late, delay=-self.late.delay).delayed(

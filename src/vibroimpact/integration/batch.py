@@ -24,7 +24,8 @@ REST_DAMPING = 0.7  # damping ratio under which a structure comes to rest
 REST_DECAY = 12.0  # the transient falls by exp(-REST_DECAY)
 
 Drive = Callable[[int, int], np.ndarray]  # (first, count) -> (count, force_channel, case) N
-# (first sample, displacement, acceleration, force), the last three as in BatchResult
+# (first sample, displacement, acceleration, force), the last three as in BatchResult; in place of
+# accelerations the time derivatives that Schedule.derivatives asks for
 Receive = Callable[[int, np.ndarray, np.ndarray, np.ndarray], None]
 
 
@@ -74,13 +75,18 @@ ENERGY_TERMS = (
 
 @dataclass(frozen=True)
 class Schedule:
-    """Rates [Hz], durations [s] and scheme of a run (see modal_step), and its output filter."""
+    """Rates [Hz], durations [s] and scheme of a run (see modal_step), and its output filter.
+
+    derivatives (sensor,): how often the displacement of each sensor is differentiated in time, 0 to
+    2, where an acceleration of every sensor stands otherwise; empty for accelerations.
+    """
 
     steps_per_second: float
     sampling_frequency: float
     start_up: float
     duration: float
     scheme: str = "newmark"
+    derivatives: tuple[int, ...] = ()
     filter: OutputFilter = field(init=False)
 
     def __post_init__(self) -> None:
@@ -291,16 +297,27 @@ class _Run:
         return np.empty((self.cases, channels, samples), np.float32)
 
     def _filter(self, ticks: int, outputs: np.ndarray, acceleration: np.ndarray) -> None:
-        """Second filter stage of a chunk, of all channels and of the sensors' acceleration."""
+        """Second filter stage of a chunk, of all channels and of the sensors' derivatives."""
         stage, values = self.schedule.filter, self.output.values
+        sensors = acceleration.shape[1]
         with self.stopwatch("output filter"):
             chunk = np.ascontiguousarray(values[:, : self.history + ticks])
             buffer = np.zeros((4, LANES))
-            for taps, channels, out in (
-                (stage.second, chunk, outputs),
-                (stage.second_derivative, chunk[: acceleration.shape[1]], acceleration),
-            ):
-                decimate(channels, np.pad(taps, 3 * stage.step), out, 0, stage.step, buffer)
+
+            def filtered(order: int, channels: np.ndarray, out: np.ndarray) -> None:
+                taps = np.pad(stage.taps(order), 3 * stage.step)
+                decimate(channels, taps, out, 0, stage.step, buffer)
+
+            filtered(0, chunk, outputs)
+            orders = np.array(self.schedule.derivatives or (2,) * sensors)
+            for order in np.unique(orders):
+                if np.all(orders == order):
+                    filtered(order, chunk[:sensors], acceleration)
+                    break
+                some = np.flatnonzero(orders == order)
+                own = np.empty((self.cases, some.size, acceleration.shape[2]), np.float32)
+                filtered(order, chunk[some], own)
+                acceleration[:, some] = own
             values[:, : self.history] = chunk[:, ticks : ticks + self.history]
 
     def _result(self, series: tuple[np.ndarray, np.ndarray] | None) -> BatchResult:

@@ -12,6 +12,7 @@ import numpy as np
 
 from .kernels.decimation import BEHIND, RATIO, SLOTS
 
+LEAST_STAGES = 2  # decimation of the second stage at least
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
 DIFFERENCE_ERROR = 1e-6  # relative, of the second derivative up to the end of the passband
@@ -25,14 +26,20 @@ class OutputFilter:
 
     first (2 * half + 1,): at the step rate.
     second (tap,): at the step rate / RATIO.
-    second_derivative (tap,): the same with two time derivatives, 1/s².
+    first_derivative, second_derivative (tap,): the same with one and two time derivatives, 1/s and
+    1/s².
     step: decimation of the second stage.
     """
 
     first: np.ndarray
     second: np.ndarray
+    first_derivative: np.ndarray
     second_derivative: np.ndarray
     step: int
+
+    def taps(self, order: int) -> np.ndarray:
+        """Second stage with so many time derivatives, 0 to 2; it is correlated, not convolved."""
+        return (self.second, self.first_derivative, self.second_derivative)[order]
 
     @property
     def delay(self) -> int:
@@ -62,14 +69,15 @@ class OutputFilter:
 def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputFilter:
     """The filter for one pair of rates [Hz].
 
-    Raises ValueError when the ratio of the rates is not a multiple of RATIO.
+    Raises ValueError when the ratio of the rates is not a multiple of RATIO, or no more than RATIO:
+    the first stage then stops what is to pass, and no second stage makes it good (6 % were left).
     """
     ratio = steps_per_second / sampling_frequency
-    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < RATIO:
+    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < LEAST_STAGES * RATIO - 1e-9:
         raise ValueError(
-            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}:"
-            f" choose a sampling frequency of {steps_per_second / RATIO:g} Hz divided by a whole"
-            " number"
+            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}, at"
+            f" least {LEAST_STAGES * RATIO}: choose a sampling frequency of"
+            f" {steps_per_second / RATIO:g} Hz divided by a whole number, {LEAST_STAGES} or more"
         )
     middle_rate = steps_per_second / RATIO
     stop = 0.5 * sampling_frequency
@@ -86,11 +94,11 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
         ),
         LONGEST_DIFFERENCE,
     )
-    difference = _second_difference(order) * middle_rate**2
     return OutputFilter(
         first=first,
         second=np.pad(second, order),
-        second_derivative=np.convolve(second, difference),
+        first_derivative=np.convolve(second, _first_difference(order) * middle_rate),
+        second_derivative=np.convolve(second, _second_difference(order) * middle_rate**2),
         step=round(ratio / RATIO),
     )
 
@@ -139,6 +147,16 @@ def _kaiser_lowpass(passband: float, stopband: float) -> np.ndarray:
     cut = passband + stopband
     taps = cut * np.sinc(cut * n) * np.kaiser(2 * half + 1, 0.1102 * (KAISER_ATTENUATION_DB - 8.7))
     return taps / taps.sum()
+
+
+def _first_difference(order: int) -> np.ndarray:
+    """Central-difference weights of the first derivative at unit spacing, 2 * order + 1 points
+    (Fornberg), in the order of the samples.
+    """
+    n = np.arange(1, order + 1)
+    powers = n[None, :].astype(float) ** (2 * n[:, None] - 1)
+    side = np.linalg.solve(powers, np.where(n == 1, 0.5, 0.0))
+    return np.concatenate([-side[::-1], [0.0], side])
 
 
 def _second_difference(order: int) -> np.ndarray:

@@ -19,6 +19,7 @@ from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.every_step import Traces, integrate_every_step
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -55,7 +56,7 @@ def trace_cases(
         scheme = config.integration.scheme
         rest = None
         if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
-            schedule = Schedule(rate, rate / RATIO, 0.0, 1.0, scheme)
+            schedule = Schedule(rate, rate / (LEAST_STAGES * RATIO), 0.0, 1.0, scheme)
             offset, rest = seated(model, schedule, gap, offset)
             rest = rest_state(model, schedule, gap, offset, rest)
         try:

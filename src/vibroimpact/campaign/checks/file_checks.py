@@ -206,7 +206,9 @@ def _faults_of(signal, period, measured, record, channel, what):
         )
         yield check_row("gaps in time", "warn", message, record, channel)
         return
-    if not signal.any():
+    # a support that is not touched exerts nothing, for as long as that lasts
+    presses = (channel, "contact_force") in zip(measured.channels, measured.kinds, strict=True)
+    if not signal.any() and not presses:
         yield check_row(
             "drop-outs",
             "warn",
@@ -227,7 +229,7 @@ def _faults_of(signal, period, measured, record, channel, what):
             record,
             channel,
         )
-    lost = drop_out(signal, measured.rate, measured.starts_at_rest)
+    lost = None if presses else drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
         yield check_row(
             "drop-outs",
@@ -296,7 +298,8 @@ def _linear(measured, spectra, record):
             name,
             measured.forces[0],
         )
-    yield from _mix_ups(measured, spectra, name)
+    if len(measured.forces) == 1:  # of several, each may drive what does not follow the first
+        yield from _mix_ups(measured, spectra, name)
 
 
 def _mix_ups(measured, spectra, name):

@@ -13,6 +13,7 @@ import numpy as np
 
 from vibroimpact.campaign.file import SAME_POINT_M
 from vibroimpact.campaign.signals import CampaignSignals, Transfer
+from vibroimpact.units import TIME_DERIVATIVES
 
 ALIGNED, ACROSS = 0.7, 0.3  # |cosine| with the force
 COHERENT, INCOHERENT, NO_CAUSE = 0.8, 0.35, 0.1
@@ -41,7 +42,7 @@ def channel_delays(
 
     kinds (channel,): texts.
     rate: Hz.
-    finite (channel,): whether a channel is judged.
+    finite (channel,): whether a channel is judged; a contact force never is.
 
     The lags of the channels are relative to the others; the common lag is that of all channels
     behind the force. The lag tau of a channel maximises sum coherence * Re((h/|h|)² exp(2i omega
@@ -51,6 +52,7 @@ def channel_delays(
     """
     unit = spectra.h1 / np.maximum(np.abs(spectra.h1), np.finfo(float).tiny)
     squared = unit**2 * np.where(np.array(kinds) == "velocity", -1.0, 1.0)[:, None]
+    finite = finite & (np.array(kinds) != "contact_force")
     weights = spectra.coherence / np.maximum(
         spectra.coherence.sum(axis=-1, keepdims=True), np.finfo(float).tiny
     )
@@ -96,10 +98,12 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
     """Return pairs (channel along the force, channel across it or None) whose names seem swapped.
 
     A channel along the force is suspect where it is incoherent although most others along the force
-    are coherent. Its partner is a coherent channel across the force, the one at the same point if
+    are coherent; a contact force is not, which there is none of until the structure touches. Its
+    partner is a coherent channel across the force, the one at the same point if
     there is one.
     """
     coherence, along = mean_coherence(spectra), alignment(signals)
+    along = np.where(np.array(signals.kinds) == "contact_force", np.nan, along)
     following = (along > ALIGNED) & (coherence > COHERENT)
     silent = np.flatnonzero((along > ALIGNED) & (coherence < INCOHERENT))
     loud = np.flatnonzero((along < ACROSS) & (coherence > COHERENT))
@@ -126,26 +130,19 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
 def reversed_hint(signals: CampaignSignals, spectra: Transfer) -> int | None:
     """Return the channel that moves against all others below the first resonance, or None.
 
-    It is reported only of four or more displacement and acceleration channels along the force, when
-    all are coherent and all others are in phase with one another.
+    It is reported only of four or more motions along the force, when all are coherent and all
+    others are in phase with one another.
     """
-    signs = np.array(
-        [{"acceleration": -1.0, "displacement": 1.0}.get(kind, np.nan) for kind in signals.kinds]
-    )
+    orders = np.array([TIME_DERIVATIVES.get(kind, np.nan) for kind in signals.kinds])
     force = signals.force_directions[0]
     along = signals.directions @ force / max(np.linalg.norm(force), 1e-12)
-    usable = np.flatnonzero((np.abs(along) > ALIGNED) & np.isfinite(signs))
+    usable = np.flatnonzero((np.abs(along) > ALIGNED) & np.isfinite(orders))
     if usable.size < 4 or mean_coherence(spectra)[usable].min() < COHERENT:
         return None
     # Up to just past the first clear peak of the summed receptance, all channels move as the first
     # mode does.
-    omega = 2.0 * np.pi * spectra.frequency
-    to_displacement = (
-        np.where(signs[usable] < 0.0, 1.0, 0.0)[:, None] * (1.0 / omega**2 - 1.0) + 1.0
-    )
-    receptance = (
-        spectra.h1[usable] * (signs[usable] * np.sign(along[usable]))[:, None] * to_displacement
-    )
+    differentiated = (2j * np.pi * spectra.frequency) ** orders[usable, None]
+    receptance = spectra.h1[usable] * np.sign(along[usable])[:, None] / differentiated
     size = np.sum(np.abs(receptance) ** 2, axis=0)
     part = receptance[:, : max(int(np.argmax(size)) + 1, 3)]
     lengths = np.maximum(np.linalg.norm(part, axis=1), 1e-300)

@@ -11,6 +11,9 @@ FEWEST_AT_TOP = 8  # samples in the outermost bin
 PILE_UP = 8.0
 # The extreme value occurs SAME_VALUE times as often as any of its NEIGHBOURS next values.
 SAME_VALUE, NEIGHBOURS = 3, 20
+# A side of a signal that is smaller than this share of the other is no range of an amplifier: where
+# nothing touches, a contact force is noise of a few steps of the converter.
+ONE_SIDED = 0.1
 DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a constant value for longer than both is a drop-out
 # So is a stretch of QUIET_S in which the RMS of the signal and of its differences falls to
 # QUIET_SHARE of the median.
@@ -37,10 +40,11 @@ def clipped_share(signal: np.ndarray) -> float | None:
     hardly repeated, or where far more samples lie within 1, 2 or 4 % of the extreme than in the
     next 1, 2 or 4 %. The signal has no missing samples.
     """
-    flat = 0
-    for side in (signal - np.median(signal), np.median(signal) - signal):
+    flat, sides = 0, (signal - np.median(signal), np.median(signal) - signal)
+    largest = max(float(side.max()) for side in sides)
+    for side in sides:
         top = float(side.max())
-        if top <= 0.0:
+        if top <= ONE_SIDED * largest:
             continue
         near = side[side > (1.0 - 2.0 * TOP_SHARES[-1]) * top]
         most = _repeated_top(near, top)
