@@ -5,6 +5,8 @@ The same fit reads the measured and a simulated record, so that what it can not 
 which modes, from where, and by which participations; see modal_fit for a fit itself.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from .lags import driven_modes, from_phases, lags
@@ -179,6 +181,25 @@ def _fitted(record, found, drive, model, kind):
     omega = model.omega[found.modes] * np.exp(found.log_frequency)
     zeta = model.damping[found.modes] / (2.0 * model.omega[found.modes]) * np.exp(found.log_damping)
     return found.participation @ record.responses(omega, 2.0 * zeta * omega, drive, kind)
+
+
+def modelled_lines(record, model, found, kind):
+    """Return (channel, line): the response of a ModalModel whose fitted modes have the frequencies
+    and damping of a ModalFit, and its own shapes.
+    """
+    kind = "acceleration" if kind == "acceleration" else "displacement"
+    own = replace(found, participation=model.sensor_shapes[found.modes].T)
+    return _fitted(record, own, found.drive, model, kind) + _rest(record, model, found.modes, kind)
+
+
+def unexplained_lines(record, responses, model, found, kind):
+    """Return (measured, rest), each (channel, line): the lines of responses (channel, sample), and
+    what a ModalFit of them leaves.
+    """
+    kind = "acceleration" if kind == "acceleration" else "displacement"
+    measured = _turned_back(record.spectra(np.asarray(responses, float)), record, found.delay)
+    fitted = _fitted(record, found, found.drive, model, kind)
+    return measured, measured - fitted - _rest(record, model, found.modes, kind)
 
 
 def _implausible(found):
