@@ -27,7 +27,7 @@ from .by_level import by_level
 from .candidates import Pair, candidate_named
 from .completed_model import updated_model
 from .estimate_scatter import with_scatter
-from .invariances import broken_invariances
+from .invariances import broken_invariances, one_sided_rows
 from .law_directions import within_any_law
 from .next_measurement import next_measurement
 from .prepared import workbench
@@ -169,7 +169,11 @@ def conclude(run, screening, final_files, provenance, quick=False):
         "misfit": gaps,
         "p_global_before": p_before,
         "p_global_after": p_after,
-        "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
+        "checks": (
+            contract_checks(prepared.checks)
+            + bounds(decision, prepared)
+            + one_sided_rows(bench, null, measured, after.compared[null.records])
+        ),
         "seconds": elapsed(folder),
         "simulations": simulations(null, paths, found, before.features, after.features),
         "not_testable": prepared.not_testable,

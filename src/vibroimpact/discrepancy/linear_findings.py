@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.campaign.checks.stated import check_row
 
 from . import priors
+from .drift import drift_of
 from .linear_misfit import LinearMisfit
 from .nearest_model import translated
 from .other_source import other_sources
@@ -29,7 +30,11 @@ def linear_findings(bench, fresh, adopted, bent):
     record = bench.signals.record_names[bench.signals.lowest]
     if bent:
         return bent_row(given, record) or source_rows(bench, record)
-    return misfit_row(bench, given, adopted, record) + source_rows(bench, record)
+    return (
+        misfit_row(bench, given, adopted, record)
+        + source_rows(bench, record)
+        + drift_rows(bench, record)
+    )
 
 
 def misfit_row(bench, given, adopted, record):
@@ -123,6 +128,26 @@ def source_rows(bench, record):
             " drives the structure, or it is not linear at this load.",
             record,
             signals.names[first.channel],
+        )
+    ]
+
+
+def drift_rows(bench, record):
+    """Return [row]: whether the modes of the record stay where they are while it lasts."""
+    drift = drift_of(bench)
+    if drift.p > priors.SIGNIFICANT:
+        message = f"The modes of record {record} stay where they are while it lasts."
+        return [check_row("drift", "pass", message, record)]
+    most = int(np.argmax(np.abs(drift.change / drift.sd)))
+    return [
+        check_row(
+            "drift",
+            "warn",
+            f"The mode at {drift.frequency_Hz[most]:.4g} Hz moves by"
+            f" {100.0 * np.expm1(drift.change[most]):+.2f} % from the first to the last half of"
+            f" record {record} (z = {drift.change[most] / drift.sd[most]:.1f}): temperature, water or"
+            " a joint changes, and records taken at other times may differ by more.",
+            record,
         )
     ]
 
