@@ -145,8 +145,8 @@ def drift_rows(bench, record):
             "warn",
             f"The mode at {drift.frequency_Hz[most]:.4g} Hz moves by"
             f" {100.0 * np.expm1(drift.change[most]):+.2f} % from the first to the last half of"
-            f" record {record} (z = {drift.change[most] / drift.sd[most]:.1f}): temperature, water or"
-            " a joint changes, and records taken at other times may differ by more.",
+            f" record {record} (z = {drift.change[most] / drift.sd[most]:.1f}): temperature, water"
+            " or a joint changes, and records taken at other times may differ by more.",
             record,
         )
     ]
