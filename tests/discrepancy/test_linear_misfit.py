@@ -117,8 +117,8 @@ def test_second_force_is_power_that_the_first_does_not_explain(study_config, tmp
 
 
 def test_modes_that_drift_within_a_record_are_told(study_config, tmp_path):
-    """From a tube to one whose modulus is 1 % lower: frequencies go as its root, and the halves of a
-    linear fade are half of that apart.
+    """From a tube to one whose modulus is 1 % lower: frequencies go as its root, and the halves of
+    a linear fade are half of that apart.
     """
     campaign = campaign_of(tmp_path / "a.nc", 1002)
     other = campaign_of(tmp_path / "b.nc", 1002, young=2.02e11 * 0.99)
