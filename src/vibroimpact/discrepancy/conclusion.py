@@ -27,7 +27,7 @@ from .candidates import Pair, candidate_named
 from .completed_model import not_offered, updated_model
 from .cost import total_cost
 from .estimate_scatter import with_scatter
-from .invariances import broken_invariances
+from .invariances import broken_invariances, one_sided_rows
 from .law_directions import within_any_law
 from .next_measurement import next_measurement
 from .prepared import workbench
@@ -161,7 +161,11 @@ def conclude(run, screening, final_files, provenance, meter, quick=False):
         "misfit": gaps,
         "p_global_before": p_before,
         "p_global_after": p_after,
-        "checks": contract_checks(prepared.checks) + bounds(decision, prepared),
+        "checks": (
+            contract_checks(prepared.checks)
+            + bounds(decision, prepared)
+            + one_sided_rows(bench, null, measured, after.compared[null.records])
+        ),
         "seconds": spent["cpu_seconds"],
         "simulations": spent["simulations"],
         "not_testable": prepared.not_testable,

@@ -65,6 +65,8 @@ def _as_simulated(path, scores, unit, interval, periodic):
         low = points[worse & (points < unit[0])].max(initial=0.0)
         high = points[worse & (points > unit[0])].min(initial=1.0)
         interval, worse = np.clip(interval, low, high), worse | (points < low) | (points > high)
+    if worse.all():  # the best of what was simulated lies beyond a worse point: it bounds nothing
+        return interval
     reach = unit + np.array([offset(point, unit, periodic) for point in path.parameters[~worse]])
     return np.clip(
         np.stack(

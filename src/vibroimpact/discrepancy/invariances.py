@@ -1,10 +1,13 @@
 """The invariance lights: which exact properties of the bare model the measurement breaks."""
 
 import numpy as np
+from scipy import stats
+
+from vibroimpact.campaign.checks.stated import check_row
 
 from . import priors
 
-PARITY_Z, MIRROR_Z, SCALING_DB = 3.5, 4.0, 1.0
+MIRROR_Z, SCALING_DB = 4.0, 1.0
 
 
 def broken_invariances(bench, null, prepared, power=False):
@@ -23,7 +26,7 @@ def broken_invariances(bench, null, prepared, power=False):
         out.append("T1")
     if _scaling(bench, null, measured) > SCALING_DB:
         out.append("T2")
-    if np.abs(z[:, layout.kind == "skewness"]).max(initial=0.0) > PARITY_Z:
+    if one_sided(bench, null, measured, null.mean) is not None:
         out.append("T3")
     if np.abs(z[:, (layout.kind == "co") | (layout.kind == "quad")]).max(initial=0.0) > MIRROR_Z:
         out.append("T4")
@@ -32,6 +35,60 @@ def broken_invariances(bench, null, prepared, power=False):
     if any(row["check"] == "stationarity" and row["level"] != "pass" for row in prepared.checks):
         out.append("T6")
     return out
+
+
+def one_sided(bench, null, measured, mean):
+    """Return (record, channel, z) of the skewness that is farthest from that of a model, None where
+    all of them are as near as chance allows.
+
+    measured, mean (record, feature): of the measurement and of the model. Where every law of a
+    model is odd (round holes, centred, no dead load), responses to a force of no skewness have
+    none. z is in standard deviations of a t law of the seeds; the level of the largest of all is
+    priors.SIGNIFICANT.
+    """
+    layout = bench.layout
+    chosen = layout.kind == "skewness"
+    variance = null.seed_variance * (1.0 + 1.0 / null.seeds) + priors.FEATURE_SD["skewness"] ** 2
+    z = ((measured - mean) / np.sqrt(variance))[:, chosen]
+    record, channel = np.unravel_index(np.argmax(np.abs(z)), z.shape)
+    largest = float(z[record, channel])
+    if 2.0 * stats.t.sf(abs(largest), null.seeds - 1) * z.size > priors.SIGNIFICANT:
+        return None
+    return int(record), int(layout.channel[chosen][channel]), largest
+
+
+def one_sided_rows(bench, null, measured, completed):
+    """Return [row] where the measurement is lopsided and the model is not: whether the completed
+    model, of mean features (record, feature), is so too. Nothing where it is not.
+    """
+    before = one_sided(bench, null, measured, null.mean)
+    if before is None:
+        return []
+    after = one_sided(bench, null, measured, completed)
+    record, channel, z = before if after is None else after
+    name = bench.signals.record_names[null.records[record]]
+    seen = f"The response of {bench.signals.names[channel]} in record {name} is lopsided"
+    if after is None:
+        return [
+            check_row(
+                "symmetry",
+                "pass",
+                f"{seen} (z = {z:.1f}); so is that of the completed model.",
+                name,
+                bench.signals.names[channel],
+            )
+        ]
+    return [
+        check_row(
+            "symmetry",
+            "warn",
+            f"{seen} (z = {z:.1f}), and that of the model with what is told is not so: something"
+            " acts on one side, a stop, a dead load or a support off its centre, whatever else is"
+            " missing.",
+            name,
+            bench.signals.names[channel],
+        )
+    ]
 
 
 def _scaling(bench, null, measured):

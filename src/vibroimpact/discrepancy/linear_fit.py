@@ -153,7 +153,7 @@ def fitted(bench, changes, candidate, unit, scales):
         # the change from the bare model, then from the model with the effect itself: the reduced
         # basis is 1 to 3 % off in shapes that change much
         for _ in range(ANCHORED):
-            unit, best, slopes = _descended(
+            unit, best, slopes = descended(
                 lambda at, anchor=anchor: reading(at, anchor), unit, measured, error, changes.full
             )
             physical = candidate.physical(unit, scales)
@@ -161,7 +161,7 @@ def fitted(bench, changes, candidate, unit, scales):
                 changes.whole_reading(candidate, physical),
                 changes.reading(candidate, physical),
             )
-        unit, best, slopes = _descended(
+        unit, best, slopes = descended(
             lambda at: reading(at, anchor), unit, measured, error, changes.full
         )
     except (ConfigError, linalg.LinAlgError):
@@ -172,7 +172,7 @@ def fitted(bench, changes, candidate, unit, scales):
     return LinearResult(candidate, unit, float(best[0] - bare), interval)
 
 
-def _descended(reading, unit, measured, error, bare):
+def descended(reading, unit, measured, error, bare):
     """Return (unit (parameter,), (score, chi-square, number of values), slopes (value, parameter))
     where Gauss-Newton from unit on ends; reading(unit) -> Reading; bare: that without effects.
     """

@@ -13,16 +13,18 @@ class LinearRecord:
     """A force record, ready for linear responses to it.
 
     force (force_channel, sample) N at rate Hz; band_Hz: lines that are compared; from_rest: False
-    for a record that was under way.
+    for a record that was under way; begin: share of the record that is not compared, None for that
+    of the start alone.
     """
 
-    def __init__(self, force, rate, band_Hz, from_rest=True):
+    def __init__(self, force, rate, band_Hz, from_rest=True, begin=None):
         # responses are needed at a fraction of the rate only: the force holds nothing above the
         # band
         self.every = max(1, int(rate / (RATE_PER_BAND * band_Hz[1])))
         samples = force.shape[-1] // self.every * self.every
         self.rate, self.samples = rate, samples
-        self.first = 0 if from_rest else int(DISCARDED * samples) // self.every * self.every
+        begin = (0.0 if from_rest else DISCARDED) if begin is None else begin
+        self.first = int(begin * samples) // self.every * self.every
         self.length = self.every * fft.next_fast_len(2 * samples // self.every, real=True)
         kept = self.length // self.every // 2 + 1
         self.omega = 2.0 * np.pi * fft.rfftfreq(self.length, 1.0 / rate)[:kept]

@@ -217,6 +217,25 @@ def _fitted(record, found, drive, model, kinds):
     return combined(found.participation, basis, kinds)
 
 
+def modelled_lines(record, model, found, kind):
+    """Return (channel, line): the response of a ModalModel whose fitted modes have the frequencies
+    and damping of a ModalFit, and its own shapes.
+    """
+    kind = "acceleration" if kind == "acceleration" else "displacement"
+    own = replace(found, participation=model.sensor_shapes[found.modes].T)
+    return _fitted(record, own, found.drive, model, kind) + _rest(record, model, found.modes, kind)
+
+
+def unexplained_lines(record, responses, model, found, kind):
+    """Return (measured, rest), each (channel, line): the lines of responses (channel, sample), and
+    what a ModalFit of them leaves.
+    """
+    kind = "acceleration" if kind == "acceleration" else "displacement"
+    measured = _turned_back(record.spectra(np.asarray(responses, float)), record, found.delay)
+    fitted = _fitted(record, found, found.drive, model, kind)
+    return measured, measured - fitted - _rest(record, model, found.modes, kind)
+
+
 def _implausible(found):
     """Return what a ModalFit leaves, and how far its damping is from the model's: a mode fitted to
     nothing ends at a limit.

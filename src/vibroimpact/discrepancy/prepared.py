@@ -28,6 +28,7 @@ from .comparable import (
     left_out,
 )
 from .in_place import in_place
+from .linear_findings import linear_findings
 from .linear_fit import LinearChanges
 from .linear_rows import held, linear_rows, nameable, nearest_linear
 from .linear_stage import left
@@ -412,6 +413,7 @@ def read_lowest(bench, fresh, out, tables, without):
     if out.nonlinear_low:
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
+    out.checks += linear_findings(bench, fresh, out.adopted, out.nonlinear_low)
     out.fit = (
         {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()}
         if bench.measured_fit is not None

@@ -41,6 +41,7 @@ class Workbench:
     def __init__(self, config, campaign, longest_s=None, draw=0):
         config = with_channel_points(config, campaign)
         self.config, self.campaign, self.draw = config, campaign, draw
+        self.longest_s = longest_s
         self.signals = signals_of(campaign, longest_s)
         self.bare = attach(config, campaign)
         self.layout = feature_layout(self.signals, campaign["channel_point"].values)
@@ -56,6 +57,16 @@ class Workbench:
         # whether the model holds what moved its modes: no resonances are looked for without it then
         self.followed = False
         self.values = self.given = config.model_dump(mode="json")
+
+    def again(self, campaign):
+        """Return a Workbench of another campaign Dataset with the same records, and what was
+        adopted.
+        """
+        out = Workbench(self.config, campaign, self.longest_s, self.draw)
+        out.measuring, out.late = self.measuring, self.late
+        if self.values is not self.given:
+            out.rebase(self.values)
+        return out
 
     def corrected_by(self, nuisance):
         """Return a Workbench of the same campaign with the corrections of a Nuisance, which the

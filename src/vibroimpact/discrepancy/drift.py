@@ -1,0 +1,68 @@
+"""Whether the modes of the lowest record move while it lasts: its first half against its last."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, stats
+
+from . import nuisance as linear
+from .linear_record import DISCARDED, LinearRecord
+from .linear_stage import fit_modes
+from .measuring import Measuring
+
+LEAST = 1.0e-4  # of a frequency, one sigma: below it the fits of two halves are not told apart
+
+
+@dataclass(frozen=True)
+class Drift:
+    """What the modes of a record do from its first to its last half.
+
+    frequency_Hz (mode,); change (mode,): of ln frequency; sd (mode,); p: how probable changes as
+    large are by chance, all modes together.
+    """
+
+    frequency_Hz: np.ndarray
+    change: np.ndarray
+    sd: np.ndarray
+    p: float
+
+
+def drift_of(bench):
+    """Return the Drift of a Workbench's lowest record."""
+    fit, signals, lowest = bench.measured_fit, bench.signals, bench.signals.lowest
+    force, responses = (bench.valid(series[lowest]) for series in (signals.force, signals.response))
+    late = Measuring(np.ones(len(fit.delay)), -fit.delay)
+    responses = late.delayed(responses, signals.rate)
+    # from where the whole record has the modes: halves differ from it by little
+    there = linear.corrected(
+        bench.bare,
+        linear.Nuisance(fit.modes, np.exp(fit.log_frequency), np.exp(fit.log_damping), None),
+    )
+    middle = force.shape[-1] // 2
+    start = 0.0 if signals.from_rest else 2.0 * DISCARDED
+    halves = []
+    for end, begin in ((middle, start), (force.shape[-1], 0.5)):
+        record = LinearRecord(
+            force[..., :end], signals.rate, signals.band_Hz, signals.from_rest, begin
+        )
+        found = fit_modes(
+            record,
+            responses[:, :end],
+            there,
+            signals.kinds,
+            signals.noise_in_band,
+            fit.modes,
+            search=False,
+        )
+        halves.append(found)
+    count = len(fit.modes)
+    covariance = sum(half.covariance[:count, :count] for half in halves)
+    covariance = covariance + LEAST**2 * np.eye(count)
+    change = halves[1].log_frequency - halves[0].log_frequency
+    chi_square = float(change @ linalg.solve(covariance, change, assume_a="pos"))
+    return Drift(
+        there.frequencies[fit.modes],
+        change,
+        np.sqrt(np.diag(covariance)),
+        float(stats.chi2.sf(chi_square, count)),
+    )
