@@ -32,7 +32,7 @@ CHANNELS = (
 )
 UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 LEVELS = ((0.5, 1.3, "fit"), (3.0, 1.3, "fit"), (10.0, 1.3, "fit"), (10.0, 0.9, "holdout"))
-TWINS = 3  # runs with and without the hidden effects, for their strength
+TWINS = 2  # runs with and without the hidden effects, for their strength
 FORCE, SCATTER, GAINS, NOISE, START, SECOND = range(6)  # random streams of a campaign
 
 

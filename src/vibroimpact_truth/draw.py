@@ -79,8 +79,9 @@ WEAK = ("quadratic_stiffness",)  # effects with no strong amount that is sound
 ROOTS = ("root_stiffness", "hysteretic_root")  # effects that need two clamped ends
 # Kinds of channels that are drawn. "velocity" belongs here as soon as a verdict reads it.
 KINDS = ("acceleration", "displacement")
-SAMPLING = (1024.0, 1280.0, 2048.0, 2560.0, 4096.0, 5120.0, 8192.0)  # Hz; 163840 is 4 n of each
-LONGEST_S = 200.0  # of all records together
+SAMPLING = (1024.0, 1280.0, 2048.0, 2560.0, 4096.0, 5120.0, 8192.0)  # Hz; 81920 is 2 n of each
+STEPS_PER_SECOND = 81920  # four times the model's
+LONGEST_S = 160.0  # of all records together
 # RMS motion at the support that moves most, were there no contact, over the gap
 LOWEST, HIGHEST = (0.12, 0.2), (2.5, 8.0)
 SCATTER_LAWS = {"development": ("uniform",), "acceptance": ("laplace", "normal", "uniform")}
@@ -184,6 +185,7 @@ def bare_plan(pool, seed, number):
         levels=levels,
         duration=float(round(np.exp(rng.uniform(np.log(10.0), np.log(longest))))),
         sampling=sampling,
+        steps_per_second=STEPS_PER_SECOND,
         start_up="rest" if rng.random() < 0.5 else "stationary",
         band=band,
         drive_direction=along,

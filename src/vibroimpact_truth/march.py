@@ -7,7 +7,7 @@ from scipy.signal import firwin, kaiser_beta, upfirdn
 
 from vibroimpact_truth import kernel
 
-STRIDE = 4  # steps per sample before decimation: 40960 Hz, where the modes end at 15000 Hz
+FAST_HZ = 40960  # sampled before decimation: the modes end at 15000 Hz
 SETTLE_S = 2.5  # duration of the ramp of dead loads and offsets, before the record
 # "fir80" of the contract at 2048 Hz, with a margin of 6 dB
 PASS_HZ, STOP_HZ, STOP_DB = 800.0, 1024.0, 86.0
@@ -129,7 +129,7 @@ def run_record(reduced, drive, gap, steps_per_second, rng, start=0.0):
     gap: (plate,) m.
     start: time of the campaign before the record, s.
     """
-    factor, stride = round(steps_per_second / drive.sampling), STRIDE
+    factor, stride = round(steps_per_second / drive.sampling), stride_of(steps_per_second)
     plates = reduced.plates.copy()
     plates[:, kernel.GAP] = gap
     state = rest_state(reduced, 1e-6 * float(np.min(gap, initial=1e-3)), rng)
@@ -170,6 +170,11 @@ def around_fast(fast, around, factor):
     return fast.reshape(-1, factor)[around].ravel()
 
 
+def stride_of(steps_per_second):
+    """Steps per sample before decimation."""
+    return max(1, round(steps_per_second / FAST_HZ))
+
+
 class Stretch:
     """A rig and its state, integrated stretch by stretch.
 
@@ -178,7 +183,7 @@ class Stretch:
 
     def __init__(self, reduced, plates, state, step):
         self.reduced, self.plates, self.state, self.step = reduced, plates, state, step
-        self.touched = np.zeros(len(plates))
+        self.touched, self.stride = np.zeros(len(plates)), stride_of(1.0 / step)
 
     def run(self, force, second, start, ramp=None, recorded=False):
         """(channel, sample) m and (2 plate, sample) N of a stretch under forces (step,) N.
@@ -186,14 +191,15 @@ class Stretch:
         ramp (step,): factor of dead loads and offsets. recorded: False leaves samples out.
         """
         reduced, channels = self.reduced, len(self.reduced.sensors) if recorded else 0
+        stride = self.stride
         sensors = np.zeros((-(-channels // kernel.ROWS) * kernel.ROWS, len(reduced.frequency)))
         sensors[:channels] = reduced.sensors[:channels]
-        fast = np.zeros((-(-len(force) // STRIDE), len(sensors)))
+        fast = np.zeros((-(-len(force) // stride), len(sensors)))
         reaction = np.zeros((len(fast), 2 * len(self.plates)))
-        stretch = round(CHUNK_S / self.step) // STRIDE * STRIDE if reduced.drift else len(force)
+        stretch = round(CHUNK_S / self.step) // stride * stride if reduced.drift else len(force)
         for first in range(0, len(force), max(stretch, 1)):
             part = slice(first, first + stretch)
-            samples = slice(first // STRIDE, -(-(first + stretch) // STRIDE))
+            samples = slice(first // stride, -(-(first + stretch) // stride))
             elapsed = start + first * self.step
             failed = kernel.march(
                 reduced.split,
@@ -209,7 +215,7 @@ class Stretch:
                 np.ones(1) if ramp is None else ramp[part],
                 sensors,
                 self.step,
-                STRIDE,
+                stride,
                 elapsed,
                 self.state,
                 fast[samples],

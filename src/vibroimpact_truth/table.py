@@ -1,6 +1,7 @@
 """The plan of a draw as one table, and the files of its campaigns."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from vibroimpact_truth.campaign import make_campaign, write_whole
@@ -57,5 +58,18 @@ def make_number(table, number, folder):
     """
     files = files_of(folder, number)
     plan = tuned(table["pool"], table["seed"], number)
-    make_campaign(plan, files["campaign"], files["truth"], True, files["model"])
+    for finer in (1, 2, 4):
+        steps = finer * plan.steps_per_second
+        try:
+            make_campaign(
+                replace(plan, steps_per_second=steps),
+                files["campaign"],
+                files["truth"],
+                True,
+                files["model"],
+            )
+            break
+        except FloatingPointError:
+            if finer == 4:
+                raise
     return files["campaign"]

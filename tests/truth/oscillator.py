@@ -69,7 +69,7 @@ def simulate(
         np.zeros((0, 4)),
         empty,
         empty,
-        np.array([values for values in sliders], float).reshape(-1, 4),
+        np.array(list(sliders), float).reshape(-1, 4),
         np.tile(rows_of_mass, (len(sliders), 1)),
         np.zeros(0),
         empty,

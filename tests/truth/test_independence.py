@@ -95,7 +95,7 @@ def test_draws_vary_what_users_vary():
         named = [*plan.beam.places.values(), *(holder.arc for holder in plan.beam.holders)]
         assert np.abs(np.subtract.outer(arcs, named)).min() > 0.0
         assert plan.sampling * 0.31 >= plan.band[1]
-        assert plan.steps_per_second % (4 * plan.sampling) == 0
+        assert plan.steps_per_second % (2 * plan.sampling) == 0
 
 
 @pytest.fixture(scope="module")
