@@ -257,6 +257,11 @@ def apply_instruments(plan, force, response, noise, stream=0, hidden=True):
     return data.force, data.response
 
 
+def highest_level(plan):
+    """Number of the record of the largest load."""
+    return max(range(len(plan.levels)), key=lambda number: plan.levels[number][0])
+
+
 def strength(plan, force, seen, noise):
     """strength.excess of the hold-out records over the same records with nothing hidden; of the
     record of the largest load where none is held out.
@@ -264,8 +269,7 @@ def strength(plan, force, seen, noise):
     seen: (record, channel, time) responses.
     """
     held = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
-    highest = max(range(len(plan.levels)), key=lambda number: plan.levels[number][0])
-    rows, count = held or [highest], len(plan.channels)
+    rows, count = held or [highest_level(plan)], len(plan.channels)
 
     def twins(hidden, first):
         """The records from TWINS other initial states, as measured."""

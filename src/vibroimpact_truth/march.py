@@ -156,6 +156,7 @@ def run_record(reduced, drive, gap, steps_per_second, rng, start=0.0):
     taps = anti_alias(steps_per_second / stride, factor // stride)
     step = stride / steps_per_second
     kept = slice(lead, lead + samples)
+    fast = fast - fast[:, :1]  # displacements count from the start
     found = [
         decimate(series, factor // stride, taps)[..., kept]
         for series in (fast, velocities(fast, step), accelerations(fast, step), reaction)

@@ -9,6 +9,8 @@ from vibroimpact_truth.draw import draw
 from vibroimpact_truth.hidden import family_of
 from vibroimpact_truth.tune import tuned
 
+NO_STRENGTH = ("nothing", "fault")  # kinds that no twins are run for
+
 
 def plan_table(pool, seed, count):
     """{pool, seed, campaigns: rows of what each is} of the first `count` campaigns of a seed."""
@@ -65,7 +67,7 @@ def make_number(table, number, folder):
                 replace(plan, steps_per_second=steps),
                 files["campaign"],
                 files["truth"],
-                True,
+                plan.kind not in NO_STRENGTH,
                 files["model"],
             )
             break

@@ -9,7 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.campaign import apply_instruments, forces, noise_rms, simulate_records
+from vibroimpact_truth.campaign import (
+    apply_instruments,
+    forces,
+    highest_level,
+    noise_rms,
+    simulate_records,
+)
 from vibroimpact_truth.draw import POOLS, draw, hide
 from vibroimpact_truth.strength import audible_powers, band_powers, strength_by_channel
 
@@ -21,10 +27,10 @@ LEAST, MOST = 0.01, 10.0  # of the amount an effect starts from
 
 
 def probe_of(plan):
-    """The plan with one short record of its largest load, with no other than the lowest noise."""
-    highest = max(plan.levels, key=lambda level: level[0])
+    """The plan with one short record of its largest load, without noise."""
+    load, percent, _ = plan.levels[highest_level(plan)]
     return replace(
-        plan, levels=((*highest[:2], "holdout"),), duration=min(plan.duration, PROBE_S), noise=0.0
+        plan, levels=((load, percent, "holdout"),), duration=min(plan.duration, PROBE_S), noise=0.0
     )
 
 

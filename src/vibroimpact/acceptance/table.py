@@ -16,7 +16,17 @@ from .intervals import wilson
 
 WORST = 2.0  # the costliest verdict over the target of the median
 MINUTES = {"nothing": 2.0, "one effect": 5.0, "two effects": 12.0}  # of CPU, median
-ONE = ("strong", "medium", "weak", "exact_alias", "near_alias", "other_law", "out_of_catalogue")
+NO_FAULT = (
+    "nothing",
+    "strong",
+    "medium",
+    "weak",
+    "exact_alias",
+    "near_alias",
+    "two",
+    "other_law",
+    "out_of_catalogue",
+)
 GROUPS = {
     "nothing": "nothing",
     "fault": "fault",
@@ -43,6 +53,8 @@ class Question:
     @property
     def name(self) -> str:
         """Return the kinds in words."""
+        if self.kinds == NO_FAULT:
+            return "no fault"
         return " and ".join(kind.replace("_", " ") for kind in self.kinds) or "all"
 
 
@@ -62,7 +74,7 @@ QUESTIONS = (
     Question(("other_law",), "family named or in the set", "family", least=0.90),
     Question((), "right, given a single name", "named_right", least=0.95, given="single_name"),
     Question(("fault",), "flagged", "flagged", least=0.95),
-    Question((*ONE, "nothing", "two"), "flagged without a fault", "flag_not_due", most=0.03),
+    Question(NO_FAULT, "flagged", "flag_not_due", most=0.03),
     Question((), "parameters covered", "covered", least=0.85, most=0.95),
     Question(("strong",), "closed and verified", "verified", least=0.90, given="in_set"),
 )
