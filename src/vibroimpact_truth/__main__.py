@@ -1,10 +1,9 @@
-"""Command line: a seeded set of sealed campaigns, one campaign, or the strength of amounts.
+"""Command line: the plan of a draw, its campaigns, or one campaign by hand.
 
-python -m vibroimpact_truth --out FOLDER --seed S --count N [--shard 0/1] [--duration 20]
-    [--tube dev|stand_in] [--list]
+python -m vibroimpact_truth plan --pool development --seed 1 --count 180 --out PLAN.json
+python -m vibroimpact_truth make --plan PLAN.json --out FOLDER [--number 7 | --shard 0/2]
 python -m vibroimpact_truth one --out x.nc --effect gap --set factor=1.25
-    [--effect dry_friction --set mu=0.2] [--truth x.json]
-python -m vibroimpact_truth calibrate [effect ...]
+    [--effect dry_friction --set mu=0.2] [--truth x.json] [--model x.yaml]
 """
 
 import argparse
@@ -13,13 +12,12 @@ import sys
 import time
 from pathlib import Path
 
-from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.calibrate import table
 from vibroimpact_truth.campaign import LEVELS, Plan, make_campaign
-from vibroimpact_truth.draw import draw_plans
+from vibroimpact_truth.draw import POOLS
 from vibroimpact_truth.geometry import TUBES
-from vibroimpact_truth.hidden import EFFECTS, STRANGERS
+from vibroimpact_truth.hidden import IN_RIG
 from vibroimpact_truth.measure import INSTRUMENTS
+from vibroimpact_truth.table import files_of, make_number, plan_table, read_plan, write_plan
 
 
 class EffectOption(argparse.Action):
@@ -28,7 +26,7 @@ class EffectOption(argparse.Action):
     def __call__(self, parser, namespace, value, option=None):
         effects = getattr(namespace, "effects", None) or []
         if option == "--effect":
-            if value not in (known := [*EFFECTS, *STRANGERS, *INSTRUMENTS]):
+            if value not in (known := [*IN_RIG, *INSTRUMENTS]):
                 parser.error(f"effect '{value}' is unknown: {', '.join(known)}")
             effects.append((value, {}))
         elif not effects:
@@ -60,97 +58,92 @@ def options():
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("command", nargs="?", default="draw", choices=("draw", "one", "calibrate"))
-    parser.add_argument("names", nargs="*", help="calibrate: effects, all by default")
-    parser.add_argument("--out", help="draw: a folder, truths go to FOLDER/truth; one: the file")
-    parser.add_argument(
-        "--truth", help="one: file of the truth, by default the same name with .truth.json"
-    )
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--count", type=int, default=24)
-    parser.add_argument("--shard", default="0/1", help="i/n: every n-th campaign from the i-th on")
-    parser.add_argument("--list", action="store_true", help="list the campaigns, and make nothing")
-    parser.add_argument("--effect", action=EffectOption, dest="effects")
-    parser.add_argument("--set", action=EffectOption, dest="effects", metavar="KEY=VALUE")
-    parser.add_argument("--duration", type=float, default=20.0, help="s per record")
-    parser.add_argument("--tube", default="stand_in", choices=sorted(TUBES))
-    parser.add_argument(
+    commands = parser.add_subparsers(dest="command", required=True)
+    plan = commands.add_parser("plan", help="write the table of a draw")
+    plan.add_argument("--pool", choices=POOLS, default="development")
+    plan.add_argument("--seed", type=int, required=True)
+    plan.add_argument("--count", type=int, default=180)
+    plan.add_argument("--out", required=True, help="the file of the table, JSON")
+    make = commands.add_parser("make", help="make campaigns of a plan that do not exist yet")
+    make.add_argument("--plan", required=True, help="the file of the table")
+    make.add_argument("--number", type=int, help="one campaign alone")
+    make.add_argument("--shard", default="0/1", help="i/n: every n-th campaign from the i-th on")
+    make.add_argument("--out", required=True, help="folder; truths go to FOLDER/truth")
+    one = commands.add_parser("one", help="make a campaign by hand")
+    one.add_argument("--out", required=True, help="the file")
+    one.add_argument("--truth", help="file of the truth, by default the same with .truth.json")
+    one.add_argument("--model", help="file of the model, none by default")
+    one.add_argument("--seed", type=int, default=0)
+    one.add_argument("--effect", action=EffectOption, dest="effects")
+    one.add_argument("--set", action=EffectOption, dest="effects", metavar="KEY=VALUE")
+    one.add_argument("--duration", type=float, default=20.0, help="s per record")
+    one.add_argument("--sampling", type=float, default=2048.0, help="Hz")
+    one.add_argument("--start-up", choices=("rest", "stationary"), default="rest")
+    one.add_argument("--tube", default="stand_in", choices=sorted(TUBES))
+    one.add_argument(
         "--change", action="append", default=[], metavar="KEY=VALUE", help="a field of the tube"
     )
-    parser.add_argument("--levels", type=levels, default=LEVELS, metavar="N:PERCENT:SPLIT,...")
-    parser.add_argument("--force", help="take the forces of this campaign file")
-    parser.add_argument(
-        "--contact-force", action="store_true", help="channels of the plates' forces"
-    )
-    parser.add_argument("--noise-floor", action="store_true", help="write noise_floor_rms")
-    parser.add_argument(
+    one.add_argument("--levels", type=levels, default=LEVELS, metavar="N:PERCENT:SPLIT,...")
+    one.add_argument("--force", help="take the forces of this campaign file")
+    one.add_argument("--contact-force", action="store_true", help="channels of the plates' forces")
+    one.add_argument("--noise-floor", action="store_true", help="write noise_floor_rms")
+    one.add_argument(
         "--no-twin", action="store_true", help="do not run the bare rig that gives the strength"
     )
     for name, value in (("gain", 0.02), ("frequency", 0.003), ("damping", 0.10)):
-        parser.add_argument(f"--{name}-scatter", type=float, default=value)
-    parser.add_argument("--noise", type=float, default=0.01)
+        one.add_argument(f"--{name}-scatter", type=float, default=value)
+    one.add_argument("--noise", type=float, default=0.01)
     return parser
 
 
-def plan_fields(given):
-    """Fields of Plan that the command line gives."""
-    return {
-        "tube": given.tube,
-        "changes": dict(key_value(text) for text in given.change),
-        "levels": given.levels,
-        "duration": given.duration,
-        "gain_scatter": given.gain_scatter,
-        "frequency_scatter": given.frequency_scatter,
-        "damping_scatter": given.damping_scatter,
-        "noise": given.noise,
-        "contact_force": given.contact_force,
-        "noise_floor": given.noise_floor,
-        "drive_force": given.force,
-    }
+def plan_by_hand(given):
+    """The Plan of the command `one`."""
+    return Plan(
+        (given.seed,),
+        tuple(given.effects or ()),
+        "one",
+        tube=given.tube,
+        changes=dict(key_value(text) for text in given.change),
+        levels=given.levels,
+        duration=given.duration,
+        sampling=given.sampling,
+        start_up=given.start_up,
+        gain_scatter=given.gain_scatter,
+        frequency_scatter=given.frequency_scatter,
+        damping_scatter=given.damping_scatter,
+        noise=given.noise,
+        contact_force=given.contact_force,
+        noise_floor=given.noise_floor,
+        drive_force=given.force,
+    )
 
 
-def make_set(given):
-    """Make those campaigns of a shard that do not exist yet."""
+def make_shard(given):
+    """Make those campaigns of a plan that do not exist yet: one, or those of a shard."""
+    table = read_plan(given.plan)
     first, every = (int(part) for part in given.shard.split("/"))
-    for index, plan in enumerate(draw_plans(given.seed, given.count, **plan_fields(given))):
-        if given.list:
-            print(index, plan.arm, *(f"{name}{parameters}" for name, parameters in plan.effects))
-        elif index % every == first:
-            path = Path(given.out) / f"campaign_s{given.seed}_{index:04d}.nc"
-            truth = Path(given.out) / "truth" / f"{path.stem}.json"
-            if not (path.exists() and truth.exists()):
-                make_one(plan, path, truth, not given.no_twin)
-
-
-def make_one(plan, path, truth, twin):
-    """Make one campaign and print a line that does not reveal what is hidden."""
-    start = time.perf_counter()
-    try:
-        make_campaign(plan, path, truth, twin)
-    except FloatingPointError as problem:
-        print(f"{path}: not made: {problem}", file=sys.stderr, flush=True)
-    else:
-        print(f"{path} {time.perf_counter() - start:.1f} s", flush=True)
+    numbers = range(first, len(table["campaigns"]), every)
+    for number in numbers if given.number is None else [given.number]:
+        if not all(path.exists() for path in files_of(given.out, number).values()):
+            start = time.perf_counter()
+            path = make_number(table, number, given.out)
+            print(f"{path} {time.perf_counter() - start:.1f} s", flush=True)
 
 
 def main(arguments=None):
     """Run the command."""
-    parser = options()
-    given = parser.parse_args(arguments)
-    if given.command == "calibrate":
-        table(given.names or list(AMOUNTS), given.seed, given.duration, given.tube)
-    elif given.out is None and not given.list:
-        parser.error("--out is needed")
-    elif given.command == "one":
-        path = Path(given.out)
-        make_one(
-            Plan((given.seed,), tuple(given.effects or ()), "one", **plan_fields(given)),
-            path,
-            given.truth or path.with_suffix(".truth.json"),
-            not given.no_twin,
-        )
+    given = options().parse_args(arguments)
+    if given.command == "plan":
+        write_plan(plan_table(given.pool, given.seed, given.count), given.out)
+    elif given.command == "make":
+        make_shard(given)
     else:
-        make_set(given)
+        path = Path(given.out)
+        truth = given.truth or path.with_suffix(".truth.json")
+        try:
+            make_campaign(plan_by_hand(given), path, truth, not given.no_twin, given.model)
+        except FloatingPointError as problem:
+            sys.exit(f"{path}: not made: {problem}")
 
 
 if __name__ == "__main__":

@@ -75,30 +75,23 @@ def inertia(section, plane, tangent, fluid):
 
 
 class Mesh:
-    """A mesh of the tube with elements of at most element_length m, two within each plate.
+    """A mesh of a beam with elements of at most element_length m, two within each support.
 
     ends: (element + 1,) arc lengths in m. There are 3 element + 1 nodes; the roots are the first
     and the last.
     """
 
     def __init__(self, tube, element_length=0.036):
-        low = tube.plate_height - 0.5 * tube.plate_length
-        high = tube.plate_height + 0.5 * tube.plate_length
-        marks = [0.0, low, high, tube.leg]  # elements end where plates end, and are short between
-        marks += [tube.length - s for s in reversed(marks)]
-        sizes = [
-            element_length,
-            0.5 * tube.plate_length,
-            element_length,
-            element_length,
-            element_length,
-            0.5 * tube.plate_length,
-            element_length,
-        ]
-        pieces = [
-            (a, b, max(1, int(np.ceil((b - a) / size - 1e-9))))
-            for a, b, size in zip(marks[:-1], marks[1:], sizes, strict=True)
-        ]
+        marks = {0.0, *tube.corners, tube.length}  # elements end where supports end
+        for holder in tube.holders:
+            ends = holder.arc + 0.5 * holder.height * np.array([-1.0, 1.0])
+            marks |= set(np.clip(ends, 0.0, tube.length).tolist())
+        marks = sorted(marks)
+        pieces = []
+        for a, b in zip(marks[:-1], marks[1:], strict=True):
+            within = any(abs(0.5 * (a + b) - h.arc) < 0.5 * h.height for h in tube.holders)
+            count = 2 if within else max(1, int(np.ceil((b - a) / element_length - 1e-9)))
+            pieces.append((a, b, count))
         self.tube = tube
         self.ends = np.concatenate(
             [np.linspace(a, b, n + 1)[:-1] for a, b, n in pieces] + [[tube.length]]

@@ -5,8 +5,12 @@ free damped oscillator. The scheme is symmetric, of second order, and symplectic
 lost; linear motion has no period error at any step. The contact force sees the displacement of the
 modes plus the static compliance of those left out (`residual`), by two passes of a fixed-point
 iteration with a contraction of about 0.03. Sources: E. Hairer, C. Lubich and G. Wanner, Geometric
-Numerical Integration (2006), XIII.1 (impulse method); P. Dahl, AIAA J. 14 (1976) 1675-1682
-(friction); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102 (1976) 249-263 (hysteresis).
+Numerical Integration (2006), XIII.1 (impulse method); R. Bouc and Y.-K. Wen, J. Eng. Mech. 102
+(1976) 249-263 (hysteresis). Friction: P. Dahl, AIAA J. 14 (1976) 1675-1682; C. Canudas de Wit et
+al., IEEE Trans. Autom. Control 40 (1995) 419-425 (LuGre); W. Iwan, J. Appl. Mech. 33 (1966)
+893-900; J. Antunes et al., J. Fluids Struct. 4 (1990) 287-304 (spring and damper that slide).
+Damping of contacts: H. Lankarani and P. Nikravesh, J. Mech. Des. 112 (1990) 369-376; P. Flores et
+al., Multibody Syst. Dyn. 25 (2011) 357-375.
 """
 
 from typing import NamedTuple
@@ -16,6 +20,7 @@ from numba import njit
 
 SHAPES = 4  # shapes that span the motion of a plate's nodes in one plane
 ROWS = 8  # rows projected at once
+PARTS = 4  # elements of a joint after Iwan
 NODES = 8  # places for nodes of a plate
 # m sqrt(kg): |q| at which the integration stops. The comparison is false for NaN, which isfinite
 # does not detect with these compiler flags.
@@ -35,7 +40,13 @@ LOBES = 13
 DEPTH = 14
 ANGLE = 15
 LAND = 16
-PLATE_MASS, PLATE_STIFFNESS, PLATE_DAMPING, PLATE_COLUMNS = 17, 18, 19, 20
+PLATE_MASS, PLATE_STIFFNESS, PLATE_DAMPING = 17, 18, 19
+FRICTION_LAW = 20  # number of rig.FRICTION_LAWS
+STATIC, STRIBECK_SPEED, STICK_TIME = 21, 22, 23
+APPROACH = 24  # of the elastic force, per rate over the rate at first touch
+LOOSENED_AT, LOOSENED_OVER, LOOSENED_BY = 25, 26, 27
+PLATE_COLUMNS = 28
+SLOWEST_APPROACH = 1.0e-4  # m/s: below it a contact counts as begun at this rate
 LOOSE_MASS, LOOSE_GAP, LOOSE_STIFFNESS, LOOSE_DAMPING = 0, 1, 2, 3
 
 
@@ -48,7 +59,7 @@ class Contacts(NamedTuple):
     share (plate, node): of the plate's stiffness.
     residual_y, residual_x (plate, node, node): m/N.
     tilt_y, tilt_x (plate, node): offset of the hole's axis from the plate's centre, m.
-    shape_y (8, y mode), shape_x (8, x mode): SHAPES rows per plate, two plates at most.
+    shape_y (row, y mode), shape_x (row, x mode): SHAPES rows per plate, a multiple of ROWS.
     """
 
     lift_y: np.ndarray
@@ -67,6 +78,8 @@ class Locals(NamedTuple):
 
     law (element,), parameters (element, 4), row (element, mode).
     loose (mass, 4); loose_y, loose_x (mass, mode): rows along y and x.
+    slider (mass, 4): kg, limit N, stick stiffness N/m, centring stiffness N/m; slider_row (mass,
+    mode).
     drag (station,): N s²/m² per station; drag_y, drag_x (station, mode): rows across the tube,
     along y and in plane.
     """
@@ -77,6 +90,8 @@ class Locals(NamedTuple):
     loose: np.ndarray
     loose_y: np.ndarray
     loose_x: np.ndarray
+    slider: np.ndarray
+    slider_row: np.ndarray
     drag: np.ndarray
     drag_y: np.ndarray
     drag_x: np.ndarray
@@ -85,18 +100,22 @@ class Locals(NamedTuple):
 class State(NamedTuple):
     """The variables that change with time.
 
-    q, v (mode,). bristle, fx, fy (plate, node): bristle deflection and contact force.
-    memory (element,). plate (plate, 4) and loose (mass, 4): x, y and their rates.
+    q, v (mode,). fx, fy (plate, node): contact force. bristle (plate, node, PARTS): deflections.
+    approach (plate, node): rate at first touch, m/s, 0 where a node is free.
+    memory (element,). plate (plate, 4) and loose (mass, 4): x, y and their rates. slider (mass, 3):
+    displacement, rate and deflection.
     """
 
     q: np.ndarray
     v: np.ndarray
-    bristle: np.ndarray
     fx: np.ndarray
     fy: np.ndarray
+    bristle: np.ndarray
+    approach: np.ndarray
     memory: np.ndarray
     plate: np.ndarray
     loose: np.ndarray
+    slider: np.ndarray
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
@@ -136,53 +155,106 @@ def obstacle(table, gap, x, y):
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
-def normal_force(table, share, depth, rate):
+def gap_now(table, elapsed):
+    """Radial clearance in m of a plate at a time of the campaign [s]: it drifts, and may loosen."""
+    gap = table[GAP] * (1.0 + table[GAP_RATE] * elapsed)
+    if table[LOOSENED_BY] != 0.0:
+        done = (elapsed - table[LOOSENED_AT]) / table[LOOSENED_OVER]
+        gap *= 1.0 + table[LOOSENED_BY] * min(max(done, 0.0), 1.0)
+    return gap
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def normal_force(table, share, depth, rate, approach):
     """Normal force in N, never tensile, of a node with a `share` of the plate.
 
-    depth: penetration, m. rate: its rate, m/s.
+    depth: penetration, m. rate: its rate, m/s. approach: its rate at first touch, m/s.
     """
     elastic = (
         table[STIFFNESS] * depth if table[HERTZ] == 0.0 else table[HERTZ] * depth * np.sqrt(depth)
     )
-    return max(0.0, share * (elastic * (1.0 + table[HUNT] * rate) + table[DAMPING] * rate))
+    loss = table[HUNT] * rate
+    if table[APPROACH] != 0.0:
+        loss += table[APPROACH] * rate / max(approach, SLOWEST_APPROACH)
+    return max(0.0, share * (elastic * (1.0 + loss) + table[DAMPING] * rate))
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
-def friction_force(table, share, bristle, normal, speed, step):
-    """Tangential force in N on the tube, and bristle deflection in m after the step.
-
-    A Dahl bristle, integrated exactly over a step of constant speed. With a slip speed, Coulomb
-    friction smoothed by tanh, limited so that it can not reverse the sliding within a step.
-    """
-    limit = table[MU] * normal
-    if table[SLIP_SPEED] > 0.0:
-        return (
-            -np.sign(speed)
-            * min(
-                limit * np.tanh(abs(speed) / table[SLIP_SPEED]),
-                0.5 * abs(speed) / (step * table[MOBILITY]),
-            ),
-            0.0,
-        )
-    if limit == 0.0:
-        return 0.0, 0.0
-    stiffness = share * table[BRISTLE]
+def dahl(stiffness, limit, deflection, speed, step):
+    """Deflection [m] of a Dahl bristle after a step of constant speed: integrated exactly."""
     end = limit / stiffness
     way = np.sign(speed)
-    bristle = min(max(bristle, -end), end)
-    bristle = way * end + (bristle - way * end) * np.exp(-abs(speed) * step / end)
-    return -stiffness * bristle, bristle
+    deflection = min(max(deflection, -end), end)
+    return way * end + (deflection - way * end) * np.exp(-abs(speed) * step / end)
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
-def element_force(law, p, d, v, memory, step):
+def friction_force(table, share, bristle, normal, speed, step, keep):
+    """Tangential force in N on the tube; bristle (PARTS,) is moved by a step where `keep`.
+
+    law 0: a Dahl bristle. 1: Coulomb friction smoothed by tanh, limited so that it can not reverse
+    the sliding within a step. 2: LuGre. 3: parallel Jenkins elements after Iwan. 4: a spring and
+    damper that slide at the limit.
+    """
+    law = int(table[FRICTION_LAW])
+    limit = table[MU] * normal
+    if law == 1:
+        return -np.sign(speed) * min(
+            limit * np.tanh(abs(speed) / table[SLIP_SPEED]),
+            0.5 * abs(speed) / (step * table[MOBILITY]),
+        )
+    if limit == 0.0:
+        if keep:
+            for part in range(PARTS):
+                bristle[part] = 0.0
+        return 0.0
+    stiffness = share * table[BRISTLE]
+    if law == 3:
+        return jenkins_force(stiffness, limit, bristle, speed, step, keep)
+    if law == 4:
+        damper = table[STICK_TIME] * stiffness * speed
+        force = stiffness * (bristle[0] + step * speed) + damper
+        force = min(max(force, -limit), limit)
+        if keep:
+            bristle[0] = (force - damper) / stiffness
+        return -force
+    if law == 2:
+        ratio = speed / table[STRIBECK_SPEED]
+        limit *= 1.0 + (table[STATIC] - 1.0) * np.exp(-ratio * ratio)
+    moved = dahl(stiffness, limit, bristle[0], speed, step)
+    force = stiffness * moved
+    if law == 2:
+        force += table[STICK_TIME] * stiffness * (moved - bristle[0]) / step
+    if keep:
+        bristle[0] = moved
+    return -force
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def jenkins_force(stiffness, limit, bristle, speed, step, keep):
+    """Force in N of PARTS equal springs in parallel, which slide at 0.4, 0.8, 1.2 and 1.6 of their
+    share of the limit.
+    """
+    force, each = 0.0, stiffness / PARTS
+    for part in range(PARTS):
+        end = 0.4 * (part + 1) * limit / stiffness
+        moved = min(max(bristle[part] + step * speed, -end), end)
+        force += each * moved
+        if keep:
+            bristle[part] = moved
+    return -force
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def element_force(law, p, d, v, memory, step, time):
     """Force in N (or N m) of a local element, and its memory after the step.
 
     law: number of rig.LAWS. p: its parameters. d, v: displacement and rate.
 
     linear k, c; cubic k3; quadratic k2; saturation k, limit (smooth); coulomb limit, bristle
     stiffness; clearance half gap, k; bouc_wen k, limit (makes the structure's spring k hysteretic);
-    one_sided k, distance; drag c.
+    one_sided k, distance; drag c; self_excited a, b (a v - b v³); parametric k, frequency [Hz],
+    phase [rad]; breathing k (taken from the structure while d > 0).
     """
     if law == 0:
         return -p[0] * d - p[1] * v, memory
@@ -208,7 +280,13 @@ def element_force(law, p, d, v, memory, step):
         return p[0] * (d - memory), memory
     if law == 7:
         return -p[0] * max(0.0, d - p[1]), memory
-    return -p[0] * abs(v) * v, memory
+    if law == 8:
+        return -p[0] * abs(v) * v, memory
+    if law == 9:
+        return p[0] * v - p[1] * v * v * v, memory
+    if law == 10:
+        return -p[0] * np.cos(2.0 * np.pi * p[1] * time + p[2]) * d, memory
+    return p[0] * max(0.0, d), memory
 
 
 @njit(fastmath=FAST, **NRT)
@@ -307,10 +385,20 @@ def advance(rows, q, v, turn, step, force, drive, extra, load, place):
 
 
 @njit(fastmath=FAST, **NRT)
+def add_loads(rows, load, extra, kick):
+    """kick = extra + the load of the rows past the first eight, which `advance` does not take."""
+    for m in range(len(kick)):
+        kick[m] = extra[m]
+    for k in range(ROWS, len(rows)):
+        if load[k] != 0.0:
+            add(kick, rows[k], load[k])
+
+
+@njit(fastmath=FAST, **NRT)
 def lift_to_nodes(lift, p, amplitude, nodes):
     """nodes[p, :] = displacement (or rate) of the nodes of plate p.
 
-    amplitude (8,): of the shapes.
+    amplitude (row,): of the shapes.
     """
     for i in range(NODES):
         nodes[p, i] = 0.0
@@ -321,31 +409,49 @@ def lift_to_nodes(lift, p, amplitude, nodes):
 
 
 @njit(fastmath=FAST, **NRT)
-def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, step):
-    """Force fx, fy in N on the tube of a node, and its bristle deflection.
+def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, approach, step, keep):
+    """Force fx, fy in N on the tube of a node, and its rate of approach at first touch.
 
-    ux, uy: from the plate's centre, m. rate_x, rate_y: m/s.
+    ux, uy: from the plate's centre, m. rate_x, rate_y: m/s. bristle (PARTS,) is moved where `keep`.
     """
     depth, nx, ny = obstacle(table, gap, ux, uy)
     if depth <= 0.0:
+        if keep:
+            for part in range(PARTS):
+                bristle[part] = 0.0
         return 0.0, 0.0, 0.0
-    force = normal_force(table, share, depth, nx * rate_x + ny * rate_y)
+    rate = nx * rate_x + ny * rate_y
+    if approach == 0.0:
+        approach = max(rate, SLOWEST_APPROACH)
+    force = normal_force(table, share, depth, rate, approach)
     if table[MU] == 0.0:
-        return -force * nx, -force * ny, 0.0
-    along, bristle = friction_force(table, share, bristle, force, nx * rate_y - ny * rate_x, step)
-    return -force * nx - along * ny, -force * ny + along * nx, bristle
+        return -force * nx, -force * ny, approach
+    along = friction_force(table, share, bristle, force, nx * rate_y - ny * rate_x, step, keep)
+    return -force * nx - along * ny, -force * ny + along * nx, approach
 
 
 @njit(fastmath=FAST, **NRT)
 def contact_forces(
-    contacts, plates, state, place_y, place_x, load_y, load_x, work, elapsed, ramp, step, touching
+    contacts,
+    plates,
+    state,
+    place_y,
+    place_x,
+    load_y,
+    load_x,
+    work,
+    rates,
+    elapsed,
+    ramp,
+    step,
+    touching,
 ):
-    """Set load_y, load_x (8,) to the forces of all contacts on the shapes.
+    """Set load_y, load_x (row,) to the forces of all contacts on the shapes.
 
-    place_y, place_x (8,): displacements of the shapes.
+    place_y, place_x (row,): displacements of the shapes.
     touching (plate,): set to 1.0 where a node touches.
-    work (8, plate, 8): displacements x and y, the same with the residual, rates x and y, rates of
-    the shapes x and y.
+    work (6, plate, 8): displacements x and y, the same with the residual, rates x and y.
+    rates (2, row): of the shapes, x and y.
     """
     ux = work[0]
     uy = work[1]
@@ -353,11 +459,11 @@ def contact_forces(
     ey = work[3]
     wx = work[4]
     wy = work[5]
-    rate_x = work[6, 0]
-    rate_y = work[7, 0]
+    rate_x = rates[0]
+    rate_y = rates[1]
     fx, fy = state.fx, state.fy
     rates_known = False
-    for k in range(ROWS):
+    for k in range(len(load_y)):
         load_y[k] = 0.0
         load_x[k] = 0.0
     for p in range(len(plates)):
@@ -365,7 +471,7 @@ def contact_forces(
         lift_to_nodes(contacts.lift_y, p, place_y, uy)
         shift_x = ramp * plates[p, OFFSET_X] + state.plate[p, 0]
         shift_y = ramp * plates[p, OFFSET_Y] + state.plate[p, 1]
-        gap = plates[p, GAP] * (1.0 + plates[p, GAP_RATE] * elapsed)
+        gap = gap_now(plates[p], elapsed)
         farthest = 0.0
         for i in range(NODES):
             ux[p, i] -= shift_x + ramp * contacts.tilt_x[p, i]
@@ -373,11 +479,17 @@ def contact_forces(
             farthest = max(farthest, ux[p, i] * ux[p, i] + uy[p, i] * uy[p, i])
         if farthest <= gap * gap and gap > 0.0 and touching[p] == 0.0:
             continue
-        if plates[p, DAMPING] != 0.0 or plates[p, HUNT] != 0.0 or plates[p, MU] != 0.0:
+        if (
+            plates[p, DAMPING] != 0.0
+            or plates[p, HUNT] != 0.0
+            or plates[p, MU] != 0.0
+            or plates[p, APPROACH] != 0.0
+        ):
             if not rates_known:
                 rates_known = True
-                project(contacts.shape_x, 0, state.v[contacts.shape_y.shape[1] :], rate_x)
-                project(contacts.shape_y, 0, state.v[: contacts.shape_y.shape[1]], rate_y)
+                for first in range(0, len(rate_x), ROWS):
+                    project(contacts.shape_x, first, state.v[contacts.shape_y.shape[1] :], rate_x)
+                    project(contacts.shape_y, first, state.v[: contacts.shape_y.shape[1]], rate_y)
             lift_to_nodes(contacts.lift_x, p, rate_x, wx)
             lift_to_nodes(contacts.lift_y, p, rate_y, wy)
         touching[p] = 0.0
@@ -389,7 +501,7 @@ def contact_forces(
                     ex[p, i] += contacts.residual_x[p, j, i] * fx[p, j]
                     ey[p, i] += contacts.residual_y[p, j, i] * fy[p, j]
             for i in range(NODES):
-                fx[p, i], fy[p, i], bristle = node_forces(
+                fx[p, i], fy[p, i], approach = node_forces(
                     plates[p],
                     contacts.share[p, i],
                     gap,
@@ -398,10 +510,12 @@ def contact_forces(
                     wx[p, i] - state.plate[p, 2],
                     wy[p, i] - state.plate[p, 3],
                     state.bristle[p, i],
+                    state.approach[p, i],
                     step,
+                    last == 1,
                 )
                 if last:
-                    state.bristle[p, i] = bristle
+                    state.approach[p, i] = approach
         for k in range(SHAPES):
             for i in range(NODES):
                 load_x[SHAPES * p + k] += contacts.lift_x[p, k, i] * fx[p, i]
@@ -438,10 +552,10 @@ def plate_step(plates, state, step, resultant):
 
 
 @njit(fastmath=FAST, **NRT)
-def local_kick(local, state, kick, step):
+def local_kick(local, state, kick, step, time):
     """Add the forces of local elements, drag and loose masses to the modal kick.
 
-    Loose masses are kicked and moved here too.
+    Loose and sliding masses are kicked and moved here too.
     """
     for e in range(len(local.law)):
         force, state.memory[e] = element_force(
@@ -451,6 +565,7 @@ def local_kick(local, state, kick, step):
             dot(local.row[e], state.v),
             state.memory[e],
             step,
+            time,
         )
         add(kick, local.row[e], force)
     for s in range(len(local.drag)):
@@ -478,6 +593,16 @@ def local_kick(local, state, kick, step):
             state.loose[b, 3] -= step * force * ny / mass
         state.loose[b, 0] += step * state.loose[b, 2]
         state.loose[b, 1] += step * state.loose[b, 3]
+    for b in range(len(local.slider)):
+        speed = dot(local.slider_row[b], state.v) - state.slider[b, 1]
+        state.slider[b, 2] = dahl(
+            local.slider[b, 2], local.slider[b, 1], state.slider[b, 2], speed, step
+        )
+        apart = dot(local.slider_row[b], state.q) - state.slider[b, 0]
+        force = local.slider[b, 2] * state.slider[b, 2] + local.slider[b, 3] * apart
+        add(kick, local.slider_row[b], -force)
+        state.slider[b, 1] += step * force / local.slider[b, 0]
+        state.slider[b, 0] += step * state.slider[b, 1]
 
 
 @njit(fastmath=FAST, cache=True, error_model="numpy")
@@ -514,11 +639,12 @@ def march(
     touched (plate,): increased by the steps in contact.
     """
     modes, count = len(state.q), len(plates)
-    extra, work = np.zeros(modes), np.zeros((8, max(count, 1), NODES))
-    place_y = np.zeros(ROWS)
-    place_x = np.zeros(ROWS)
-    load_y = np.zeros(ROWS)
-    load_x = np.zeros(ROWS)
+    rows = len(contacts.shape_y)
+    extra, work, rates = np.zeros(modes), np.zeros((6, max(count, 1), NODES)), np.zeros((2, rows))
+    place_y = np.zeros(rows)
+    place_x = np.zeros(rows)
+    load_y = np.zeros(rows)
+    load_x = np.zeros(rows)
     resultant, touching, sample = np.zeros((count, 2)), np.ones(count), np.zeros(len(sensors))
     qy, qx, vy, vx = state.q[:split], state.q[split:], state.v[:split], state.v[split:]
     turn_y, turn_x = turn[:, :split].copy(), turn[:, split:].copy()
@@ -526,9 +652,11 @@ def march(
     yields = False
     for p in range(count):
         yields |= plates[p, PLATE_MASS] > 0.0
-    has_local = len(local.law) + len(local.drag) + len(local.loose) > 0
-    project(contacts.shape_y, 0, qy, place_y)
-    project(contacts.shape_x, 0, qx, place_x)
+    has_local = len(local.law) + len(local.drag) + len(local.loose) + len(local.slider) > 0
+    more, kick_y, kick_x = rows > ROWS, np.zeros(split), np.zeros(modes - split)
+    for first in range(0, rows, ROWS):
+        project(contacts.shape_y, first, qy, place_y)
+        project(contacts.shape_x, first, qx, place_x)
     for n in range(len(force)):
         scale = ramp[n] if len(ramp) > 1 else ramp[0]
         if n == 0 or has_local or len(ramp) > 1 or len(unmeasured):
@@ -544,6 +672,7 @@ def march(
             load_y,
             load_x,
             work,
+            rates,
             start + n * step,
             scale,
             step,
@@ -552,7 +681,7 @@ def march(
         for p in range(count):
             touched[p] += touching[p]
         if has_local:
-            local_kick(local, state, extra, step)
+            local_kick(local, state, extra, step, start + n * step)
         if n % stride == 0 and len(sensors):
             for first in range(0, len(sensors), ROWS):
                 project(sensors, first, state.q, sample)
@@ -567,6 +696,13 @@ def march(
         if yields:
             plate_resultants(state, resultant)
             plate_step(plates, state, step, resultant)
-        advance(contacts.shape_y, qy, vy, turn_y, step, force[n], drive_y, extra_y, load_y, place_y)
-        advance(contacts.shape_x, qx, vx, turn_x, step, force[n], drive_x, extra_x, load_x, place_x)
+        if more:
+            add_loads(contacts.shape_y, load_y, extra_y, kick_y)
+            add_loads(contacts.shape_x, load_x, extra_x, kick_x)
+        now_y, now_x = (kick_y, kick_x) if more else (extra_y, extra_x)
+        advance(contacts.shape_y, qy, vy, turn_y, step, force[n], drive_y, now_y, load_y, place_y)
+        advance(contacts.shape_x, qx, vx, turn_x, step, force[n], drive_x, now_x, load_x, place_x)
+        for first in range(ROWS, rows, ROWS):
+            project(contacts.shape_y, first, qy, place_y)
+            project(contacts.shape_x, first, qx, place_x)
     return -1

@@ -7,21 +7,28 @@ from scipy.signal import firwin, kaiser_beta, upfirdn
 
 from vibroimpact_truth import kernel
 
-STRIDE = 4  # steps per sample before decimation: 40960 Hz, where the modes end at 15000 Hz
+FAST_HZ = 40960  # sampled before decimation: the modes end at 15000 Hz
 SETTLE_S = 2.5  # duration of the ramp of dead loads and offsets, before the record
 # "fir80" of the contract at 2048 Hz, with a margin of 6 dB
 PASS_HZ, STOP_HZ, STOP_DB = 800.0, 1024.0, 86.0
+
+
+CHUNK_S = 0.25  # of one propagator, where the modes drift
+LEAD_S = 4.0  # before a record that begins in stationary motion
+TAIL_S = 0.05  # after a record, for the filter
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
     """The response of one record.
 
-    acceleration (channel, time): m/s².
+    displacement (channel, time): m, and its derivatives velocity m/s and acceleration m/s².
     reaction (plate, 2, time): force on the tube, N.
     contact (plate,): share of time in contact.
     """
 
+    displacement: np.ndarray
+    velocity: np.ndarray
     acceleration: np.ndarray
     reaction: np.ndarray
     contact: np.ndarray
@@ -71,6 +78,16 @@ def accelerations(displacement, step):
     return np.diff(change, axis=-1, append=change[..., -1:]) / step**2
 
 
+def velocities(displacement, step):
+    """(…, time) central differences of fourth order of displacements over `step` [s]; zero motion
+    before, and the last value after.
+    """
+    wide = np.pad(displacement, [(0, 0)] * (displacement.ndim - 1) + [(2, 2)], mode="edge")
+    near = wide[..., 3:-1] - wide[..., 1:-3]
+    far = wide[..., 4:] - wide[..., :-4]
+    return (8.0 * near - far) / (12.0 * step)
+
+
 def rest_state(reduced, imperfection, rng):
     """A State at rest but for a random displacement of the first in-plane modes.
 
@@ -80,30 +97,43 @@ def rest_state(reduced, imperfection, rng):
     state = kernel.State(
         np.zeros(modes),
         np.zeros(modes),
-        *np.zeros((3, plates, kernel.NODES)),
+        *np.zeros((2, plates, kernel.NODES)),
+        np.zeros((plates, kernel.NODES, kernel.PARTS)),
+        np.zeros((plates, kernel.NODES)),
         np.zeros(len(reduced.local.law)),
         np.zeros((plates, 4)),
         np.zeros((len(reduced.local.loose), 4)),
+        np.zeros((len(reduced.local.slider), 3)),
     )
     first = slice(reduced.split, reduced.split + 4)
     state.q[first] = imperfection * rng.standard_normal(4)
     return state
 
 
-def run_record(reduced, force, gap, sampling, steps_per_second, rng, start=0.0, unmeasured=None):
-    """The Record of a force (time,) N at `sampling` Hz.
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """The forces of a record, (time,) N at `sampling` Hz, periodic over the record.
+
+    unmeasured: a second force, or None. stationary: whether the record begins in stationary motion.
+    """
+
+    force: np.ndarray
+    sampling: float
+    unmeasured: np.ndarray | None = None
+    stationary: bool = False
+
+
+def run_record(reduced, drive, gap, steps_per_second, rng, start=0.0):
+    """The Record of a Drive.
 
     gap: (plate,) m.
     start: time of the campaign before the record, s.
-    unmeasured: (time,) N of a second force, or None.
     """
-    factor = round(steps_per_second / sampling)
-    step, plates = 1.0 / steps_per_second, reduced.plates.copy()
+    factor, stride = round(steps_per_second / drive.sampling), stride_of(steps_per_second)
+    plates = reduced.plates.copy()
     plates[:, kernel.GAP] = gap
-    state = rest_state(reduced, 1e-6 * float(np.min(gap)), rng)
-    turn = reduced.propagator(1.0 / steps_per_second)
-    group = (reduced.split, turn, reduced.contacts, plates, reduced.local, reduced.drive)
-    touched = np.zeros(len(plates))
+    state = rest_state(reduced, 1e-6 * float(np.min(gap, initial=1e-3)), rng)
+    march = Stretch(reduced, plates, state, 1.0 / steps_per_second)
     if (
         reduced.dead.any()
         or plates[:, [kernel.OFFSET_X, kernel.OFFSET_Y]].any()
@@ -112,56 +142,89 @@ def run_record(reduced, force, gap, sampling, steps_per_second, rng, start=0.0, 
     ):
         count = int(SETTLE_S * steps_per_second)
         grow = 0.5 - 0.5 * np.cos(np.pi * np.minimum(np.arange(count) / (0.8 * count), 1.0))
-        _require_finite(
-            kernel.march(
-                *group,
-                np.zeros(count),
-                reduced.other,
-                np.zeros(0),
-                reduced.dead,
-                grow,
-                reduced.sensors[:0],
-                step,
-                count,
-                start,
-                state,
-                np.zeros((1, 0)),
-                np.zeros((1, 2 * len(plates))),
-                touched,
-            ),
-            step,
-        )
-        touched[:] = 0.0
-    steps = len(force) * factor
-    second = np.zeros(0) if unmeasured is None else upsample(unmeasured, factor)
-    channels = len(reduced.sensors)
-    sensors = np.zeros((-(-channels // kernel.ROWS) * kernel.ROWS, len(reduced.frequency)))
-    sensors[:channels] = reduced.sensors
-    fast = np.zeros((steps // STRIDE, len(sensors)))
-    reaction = np.zeros((steps // STRIDE, 2 * len(plates)))
-    _require_finite(
-        kernel.march(
-            *group,
-            upsample(force, factor),
-            reduced.other,
-            second,
-            reduced.dead,
-            np.ones(1),
-            sensors,
-            step,
-            STRIDE,
-            start,
-            state,
-            fast,
-            reaction,
-            touched,
-        ),
-        step,
+        march.run(np.zeros(count), np.zeros(0), start, ramp=grow)
+    samples = len(drive.force)
+    lead = min(round(LEAD_S * drive.sampling), samples) if drive.stationary else 0
+    tail = round(TAIL_S * drive.sampling)
+    around = np.arange(-lead, samples + tail) % samples
+    force, second = (
+        np.zeros(0) if series is None else around_fast(upsample(series, factor), around, factor)
+        for series in (drive.force, drive.unmeasured)
     )
-    taps = anti_alias(steps_per_second / STRIDE, factor // STRIDE)
-    slow = decimate(accelerations(fast[:, :channels].T, step * STRIDE), factor // STRIDE, taps)
-    forces = decimate(reaction.T, factor // STRIDE, taps)
-    return Record(slow, forces.reshape(len(plates), 2, -1), touched / steps)
+    march.touched[:] = 0.0
+    fast, reaction = march.run(force, second, start, recorded=True)
+    taps = anti_alias(steps_per_second / stride, factor // stride)
+    step = stride / steps_per_second
+    kept = slice(lead, lead + samples)
+    fast = fast - fast[:, :1]  # displacements count from the start
+    found = [
+        decimate(series, factor // stride, taps)[..., kept]
+        for series in (fast, velocities(fast, step), accelerations(fast, step), reaction)
+    ]
+    return Record(
+        *found[:3], found[3].reshape(len(plates), 2, -1), march.touched / max(len(force), 1)
+    )
+
+
+def around_fast(fast, around, factor):
+    """(sample × factor,) of a series upsampled by factor, at the samples `around`."""
+    return fast.reshape(-1, factor)[around].ravel()
+
+
+def stride_of(steps_per_second):
+    """Steps per sample before decimation."""
+    return max(1, round(steps_per_second / FAST_HZ))
+
+
+class Stretch:
+    """A rig and its state, integrated stretch by stretch.
+
+    touched (plate,): steps in contact so far.
+    """
+
+    def __init__(self, reduced, plates, state, step):
+        self.reduced, self.plates, self.state, self.step = reduced, plates, state, step
+        self.touched, self.stride = np.zeros(len(plates)), stride_of(1.0 / step)
+
+    def run(self, force, second, start, ramp=None, recorded=False):
+        """(channel, sample) m and (2 plate, sample) N of a stretch under forces (step,) N.
+
+        ramp (step,): factor of dead loads and offsets. recorded: False leaves samples out.
+        """
+        reduced, channels = self.reduced, len(self.reduced.sensors) if recorded else 0
+        stride = self.stride
+        sensors = np.zeros((-(-channels // kernel.ROWS) * kernel.ROWS, len(reduced.frequency)))
+        sensors[:channels] = reduced.sensors[:channels]
+        fast = np.zeros((-(-len(force) // stride), len(sensors)))
+        reaction = np.zeros((len(fast), 2 * len(self.plates)))
+        stretch = round(CHUNK_S / self.step) // stride * stride if reduced.drift else len(force)
+        for first in range(0, len(force), max(stretch, 1)):
+            part = slice(first, first + stretch)
+            samples = slice(first // stride, -(-(first + stretch) // stride))
+            elapsed = start + first * self.step
+            failed = kernel.march(
+                reduced.split,
+                reduced.propagator(self.step, elapsed),
+                reduced.contacts,
+                self.plates,
+                reduced.local,
+                reduced.drive,
+                force[part],
+                reduced.other,
+                second[part],
+                reduced.dead,
+                np.ones(1) if ramp is None else ramp[part],
+                sensors,
+                self.step,
+                stride,
+                elapsed,
+                self.state,
+                fast[samples],
+                reaction[samples],
+                self.touched,
+            )
+            _require_finite(failed, self.step)
+        return fast[:, :channels].T, reaction.T
 
 
 def _require_finite(failed, step):

@@ -42,6 +42,14 @@ def dropout(data, channel="apex_y", start=0.4, duration=1.5):
         series[first : first + int(duration * data.sampling)] = 0.0
 
 
+def sensor_saturation(data, channel="apex_y", fraction=0.5):
+    """Bend a channel smoothly, L tanh(y / L), with L a fraction of its highest peak."""
+    series = data.series(channel)
+    limit = fraction * max(np.abs(one).max() for one in series)
+    for one in series:
+        one[:] = limit * np.tanh(one / limit)
+
+
 def delayed(series, samples):
     """(time,) a series delayed by a number of samples, band-limited, zero before it begins."""
     pad = len(series) // 8
@@ -52,7 +60,8 @@ def delayed(series, samples):
 
 SENSOR_EFFECTS = {"sensor_gain": sensor_gain, "sensor_delay": sensor_delay}
 FAULTS = {"swap": swap, "clip": clip, "dropout": dropout}
-INSTRUMENTS = SENSOR_EFFECTS | FAULTS
+SENSOR_STRANGERS = {"sensor_saturation": sensor_saturation}
+INSTRUMENTS = SENSOR_EFFECTS | FAULTS | SENSOR_STRANGERS
 
 
 class Measured:

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.linalg import eigh
 
 from vibroimpact_truth.elements import Mesh
-from vibroimpact_truth.geometry import named_places
+
+BEND = 1.0e-3  # m, over which the bending angle of a crack is taken
 
 
 class Planes:
@@ -12,7 +13,7 @@ class Planes:
 
     def __init__(self, rig, element_length=0.036):
         self.rig, self.mesh = rig, Mesh(rig.tube, element_length)
-        self.places = named_places(rig.tube)
+        self.places = rig.tube.places
         self.stiffness, self.mass, self.bare_mass = {}, {}, {}
         for plane in ("y", "x"):
             self.stiffness[plane], self.mass[plane] = self.mesh.matrices(plane, rig.fluid[0])
@@ -22,18 +23,24 @@ class Planes:
             for direction in np.eye(3):
                 self._add(self.mass, place, direction, value)
         last = 3 * self.mesh.nodes
-        ends = {
-            "y": ([0, last - 3], [1, 2, last - 2, last - 1]),
-            "x": ([0, 1, last - 3, last - 2], [2, last - 1]),
-        }
-        self.free = {}
-        for plane, (moves, turns) in ends.items():
-            self.free[plane] = np.ones(last, bool)
-            if rig.root is None:
-                self.free[plane][moves + turns] = False
-            else:
-                self.stiffness[plane][moves, moves] += rig.root[0]
-                self.stiffness[plane][turns, turns] += rig.root[1]
+        self.free = {plane: np.ones(last, bool) for plane in ("y", "x")}
+        for first, end in zip((0, last - 3), rig.tube.ends, strict=True):
+            self._hold(first, end)
+
+    def _hold(self, first, end):
+        """Hold an end, whose first dof is `first` in both planes, on the root's springs if any."""
+        moves, turns = {"y": [0], "x": [0, 1]}, {"y": [1, 2], "x": [2]}
+        if end == "pinned":  # only the twist is held, about the axis of a straight beam
+            turns = {"y": [1 if self.rig.tube.axis == "x" else 2], "x": []}
+        if end == "free":
+            return
+        for plane in ("y", "x"):
+            for dofs, springs in zip((moves, turns), self.rig.root or (None, None), strict=True):
+                held = [first + dof for dof in dofs[plane]]
+                if springs is None or end == "pinned":
+                    self.free[plane][held] = False
+                else:
+                    self.stiffness[plane][held, held] += springs
 
     def arc(self, place):
         """Arc length in m of a place: its name, or the arc length itself."""
@@ -47,9 +54,12 @@ class Planes:
     def rows(self, place, direction):
         """{plane: (dof,)} displacement along direction (3,) at a place.
 
-        direction "rx" or "ry": rotation of the root instead.
+        direction "rx" or "ry": rotation of the root instead; "bend_y" or "bend_x": the bending
+        angle over BEND m, out of plane or in plane.
         """
         size = 3 * self.mesh.nodes
+        if isinstance(direction, str) and direction.startswith("bend"):
+            return self._bending(self.arc(place), direction[-1])
         if isinstance(direction, str):
             rows = {"y": np.zeros(size), "x": np.zeros(size)}
             end = 0 if place == "left_root" else size - 3
@@ -58,6 +68,18 @@ class Planes:
         return dict(
             zip(("y", "x"), self.mesh.direction_rows(self.arc(place), direction), strict=True)
         )
+
+    def _bending(self, s, plane):
+        """{plane: (dof,)} bending angle over BEND m about s [m]."""
+        rows = {"y": np.zeros(3 * self.mesh.nodes), "x": np.zeros(3 * self.mesh.nodes)}
+        for sign in (-1.0, 1.0):
+            at = s + 0.5 * sign * BEND
+            tx, tz = self.rig.tube.tangent(at)
+            if plane == "y":
+                rows["y"] += sign * (tz * self.mesh.row(at, 1) - tx * self.mesh.row(at, 2))
+            else:
+                rows["x"] += sign * self.mesh.row(at, 2)
+        return rows
 
     def modes(self, plane, highest=None, extra=()):
         """(mode,) frequencies [Hz] and (dof, mode) mass-normalised shapes up to `highest` Hz.

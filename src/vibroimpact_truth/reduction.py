@@ -6,11 +6,12 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from vibroimpact_truth import kernel
-from vibroimpact_truth.planes import Planes
-from vibroimpact_truth.rig import LAWS, PROFILES
+from vibroimpact_truth.planes import BEND, Planes
+from vibroimpact_truth.rig import FRICTION_LAWS, LAWS, PROFILES
 
 DRAG_STATIONS = 40
 PLATE_DAMPING_RATIO = 0.02  # of a flexible plate
+OUT = np.array([0.0, 1.0, 0.0])  # out of plane
 LANES = 8  # the number of modes of a plane is padded to a multiple of this
 
 
@@ -22,6 +23,7 @@ class Reduced:
     omega2 (mode,): rad²/s². rate (mode,): 2 zeta omega, 1/s.
     frequency (mode,): Hz. ratio (mode,): damping ratio.
     real (mode,): False for padding modes of 1 Hz.
+    drift: relative change of all frequencies per s of the campaign.
     """
 
     split: int
@@ -37,10 +39,12 @@ class Reduced:
     frequency: np.ndarray
     ratio: np.ndarray
     real: np.ndarray
+    drift: float = 0.0
 
-    def propagator(self, step):
-        """(4, mode) exact free motion of each mode over a step [s]."""
-        return exact_propagator(self.omega2, self.rate, step)
+    def propagator(self, step, elapsed=0.0):
+        """(4, mode) exact free motion of each mode over a step [s], at a time of the campaign."""
+        factor = 1.0 + self.drift * elapsed
+        return exact_propagator(factor**2 * self.omega2, factor * self.rate, step)
 
 
 def exact_propagator(omega2, rate, step):
@@ -99,14 +103,15 @@ def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
     dead = np.zeros(modes)
     for plate in rig.plates:
         middle = float(np.median(rig.tube.plate_nodes(plate.side)))
-        dead += project(planes.rows(middle, (plate.preload[0], plate.preload[1], 0.0)))
+        across = rig.tube.across(middle)
+        dead += project(planes.rows(middle, plate.preload[0] * across + plate.preload[1] * OUT))
     return Reduced(
         split,
         omega**2,
         rate,
         contacts,
         plates,
-        _locals(planes, project),
+        _locals(planes, project, omega**2),
         project(_drive_rows(planes)),
         project(planes.rows(*rig.unmeasured[:2])) if rig.unmeasured else np.zeros(modes),
         dead,
@@ -114,6 +119,7 @@ def reduce_rig(rig, sensors, scatter=None, highest=15000.0):
         frequency,
         ratio,
         real,
+        rig.frequency_drift,
     )
 
 
@@ -125,20 +131,23 @@ def _damping(rig, frequency, real):
 
 
 def _drive_rows(planes):
-    """Rows of the force: along y, turned by drive_angle about the tube's axis."""
+    """Rows of the force: along its direction, turned by drive_angle about the tube's axis."""
     rig = planes.rig
     tx, tz = rig.tube.tangent(planes.places["drive"])
-    return planes.rows(
-        "drive",
-        (-np.sin(rig.drive_angle) * tz, np.cos(rig.drive_angle), np.sin(rig.drive_angle) * tx),
-    )
+    axis, force = np.array([tx, 0.0, tz]), np.array(rig.drive_direction)
+    angle = rig.drive_angle
+    along = axis @ force * axis
+    # y towards (-tz, 0, tx), the outer side of a bend
+    turned = np.cos(angle) * (force - along) - np.sin(angle) * np.cross(axis, force)
+    return planes.rows("drive", along + turned)
 
 
 def _contacts(planes, found, split, modes):
     """kernel.Contacts of all plates, with the static compliance of the modes left out."""
     rig, plates = planes.rig, len(planes.rig.plates)
     lift = {plane: np.zeros((plates, kernel.SHAPES, kernel.NODES)) for plane in ("y", "x")}
-    shape = {"y": np.zeros((kernel.ROWS, split)), "x": np.zeros((kernel.ROWS, modes - split))}
+    rows = kernel.ROWS * max(1, -(-kernel.SHAPES * plates // kernel.ROWS))
+    shape = {"y": np.zeros((rows, split)), "x": np.zeros((rows, modes - split))}
     residual = {plane: np.zeros((plates, kernel.NODES, kernel.NODES)) for plane in ("y", "x")}
     share, tilt = np.zeros((plates, kernel.NODES)), np.zeros((2, plates, kernel.NODES))
     for p, plate in enumerate(rig.plates):
@@ -147,13 +156,14 @@ def _contacts(planes, found, split, modes):
         tilt[:, p, : len(arcs)] = np.outer(
             plate.tilt, np.abs(arcs - arcs[0]) - 0.5 * abs(arcs[-1] - arcs[0])
         )
-    for plane, direction in (("y", (0.0, 1.0, 0.0)), ("x", (1.0, 0.0, 0.0))):
+    for plane in ("y", "x"):
         free = planes.free[plane]
         factor = cho_factor(planes.stiffness[plane][np.ix_(free, free)])
         frequency, shapes = found[plane]
         for p, plate in enumerate(rig.plates):
             arcs = rig.tube.plate_nodes(plate.side)
             nodes = slice(0, len(arcs))
+            direction = OUT if plane == "y" else rig.tube.across(float(np.median(arcs)))
             row = np.array([planes.rows(s, direction)[plane] for s in arcs])
             projected = row @ shapes
             residual[plane][p, nodes, nodes] = (
@@ -187,11 +197,12 @@ def _plate_table(rig, contacts):
         rows = contacts.lift_y[p].T @ contacts.shape_y[kernel.SHAPES * p : kernel.SHAPES * (p + 1)]
         row[kernel.STIFFNESS], row[kernel.DAMPING] = plate.stiffness, plate.damping
         row[kernel.HUNT], row[kernel.HERTZ] = plate.hunt_crossley, plate.hertz
-        row[kernel.MU], row[kernel.BRISTLE], row[kernel.SLIP_SPEED] = (
-            plate.friction,
-            plate.stick_ratio * plate.stiffness,
-            plate.slip_speed,
-        )
+        row[kernel.APPROACH], row[kernel.MU] = plate.approach_damping, plate.friction
+        row[kernel.FRICTION_LAW] = FRICTION_LAWS[plate.friction_law]
+        row[kernel.BRISTLE] = plate.stick_ratio * plate.stiffness
+        row[kernel.SLIP_SPEED], row[kernel.STATIC] = plate.slip_speed, plate.static_ratio
+        row[kernel.STRIBECK_SPEED], row[kernel.STICK_TIME] = plate.stribeck_speed, plate.stick_time
+        row[[kernel.LOOSENED_AT, kernel.LOOSENED_OVER, kernel.LOOSENED_BY]] = plate.loosened
         # 1/kg, of all nodes of the plate sliding at once
         row[kernel.MOBILITY] = np.linalg.eigvalsh(rows @ rows.T)[-1]
         row[kernel.GAP_RATE] = plate.gap_rate
@@ -212,8 +223,18 @@ def _plate_table(rig, contacts):
     return table
 
 
-def _locals(planes, project):
-    """kernel.Locals of the elements, loose masses and drag of a rig."""
+def _crack(tube, compliance, flexibility):
+    """Stiffness N m/rad that an open crack takes from the bending angle over BEND m.
+
+    compliance: of the crack, rad/(N m). flexibility: of the angle in the modes kept, which can not
+    bend as sharply as the beam: with it, the compliance of the whole is right.
+    """
+    taken = compliance * (tube.section["EI"] / BEND) ** 2
+    return taken / (1.0 + taken * flexibility)
+
+
+def _locals(planes, project, omega2):
+    """kernel.Locals of the elements, loose and sliding masses and drag of a rig."""
     rig = planes.rig
     rows, laws, parameters = [], [], []
     for element in rig.elements:
@@ -222,8 +243,11 @@ def _locals(planes, project):
             row = row - project(planes.rows(element.other, element.component))
         rows.append(row)
         laws.append(LAWS[element.law])
-        parameters.append([*element.parameters, *[0.0] * (4 - len(element.parameters))])
-    modes = len(project(planes.rows("apex", (0.0, 0.0, 0.0))))
+        given = element.parameters
+        if element.law == "breathing":
+            given = (_crack(rig.tube, given[0], np.sum(row**2 / omega2)),)
+        parameters.append([*given, *[0.0] * (4 - len(given))])
+    modes = len(project(planes.rows("drive", (0.0, 0.0, 0.0))))
     loose = np.array(
         [[mass.mass, mass.clearance, mass.stiffness, mass.damping] for mass in rig.loose]
     ).reshape(-1, 4)
@@ -236,6 +260,12 @@ def _locals(planes, project):
         ).reshape(-1, modes)
         for k in range(2)
     ]
+    sliders = np.array(
+        [[mass.mass, mass.limit, mass.stick, mass.centring] for mass in rig.sliders]
+    ).reshape(-1, 4)
+    slider_rows = np.array(
+        [project(planes.rows(mass.place, mass.direction)) for mass in rig.sliders]
+    ).reshape(-1, modes)
     stations = (
         (np.arange(DRAG_STATIONS) + 0.5) * rig.tube.length / DRAG_STATIONS if rig.drag else []
     )
@@ -252,6 +282,8 @@ def _locals(planes, project):
         loose,
         loose_rows[0],
         loose_rows[1],
+        sliders,
+        slider_rows,
         np.full(len(stations), rig.drag * rig.tube.length / DRAG_STATIONS),
         *drag_rows,
     )

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from vibroimpact_truth.geometry import Tube
+from vibroimpact_truth.geometry import Beam
 
 LAWS = {
     "linear": 0,
@@ -14,7 +14,11 @@ LAWS = {
     "bouc_wen": 6,
     "one_sided": 7,
     "drag": 8,
+    "self_excited": 9,
+    "parametric": 10,
+    "breathing": 11,
 }
+FRICTION_LAWS = {"dahl": 0, "tanh": 1, "lugre": 2, "iwan": 3, "spring_damper": 4}
 PROFILES = {"circle": 0, "lands": 1, "lobes": 2}
 
 
@@ -26,8 +30,11 @@ class Plate:
     gap_rate: its relative change per s of the campaign.
     offset: of the centre, m.
     stiffness N/m, damping N s/m, hunt_crossley s/m; hertz N/m^1.5 replaces the stiffness where > 0.
-    friction: mu of a bristle of stick_ratio × stiffness, or of tanh(v / slip_speed) where
-    slip_speed m/s is > 0.
+    approach_damping: relative rise of the elastic force per rate over the rate at first touch.
+    friction: mu, by friction_law. stick_ratio × stiffness is that of its bristles; slip_speed m/s
+    belongs to tanh; static_ratio (static over sliding), stribeck_speed m/s and stick_time s
+    (damping over stiffness of a bristle) to lugre, the last to spring_damper too.
+    loosened: (s of the campaign, s that it takes, relative growth of the gap).
     profile of the hole: "circle", "lands" or "lobes"; angle rad, depth m, land_half_angle rad.
     preload: N in x and y.
     plate_mass kg on a spring plate_stiffness N/m; rigid where the mass is 0.
@@ -42,9 +49,15 @@ class Plate:
     damping: float = 0.0
     hunt_crossley: float = 0.0
     hertz: float = 0.0
+    approach_damping: float = 0.0
     friction: float = 0.0
+    friction_law: str = "dahl"
     stick_ratio: float = 0.7
-    slip_speed: float = 0.0
+    slip_speed: float = 1.0e-3
+    static_ratio: float = 1.0
+    stribeck_speed: float = 1.0e-3
+    stick_time: float = 0.0
+    loosened: tuple = (0.0, 1.0, 0.0)
     profile: str = "circle"
     lobes: int = 4
     depth: float = 0.0
@@ -60,9 +73,10 @@ class Plate:
 class Element:
     """A local force law between a place of the tube and the ground, or between two places.
 
-    component: (3,) direction of the displacement, or "rx" or "ry", the rotation of the place
-    "left_root" or "right_root".
-    parameters: as in kernel.element_force.
+    component: (3,) direction of the displacement, "rx" or "ry", the rotation of the place
+    "left_root" or "right_root", or "bend_y" or "bend_x", the bending angle at a place.
+    parameters: as in kernel.element_force; of "breathing" the compliance of the open crack,
+    rad/(N m).
     """
 
     law: str
@@ -87,6 +101,21 @@ class LooseMass:
 
 
 @dataclass
+class SlidingMass:
+    """A mass [kg] that slides on a short rod at a place, along the direction (3,) of the rod.
+
+    limit: N, of the friction of its bore. stick: N/m, of the bristle. centring: N/m, of a spring.
+    """
+
+    place: object
+    direction: tuple
+    mass: float
+    limit: float
+    stick: float = 3.0e5
+    centring: float = 0.0
+
+
+@dataclass
 class Rig:
     """The tube with its supports and hidden effects.
 
@@ -95,14 +124,17 @@ class Rig:
     root: (N/m, N m/rad) of both roots, None for clamped.
     fluid: (kg/m, N s/m²). drag: N s²/m² per metre.
     mode_factor: {mode number from 1: factor of its frequency}.
-    drive_angle: rad, about the tube's axis.
+    drive_direction: (3,) of the force; drive_angle: rad, by which it is turned about the tube's
+    axis.
+    frequency_drift: relative change of all modal frequencies per s of the campaign.
     unmeasured: (place, direction, RMS relative to the drive) of a second force.
     """
 
-    tube: Tube
+    tube: Beam
     plates: list = field(default_factory=list)
     elements: list = field(default_factory=list)
     loose: list = field(default_factory=list)
+    sliders: list = field(default_factory=list)
     springs: list = field(default_factory=list)
     masses: list = field(default_factory=list)
     root: tuple | None = None
@@ -110,10 +142,25 @@ class Rig:
     drag: float = 0.0
     damping_factor: float = 1.0
     mode_factor: dict = field(default_factory=dict)
+    drive_direction: tuple = (0.0, 1.0, 0.0)
     drive_angle: float = 0.0
+    frequency_drift: float = 0.0
     unmeasured: tuple | None = None
 
     @classmethod
     def bare(cls, tube):
         """The rig without hidden effects."""
-        return cls(tube, [Plate(side, tube.plate_stiffness) for side in ("left", "right")])
+        return cls(
+            tube,
+            [
+                Plate(
+                    holder.name,
+                    holder.stiffness,
+                    holder.gap_factor,
+                    profile=holder.profile,
+                    lobes=holder.lobes,
+                    angle=holder.angle,
+                )
+                for holder in tube.holders
+            ],
+        )

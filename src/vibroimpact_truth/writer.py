@@ -7,13 +7,14 @@ import netCDF4
 import numpy as np
 
 
-def write_campaign(path, force, response, channels, drive, records, sampling, noise=None):
+def write_campaign(path, force, response, channels, drive, records, stated, noise=None):
     """Write a campaign file, under a temporary name until it is complete.
 
     force (record, time): N.
     response (record, channel, time): in the units of the channels.
     channels: {name, units, kind, point (3,) m, direction (3,)} each; drive: the same.
     records: {name, gap m, repeat, split} each.
+    stated: {sampling_frequency Hz, start_up "rest" or "stationary"}.
     noise: (channel,) RMS, or None.
     """
     path = Path(path)
@@ -23,9 +24,9 @@ def write_campaign(path, force, response, channels, drive, records, sampling, no
         file.setncatts(
             {
                 "Conventions": "CF-1.8",
-                "sampling_frequency": float(sampling),
+                "sampling_frequency": float(stated["sampling_frequency"]),
                 "antialias": "fir80",
-                "start_up": "rest",
+                "start_up": stated["start_up"],
                 "period_samples": np.int64(0),
                 "transient_periods": np.int64(0),
                 "source": "sealed campaign",
@@ -56,7 +57,13 @@ def write_campaign(path, force, response, channels, drive, records, sampling, no
         _text(file, "split", "record", [record["split"] for record in records])
         if noise is not None:
             _numbers(file, "noise_floor_rms", ("channel",), noise)
-        _numbers(file, "time", ("time",), np.arange(force.shape[-1]) / sampling, units="s")
+        _numbers(
+            file,
+            "time",
+            ("time",),
+            np.arange(force.shape[-1]) / stated["sampling_frequency"],
+            units="s",
+        )
     os.replace(part, path)
 
 

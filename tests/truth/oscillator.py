@@ -8,13 +8,24 @@ from vibroimpact_truth.rig import LAWS
 
 
 def simulate(
-    mass, stiffness, force, step, *, damping=0.0, start=(0.0, 0.0), stops=(), laws=(), stride=1
+    mass,
+    stiffness,
+    force,
+    step,
+    *,
+    damping=0.0,
+    start=(0.0, 0.0),
+    stops=(),
+    laws=(),
+    sliders=(),
+    stride=1,
 ):
     """(sample,) displacement m and stop force N on the mass of m x'' + c x' + k x = force (step,)
     with one degree of freedom along y.
 
-    stops: (stiffness N/m, gap m, sides 1 or 2) of one flat stop towards +y, or two; laws: (name,
-    parameters) of local elements; start: x, v.
+    stops: (stiffness N/m, gap m, sides 1 or 2, {column of kernel's table: value} or nothing) of one
+    flat stop towards +y, or two; laws: (name, parameters) of local elements; sliders: (kg, N, N/m,
+    N/m) of sliding masses; start: x, v.
     """
     modes, row = 8, 1.0 / np.sqrt(mass)
     omega2, rate = np.ones(2 * modes), np.zeros(2 * modes)
@@ -22,7 +33,9 @@ def simulate(
     shape = np.zeros((kernel.ROWS, modes))
     shape[0, 0] = row
     plates = np.zeros((len(stops), kernel.PLATE_COLUMNS))
-    for table, (contact, gap, sides) in zip(plates, stops, strict=True):
+    for table, (contact, gap, sides, *more) in zip(plates, stops, strict=True):
+        for column, value in more[0].items() if more else ():
+            table[column] = value
         table[[kernel.STIFFNESS, kernel.GAP, kernel.PROFILE, kernel.LOBES, kernel.ANGLE]] = (
             contact,
             gap,
@@ -45,8 +58,9 @@ def simulate(
         shape,
         np.zeros_like(shape),
     )
-    rows = np.zeros((len(laws), 2 * modes))
-    rows[:, 0] = row
+    rows_of_mass = np.zeros(2 * modes)
+    rows_of_mass[0] = row
+    rows = np.tile(rows_of_mass, (len(laws), 1))
     empty = np.zeros((0, 2 * modes))
     local = kernel.Locals(
         np.array([LAWS[name] for name, _ in laws], np.int64),
@@ -55,6 +69,8 @@ def simulate(
         np.zeros((0, 4)),
         empty,
         empty,
+        np.array(list(sliders), float).reshape(-1, 4),
+        np.tile(rows_of_mass, (len(sliders), 1)),
         np.zeros(0),
         empty,
         empty,
@@ -62,10 +78,13 @@ def simulate(
     state = kernel.State(
         np.zeros(2 * modes),
         np.zeros(2 * modes),
-        *np.zeros((3, len(stops), kernel.NODES)),
+        *np.zeros((2, len(stops), kernel.NODES)),
+        np.zeros((len(stops), kernel.NODES, kernel.PARTS)),
+        np.zeros((len(stops), kernel.NODES)),
         np.zeros(len(laws)),
         np.zeros((len(stops), 4)),
         np.zeros((0, 4)),
+        np.zeros((len(sliders), 3)),
     )
     drive = np.zeros(2 * modes)
     drive[0] = row

@@ -8,10 +8,21 @@ import numpy as np
 import pytest
 
 import vibroimpact_truth
+from vibroimpact_truth import table
 from vibroimpact_truth.__main__ import main
 from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.draw import ARMS, arms, draw_plans
-from vibroimpact_truth.hidden import EFFECTS, STRANGERS
+from vibroimpact_truth.campaign import Plan
+from vibroimpact_truth.draw import (
+    OTHER_LAWS,
+    POOLS,
+    SHARES,
+    STRANGERS,
+    bare_plan,
+    draw,
+    kinds,
+)
+from vibroimpact_truth.hidden import IN_RIG, family_of
+from vibroimpact_truth.measure import SENSOR_STRANGERS
 
 PACKAGE = Path(vibroimpact_truth.__file__).parent
 ROOT = PACKAGE.parents[1]
@@ -46,19 +57,45 @@ def test_compiled_code_is_in_one_file():
 
 
 def test_every_effect_has_its_amounts():
-    assert set(AMOUNTS) == set(EFFECTS) | set(STRANGERS)
+    assert set(AMOUNTS) == set(IN_RIG) | set(SENSOR_STRANGERS)
 
 
-def test_a_draw_depends_on_seed_and_number_alone():
-    long, short = draw_plans(4, 60), draw_plans(4, 20)
-    assert long[:20] == short
-    assert draw_plans(5, 20) != short
+@pytest.mark.parametrize("pool", POOLS)
+def test_a_campaign_depends_on_its_number_alone(pool):
+    once, again = draw(pool, 4, 9)[0], draw(pool, 4, 9)[0]
+    assert once == again
+    assert draw(pool, 5, 9)[0] != once and draw(pool, 4, 10)[0] != once
 
 
-def test_arms_keep_their_proportions():
-    order = [arm for arm, _ in arms(sum(ARMS.values()))]
-    assert {arm: order.count(arm) for arm in ARMS} == ARMS
-    assert set(order[:24]) == set(ARMS)
+def test_kinds_keep_their_proportions():
+    order = [kind for kind, _ in kinds(sum(SHARES.values()))]
+    assert {kind: order.count(kind) for kind in SHARES} == SHARES
+    assert set(order[:24]) == set(SHARES)
+
+
+def test_acceptance_hides_laws_and_strangers_never_tuned_on():
+    assert not set(OTHER_LAWS["development"]) & set(OTHER_LAWS["acceptance"])
+    assert not set(STRANGERS["development"]) & set(STRANGERS["acceptance"])
+    for pool in POOLS:
+        assert all(family_of(name) for name in OTHER_LAWS[pool])
+        assert not any(family_of(name) for name in STRANGERS[pool])
+
+
+def test_draws_vary_what_users_vary():
+    plans = [bare_plan("acceptance", 3, number)[0] for number in range(40)]
+    assert {len(plan.beam.holders) for plan in plans} >= {1, 2, 3}
+    assert min(len(plan.channels) for plan in plans) <= 3
+    assert max(len(plan.channels) for plan in plans) >= 10
+    assert {plan.start_up for plan in plans} == {"rest", "stationary"}
+    assert len({plan.sampling for plan in plans}) > 4
+    assert any(len({kind for *_, kind in plan.channels}) > 1 for plan in plans)
+    assert all(10.0 <= plan.duration <= 60.0 for plan in plans)
+    for plan in plans:  # no channel and no level at a place that the model names
+        arcs = [at for at, *_ in plan.channels]
+        named = [*plan.beam.places.values(), *(holder.arc for holder in plan.beam.holders)]
+        assert np.abs(np.subtract.outer(arcs, named)).min() > 0.0
+        assert plan.sampling * 0.31 >= plan.band[1]
+        assert plan.steps_per_second % (2 * plan.sampling) == 0
 
 
 @pytest.fixture(scope="module")
@@ -109,20 +146,16 @@ def test_campaign_file_does_not_reveal_the_truth(sealed):
     assert '"gap"' in (sealed / "x.truth.json").read_text()
 
 
-def test_finished_campaign_is_not_made_again(tmp_path, capsys):
-    arguments = [
-        "--out",
-        str(tmp_path),
-        "--seed",
-        "2",
-        "--count",
-        "1",
-        "--duration",
-        "0.5",
-        "--no-twin",
-    ]
+SHORT_BEAM = {"levels": ((0.05, 1.0, "fit"), (2.0, 1.0, "holdout")), "duration": 4.0}
+
+
+@pytest.mark.slow
+def test_finished_campaign_is_not_made_again(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(table, "tuned", lambda *_: Plan((2,), **SHORT_BEAM))
+    main(["plan", "--seed", "2", "--count", "1", "--out", str(tmp_path / "plan.json")])
+    arguments = ["make", "--plan", str(tmp_path / "plan.json"), "--out", str(tmp_path)]
     main(arguments)
-    stamp = (tmp_path / "campaign_s2_0000.nc").stat().st_mtime_ns
+    stamp = (tmp_path / "campaign_0000.nc").stat().st_mtime_ns
     main(arguments)
-    assert (tmp_path / "campaign_s2_0000.nc").stat().st_mtime_ns == stamp
-    assert capsys.readouterr().out.count("campaign_s2_0000.nc") == 1
+    assert (tmp_path / "campaign_0000.nc").stat().st_mtime_ns == stamp
+    assert capsys.readouterr().out.count("campaign_0000.nc") == 1

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.campaign import Plan, forces, simulate_records
-from vibroimpact_truth.hidden import EFFECTS
+from vibroimpact_truth.campaign import BAND, Plan, forces, simulate_records
+from vibroimpact_truth.draw import scene_of
+from vibroimpact_truth.hidden import IN_RIG
+from vibroimpact_truth.scene import sizes
 from vibroimpact_truth.strength import ABOVE_NOISE, BANDS, HIGHEST_HZ, LOWEST_HZ, band_powers
 
 DEV_NULL = next(
@@ -63,6 +65,19 @@ def test_below_contact_the_response_is_linear():
         ("force_misalignment", {"angle": 0.0}),
         ("tilted_plate", {"slope": 0.0}),
         ("drifting_gap", {"rate": 0.0}),
+        ("lugre_friction", {"mu": 0.0}),
+        ("iwan_friction", {"mu": 0.0}),
+        ("spring_damper_friction", {"mu": 0.0}),
+        ("flores_contact", {"restitution": 1.0}),
+        ("lankarani_nikravesh_contact", {"restitution": 1.0}),
+        ("sine_lobes", {"depth": 0.0}),
+        ("breathing_crack", {"depth": 0.0}),
+        ("self_excitation", {"negative": 0.0}),
+        ("parametric_stiffness", {"stiffness": 0.0}),
+        ("loosening_support", {"growth": 0.0}),
+        ("frequency_drift", {"rate": 0.0}),
+        ("wrong_section", {"diameter": 1.0}),
+        ("wrong_length", {"factor": 1.0}),
     ],
 )
 def test_an_effect_of_nothing_changes_nothing(effect, neutral):
@@ -73,10 +88,17 @@ def test_an_effect_of_nothing_changes_nothing(effect, neutral):
     np.testing.assert_allclose(same, bare, rtol=0.0, atol=1e-6 * np.abs(bare).max())
 
 
-@pytest.mark.parametrize("effect", EFFECTS)
-def test_every_hidden_effect_changes_the_record(effect):
+@pytest.fixture(scope="module")
+def scene():
+    """The scene of a short campaign on the stand-in tube."""
+    plan = Plan(**SHORT)
+    return scene_of(plan, sizes(plan.beam, BAND, plan.drive_direction), np.random.default_rng(1))
+
+
+@pytest.mark.parametrize("effect", IN_RIG)
+def test_every_hidden_effect_changes_the_record(effect, scene):
     drawn = AMOUNTS[effect]
-    parameters = drawn.parameters((drawn.strong or drawn.medium)[0], np.random.default_rng(1))
+    parameters = drawn.parameters(drawn.start, scene)
     bare, hidden = (run(effects=effects, duration=0.3) for effects in ((), ((effect, parameters),)))
     assert np.isfinite(hidden).all()
     assert np.abs(hidden - bare).max() > 1e-6 * np.abs(bare).max()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.sound_campaign import sound_campaign
-from vibroimpact.acceptance.shards import suite_name
+from vibroimpact.acceptance.shards import draw_name
 from vibroimpact.campaign.checks.file_checks import check_campaign, usable_signals
 from vibroimpact.campaign.contract import contract_problems
 from vibroimpact.campaign.file import fill_missing, write_campaign
@@ -117,8 +117,8 @@ def test_volts_and_reserved_names_drive_no_model(campaign):
     assert "channel_name[2] = 'responses' stands for several channels" in told
 
 
-def test_results_of_suites_are_not_overwritten():
-    for suite in ((3,), (3, 49), (3, 49, 2)):
-        assert "which the target suite writes" in name_problem(suite_name(*suite))
+def test_results_of_draws_are_not_overwritten():
+    for pool in ("acceptance", "development"):
+        assert "which the target acceptance writes" in name_problem(draw_name(pool, 3))
     assert "where the study 'bench' is" in name_problem("bench", "bench")
     assert name_problem("bench") is None

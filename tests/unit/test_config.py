@@ -582,16 +582,16 @@ FOLDERS_OF_TARGETS = re.compile(r"\bresults/([A-Za-z0-9_-]+)")
 
 
 def test_a_study_can_not_have_the_folder_of_a_target(study):
-    # Every folder in results/ that a rule names; {study}, {suite} and the like are wildcards.
+    # Every folder in results/ that a rule names; {study}, {drawn} and the like are wildcards.
     rules = [*(ROOT / "workflow" / "rules").glob("*.smk"), *(ROOT / "examples").glob("*/*.smk")]
     found = {name for file in rules for name in FOLDERS_OF_TARGETS.findall(file.read_text())}
     assert reserved_names() == found >= {"validation", "suite_check"}
-    for name in (*found, "Validation", "suite_7", "suite_12_49s_draw1"):
+    for name in (*found, "Validation", "acceptance_7", "development_12"):
         (line,) = problems({**study, "study": name})
         assert line.startswith(
             f"config/mine.yaml: study = '{name}' is the folder of another target"
         )
-    check_config({**study, "study": "suites"}, "mine")
+    check_config({**study, "study": "acceptance"}, "mine")
 
 
 @pytest.mark.parametrize("name", ["", "a/b", "../x", ".", "a b", "é", "-a", "a\n", "a" * 101, 7])

@@ -359,7 +359,7 @@ def test_an_example_goes_the_way_of_any_campaign(study, tmp_path, structure, fil
     ("target", "asked", "owner"),
     [
         ("discrepancy", "campaign={}/f16.nc", "which the target f16 writes"),
-        ("quicklook", "campaign={}/suite_7_20s.nc", "which the target suite writes"),
+        ("quicklook", "campaign={}/development_7.nc", "which the target acceptance writes"),
         ("discrepancy", "campaign={}/smoke.nc", "where the study 'smoke' is"),
         ("import_campaign", "import={}/validation", "which the target validation writes"),
     ],
@@ -459,24 +459,24 @@ def test_search_with_an_effort_is_one_job(study, tmp_path):
 
 
 @pytest.mark.slow
-def test_suite_shard_skips_imported_campaigns(study, tmp_path):
+def test_shard_skips_imported_campaigns(study, tmp_path):
     asked = [
         "--dry-run",
-        "suite",
+        "acceptance",
         "--config",
-        "suite_seed=5",
+        "draw_seed=5",
         "count=9",
         "shard=1/3",
     ]  # campaigns 1, 4 and 7
-    (tmp_path / "campaigns.csv").write_text("suite,campaign\nsuite_5,campaign_0004\n")
+    (tmp_path / "campaigns.csv").write_text("draw,campaign\ndevelopment_5,campaign_0004\n")
     for more, judged in ((), 3), ((f"add={tmp_path}/campaigns.csv",), 2):
-        assert jobs_of(study.snakemake(*asked, *more))["suite_campaign"] == judged
+        assert jobs_of(study.snakemake(*asked, *more))["acceptance_campaign"] == judged
     run = study.snakemake(
-        "--dry-run", "suite", "--config", "suite_seed=6", f"add={tmp_path}/campaigns.csv"
+        "--dry-run", "acceptance", "--config", "draw_seed=6", f"add={tmp_path}/campaigns.csv"
     )
     assert (
         run.returncode == 1
-        and "campaigns.csv holds campaigns of suite_5: give a campaigns.csv of suite_6"
+        and "holds campaigns of development_5: give a campaigns.csv of development_6"
         in run.stdout + run.stderr
     )
 

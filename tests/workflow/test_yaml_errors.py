@@ -65,13 +65,12 @@ def test_snakemake_refuses_a_damaged_configuration(tmp_path, content, part, reli
 
 REQUESTS = {
     # value of --config: target, how the sentence begins
-    "suite_seed=abc": ("suite", "suite_seed = 'abc': give a whole number"),
-    "draw=0.5": ("suite", "draw = '0.5': give a whole number"),
-    "seconds=inf": ("suite", "seconds = 'inf': give a whole number"),
-    "count=-1": ("suite", "count = -1: give how many campaigns"),
-    "count=10000": ("suite", "count = 10000: give how many campaigns, at most 9999"),
-    "shard=9/3": ("suite", "shard = 9/3: give i/n"),
-    "add=none.csv": ("suite", "add = none.csv is not there"),
+    "draw_seed=abc": ("acceptance", "draw_seed = 'abc': give a whole number"),
+    "draw=0.5": ("discrepancy", "draw = '0.5': give a whole number"),
+    "count=-1": ("acceptance", "count = -1: give how many campaigns"),
+    "count=10000": ("acceptance", "count = 10000: give how many campaigns, at most 9999"),
+    "shard=9/3": ("acceptance", "shard = 9/3: give i/n"),
+    "add=none.csv": ("acceptance", "add = none.csv is not there"),
     "compared_s=nan": ("discrepancy", "compared_s = 'nan': give a positive number"),
     "quick=maybe": ("discrepancy", "quick = 'maybe': give yes or no"),
     "bank=none": ("discrepancy", "bank = 'none' is no folder"),

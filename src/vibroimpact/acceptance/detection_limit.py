@@ -3,7 +3,8 @@
 import numpy as np
 from scipy import optimize, special
 
-ARMS = ("strong", "medium", "weak", "alias")  # one effect hidden, which the catalogue holds
+# kinds with one effect hidden, which the catalogue holds
+KINDS = ("strong", "medium", "exact_alias", "near_alias")
 POWER = 0.80  # probability of detection at the limit
 FEWEST = 8  # campaigns that a limit is fitted to
 WEAKEST = 0.1  # floors; less is half a percent of misfit beyond the floor: none
@@ -14,7 +15,7 @@ SLOPES = (0.0, 4.0)  # the fit starts from, per factor e of the strength
 
 def single_effects(rows):
     """Return the judged rows with one effect hidden whose strength is known."""
-    return [row for row in rows if row["arm"] in ARMS and np.isfinite(row["strength"])]
+    return [row for row in rows if row["drawn_as"] in KINDS and np.isfinite(row["strength"])]
 
 
 def probability(curve, strength):

@@ -1,30 +1,19 @@
-"""One sealed campaign of the suite, from its file to its verdict."""
+"""One sealed campaign of a draw, from its file to its verdict: as a user would run it."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.discrepancy.whole import run_campaign
+from vibroimpact.provenance import package_digest
 
 
-def left_out(plan_effects, arm):
-    """Return the ids to take out of the catalogue for a campaign of the arm left_out."""
-    return {name for name, _ in plan_effects} if arm == "left_out" else set()
+def run_sealed(campaign, model, verdict):
+    """Judge a campaign file against the model file of its user; the verdict is all that is kept.
 
-
-def run_sealed(values, folder, bank, tables, without=frozenset(), draw=0):
-    """Run the campaign in a folder against a configuration with the candidates of a bank, those of
-    some ids left out; the campaign file is then dropped.
-
-    draw: number of the draw of seeds.
+    No simulations of other campaigns are at hand, as a user has none.
     """
-    folder = Path(folder)
-    run_campaign(
-        values,
-        folder / "campaign.nc",
-        folder,
-        {},
-        bank=bank,
-        tables=tables,
-        without=without,
-        draw=draw,
-    )
-    (folder / "campaign.nc").unlink()
+    verdict = Path(verdict)
+    with TemporaryDirectory(dir=verdict.parent) as work:
+        run_campaign(read_yaml(model), campaign, work, {"source_digest": package_digest()})
+        Path(work, "verdict.json").rename(verdict)

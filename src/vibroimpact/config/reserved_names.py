@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 TARGETS = ("validation", "suite_check")
 # How snakemake marks a wildcard, and what names no folder inside results/.
 UNUSABLE = r"[{}/\\*?\x00-\x1f]|^\.*$"
-SUITE = "suite_"  # begins the name of every suite of campaigns
+DRAW_NAME = r"(acceptance|development)_([0-9]+)"  # of every draw of campaigns
 
 
 def reserved_names() -> frozenset[str]:
@@ -20,8 +20,8 @@ def reserved_names() -> frozenset[str]:
 
 
 def is_reserved(name: str) -> bool:
-    """Whether a target writes to the folder of this name, or a suite of campaigns does."""
-    return name.lower() in reserved_names() or name.lower().startswith(SUITE)
+    """Whether a target writes to the folder of this name, or a draw of campaigns does."""
+    return name.lower() in reserved_names() or re.fullmatch(DRAW_NAME, name.lower()) is not None
 
 
 def name_problem(name: str, study: str | None = None) -> str | None:
@@ -30,7 +30,7 @@ def name_problem(name: str, study: str | None = None) -> str | None:
     study: name of the study of the same run, whose folder is taken.
     """
     if is_reserved(name):
-        target = name.lower() if name.lower() in reserved_names() else "suite"
+        target = name.lower() if name.lower() in reserved_names() else "acceptance"
         return f"its results would go to results/{name}, which the target {target} writes"
     if name == study:
         return f"its results would go to results/{name}, where the study '{study}' is"

@@ -71,10 +71,9 @@ COLUMNS = {
     "psd_V2_per_Hz": ("PSD of voltage (V²/Hz)", 1.0),
     "psd_unit2_per_Hz": ("PSD (unit²/Hz)", 1.0),
     "rms_over_lowest": ("RMS / RMS of the lowest level (-)", 1.0),
-    "rate": (
-        "Share of campaigns; of the two medians: relative error, share of the excess closed (%)",
-        1e2,
-    ),
+    "rate": ("Share of campaigns (%)", 1e2),
+    "stated_probability": ("Probability stated (-)", 1.0),
+    "true_share": ("Share that is true (-)", 1.0),
     "campaigns": ("Campaigns (-)", 1.0),
     "strength_over_floor": (
         "Strength: misfit of the bare model beyond its floor, held-out records (floors)",

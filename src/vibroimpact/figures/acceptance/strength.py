@@ -13,7 +13,7 @@ from vibroimpact.acceptance.detection_limit import (
     probability,
     single_effects,
 )
-from vibroimpact.acceptance.rates import share
+from vibroimpact.acceptance.intervals import wilson
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, label_of, number, shown
 
@@ -30,7 +30,7 @@ def strength_figure(rows):
     caption = (
         "Campaigns with one effect hidden that the catalogue holds. Above: share whose set of"
         f" explanations holds it; points: up to {BINS} groups of equally many campaigns at their"
-        " median strength, with 95 % intervals (Clopper-Pearson); line: logistic curve of all"
+        " median strength, with 95 % intervals (Wilson); line: logistic curve of all"
         " (Firth's regression on the logarithm of the strength); green: strength at which"
         f" {100 * POWER:.0f} % are found, the detection limit, and its 95 % interval. Below: each"
         " campaign, by what was hidden. Strength is the excess of the bare model's misfit over its"
@@ -41,7 +41,7 @@ def strength_figure(rows):
     names = sorted({row["hidden"] for row in rows})
     below = 0.24 * max(len(names), 3)
     sheet = Sheet(
-        "suite_strength",
+        "acceptance_strength",
         "How strong must an effect be to be found?",
         caption,
         [["curve"], ["effects"]],
@@ -79,7 +79,7 @@ def _curve(sheet, axes, strength, found):
     order = np.array_split(
         np.argsort(strength, kind="stable"), min(BINS, max(1, found.size // FEWEST))
     )
-    bounds = np.array([share(found[group].sum(), group.size) for group in order])
+    bounds = np.array([wilson(found[group].sum(), group.size) for group in order])
     sheet.bars(
         axes,
         ("strength_over_floor", [np.median(strength[group]) for group in order]),

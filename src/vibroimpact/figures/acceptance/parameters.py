@@ -25,7 +25,7 @@ def parameters_figure(rows):
         " does not."
     )
     sheet = Sheet(
-        "suite_parameters",
+        "acceptance_parameters",
         "Parameters against the truth",
         caption,
         size=(8.0, 1.7 + 0.26 * max(len(rows), 3)),

@@ -9,11 +9,10 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, GREY
 from vibroimpact.verdict.content import CONCLUSIONS
 
-GROUPS = ("nothing", "in the catalogue", "fault", "stranger", "left out")
+GROUPS = ("nothing", "in the catalogue", "another law", "fault", "stranger")
 RIGHT_PAIR = "the right pair"
 OTHER_PAIR = "another pair"
 PAIR = "two effects"
-LEFT_OUT = "an effect taken out"
 VERDICTS = tuple(conclusion for conclusion in CONCLUSIONS if conclusion != "named")
 CELL_IN = 0.27
 SHADES = "Blues"
@@ -27,10 +26,10 @@ def confusion_figure(confusion):
     caption = (
         "Rows: what was hidden; columns: the name that came first, or the verdict where nothing was"
         " named. Numbers: campaigns. Framed: the right answer. To strangers, which no name of the"
-        " catalogue fits, and to effects taken out of the catalogue the right answer is unknown; a"
-        " partial explanation, which counts under its first name, is not wrong there. Faults"
-        " without a name are right where the campaign was flagged, which the rates tell. Pairs, and"
-        " effects taken out, share a row; the figure's table lists each."
+        " catalogue fits, the right answer is unknown; a partial explanation, which counts under"
+        " its first name, is not wrong there. To another law of a family that the catalogue has, a"
+        " name of that family is right. Faults without a name are right where the campaign was"
+        " flagged, which the rates tell. Pairs share a row; the figure's table lists each."
     )
     cells = _cells(confusion)
     hidden = sorted(
@@ -38,7 +37,9 @@ def confusion_figure(confusion):
     )
     names = _columns(hidden, {name for _, name in cells})
     size = (4.0 + CELL_IN * max(len(names), 8), 3.0 + CELL_IN * max(len(hidden), 4))
-    sheet = Sheet("suite_confusion", "What was hidden, and what came first", caption, size=size)
+    sheet = Sheet(
+        "acceptance_confusion", "What was hidden, and what came first", caption, size=size
+    )
     axes = sheet.axes["main"]
     axes.set(xlabel="Came first, or verdict where nothing was named", ylabel="Hidden")
     axes.grid(False)
@@ -88,14 +89,14 @@ def confusion_figure(confusion):
 def _cells(confusion):
     """Return {((group, hidden), name): campaigns}.
 
-    Pairs, and effects left out of the catalogue, share a row each, since most occur once.
+    Pairs share a row, since most occur once.
     """
     cells = {}
     for row in confusion:
         hidden, name = row["hidden"], row["first_name"]
         if "+" in name:
-            name = RIGHT_PAIR if name == hidden and row["group"] != "left out" else OTHER_PAIR
-        shown = LEFT_OUT if row["group"] == "left out" else PAIR if "+" in hidden else hidden
+            name = RIGHT_PAIR if name == hidden else OTHER_PAIR
+        shown = PAIR if "+" in hidden else hidden
         key = (row["group"], shown), name
         cells[key] = cells.get(key, 0) + row["campaigns"]
     return cells
@@ -116,7 +117,7 @@ def _right(group, hidden):
     return (
         RIGHT_PAIR
         if hidden == PAIR
-        else {"nothing": "none", "stranger": "unknown", "left out": "unknown"}.get(group, hidden)
+        else {"nothing": "none", "stranger": "unknown"}.get(group, hidden)
     )
 
 

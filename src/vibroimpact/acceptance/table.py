@@ -1,0 +1,178 @@
+"""The acceptance table: each row a question to the verdicts of one kind of campaigns.
+
+Every row has its count, its rate with the 95 % interval, and its target.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .calibration import largest_gap
+from .intervals import wilson
+
+WORST = 2.0  # the costliest verdict over the target of the median
+MINUTES = {"nothing": 2.0, "one effect": 5.0, "two effects": 12.0}  # of CPU, median
+NO_FAULT = (
+    "nothing",
+    "strong",
+    "medium",
+    "weak",
+    "exact_alias",
+    "near_alias",
+    "two",
+    "other_law",
+    "out_of_catalogue",
+)
+GROUPS = {
+    "nothing": "nothing",
+    "fault": "fault",
+    "out_of_catalogue": "stranger",
+    "other_law": "another law",
+}  # of the confusion matrix; others are in the catalogue
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Question:
+    """A share of the campaigns of some kinds, empty for all.
+
+    key: column of the answer. least, most: its target. given: column that a campaign counts by.
+    """
+
+    kinds: tuple[str, ...]
+    quantity: str
+    key: str
+    least: float | None = None
+    most: float | None = None
+    given: str = ""
+
+    @property
+    def name(self) -> str:
+        """Return the kinds in words."""
+        if self.kinds == NO_FAULT:
+            return "no fault"
+        return " and ".join(kind.replace("_", " ") for kind in self.kinds) or "all"
+
+
+QUESTIONS = (
+    Question(("nothing",), "anything named", "any_name", most=0.03),
+    Question(("strong",), "in the set", "in_set", least=0.97),
+    Question(("strong",), "first", "first", least=0.92),
+    Question(("medium",), "in the set", "in_set", least=0.85),
+    Question(("medium",), "wrong name", "wrong", most=0.05),
+    Question(("exact_alias",), "both in the set", "both", least=0.95),
+    Question(("near_alias",), "both, or the right one alone", "both", least=0.95),
+    Question(("two",), "pair in the set", "in_set", least=0.75),
+    Question(("two",), "one right", "one_right", least=0.95),
+    Question(("two",), "both named and wrong", "pair_wrong", most=0.05),
+    Question(("out_of_catalogue",), "open", "open", least=0.90),
+    Question(("out_of_catalogue",), "wrong single name", "single_name", most=0.10),
+    Question(("other_law",), "family named or in the set", "family", least=0.90),
+    Question((), "right, given a single name", "named_right", least=0.95, given="single_name"),
+    Question(("fault",), "flagged", "flagged", least=0.95),
+    Question(NO_FAULT, "flagged", "flag_not_due", most=0.03),
+    Question((), "parameters covered", "covered", least=0.85, most=0.95),
+    Question(("strong",), "closed and verified", "verified", least=0.90, given="in_set"),
+)
+
+
+def acceptance_table(rows: list[Row], curve: list[dict[str, float]]) -> list[Row]:
+    """Return rows {kind, quantity, campaigns, count, rate, low, high, least, most, standing}.
+
+    rows: judged campaigns. curve: reliability curve.
+
+    count: campaigns that answer with yes. low, high: 95 % interval of a share (Wilson), quartiles
+    of a median. standing: met, missed, or no campaigns; by the rate itself.
+    """
+    table = [_share(question, rows) for question in QUESTIONS]
+    gap = np.array([largest_gap(curve)] if curve else [])
+    table.append(_number("all", "largest gap of the reliability curve", gap, most=0.10))
+    errors = _finite(rows, "parameter_error", lambda row: True)
+    table.append(_number("all", "parameters: median error", errors, most=0.05))
+    for words, number in (("nothing", 0), ("one effect", 1), ("two effects", 2)):
+        spent = _finite(rows, "cpu_seconds", _costs(number)) / 60.0
+        most = MINUTES[words]
+        table.append(_number(words, "CPU per verdict, min, median", spent, most=most))
+        worst = np.array([spent.max()]) if spent.size else spent
+        row = _number(words, "CPU per verdict, min, worst", worst, most=WORST * most)
+        table.append(row | {"campaigns": spent.size})
+    return table
+
+
+def _costs(effects: int) -> Callable[[Row], bool]:
+    """Return whether a row counts for the cost of so many effects; faults cost what they cost."""
+    return lambda row: row["effects"] == effects and row["kind"] != "fault"
+
+
+def _finite(rows: list[Row], key: str, counts: Callable[[Row], bool]) -> np.ndarray:
+    """Return the finite numbers of a column in the rows that count."""
+    values = np.array([row[key] for row in rows if counts(row)], float)
+    return values[np.isfinite(values)]
+
+
+def _share(question: Question, rows: list[Row]) -> Row:
+    """Return the row of a question."""
+    answers = [
+        row[question.key]
+        for row in rows
+        if (not question.kinds or row["kind"] in question.kinds)
+        and (not question.given or row[question.given])
+    ]
+    kept = [bool(answer) for answer in answers if np.isfinite(answer)]
+    count, total = sum(kept), len(kept)
+    rate = count / total if total else float("nan")
+    low, high = wilson(count, total) if total else (float("nan"), float("nan"))
+    return _row(question.name, question.quantity, total, count, (rate, low, high), question)
+
+
+def _number(kind: str, quantity: str, values: np.ndarray, most: float) -> Row:
+    """Return the row of a median, with its quartiles."""
+    middle = np.quantile(values, [0.5, 0.25, 0.75]) if values.size else np.full(3, np.nan)
+    return _row(kind, quantity, values.size, None, middle, Question((), "", "", most=most))
+
+
+def _row(kind, quantity, total, count, numbers, target) -> Row:
+    rate, low, high = (float(number) for number in numbers)
+    return {
+        "kind": kind,
+        "quantity": quantity,
+        "campaigns": total,
+        "count": count,
+        "rate": rate,
+        "low": low,
+        "high": high,
+        "least": np.nan if target.least is None else target.least,
+        "most": np.nan if target.most is None else target.most,
+        "standing": standing(rate, target.least, target.most),
+    }
+
+
+def standing(rate: float, least: float | None, most: float | None) -> str:
+    """Return "met" or "missed" of a rate and its target, "no campaigns" where it is NaN."""
+    if np.isnan(rate):
+        return "no campaigns"
+    low_enough = most is None or rate <= most
+    return "met" if low_enough and (least is None or rate >= least) else "missed"
+
+
+def confusion(rows: list[Row]) -> list[Row]:
+    """Return rows {group, hidden, first_name, campaigns}: what was hidden against what came first,
+    or the verdict where nothing was named.
+    """
+    counts: dict[tuple[str, str, str], int] = {}
+    for row in rows:
+        named = row["any_name"] or (row["verdict"] == "partly_explained" and row["named"])
+        key = (
+            GROUPS.get(row["drawn_as"], "in the catalogue"),
+            row["hidden"] or "nothing",
+            row["first_name"] if named else row["verdict"],
+        )
+        counts[key] = counts.get(key, 0) + 1
+    return [
+        {"group": group, "hidden": hidden, "first_name": name, "campaigns": count}
+        for (group, hidden, name), count in sorted(counts.items())
+    ]

@@ -1,0 +1,1 @@
+"""The figures of the acceptance of verdicts."""
