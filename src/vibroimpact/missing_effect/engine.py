@@ -71,7 +71,7 @@ class Engine:
         decision = decide(searching.posterior(search), search.fits, linear_sets(prepared))
         with self.stage("verification"):
             given, whole = self.whole_benches(prepared)
-            closed = closing(given, whole, decision.chosen, prepared.scales)
+            closed = closing(given, whole, search.bench, decision.chosen, prepared.scales)
         verdict.write(self, prepared, search, decision, closed, provenance)
 
     def null_stage(self, prepared):

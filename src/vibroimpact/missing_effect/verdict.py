@@ -64,7 +64,7 @@ def write(engine, prepared, search, decision, closed, provenance):
             "misfit": closed.misfit,
         }
         decision = withdrawn_decision(decision)
-        closed = without_chosen(closed)
+        closed = without_chosen(closed, bench)
     given, whole = closed.benches
     compared = mapping.z_of(given, search.null, closed.before.features)
     after = compared

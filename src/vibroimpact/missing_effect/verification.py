@@ -26,20 +26,20 @@ class Closing:
     worse: bool = False
 
 
-def closing(given, whole, chosen, scales):
+def closing(given, whole, window, chosen, scales):
     """Return the Closing of a Workbench of the model as given and one with what was adopted, and
-    what is Chosen (None: nothing more).
+    what is Chosen (None: nothing more); window: Workbench of what was compared.
     """
     benches = given, whole
     seeds = max(2, min(8, RUNS // len(whole.signals.load)))
-    before = verified(given, given.model(), seeds, given)
+    before = verified(given, given.model(), seeds, window)
     if chosen is None:
-        after = before if whole is given else verified(whole, whole.model(), seeds, whole)
+        after = before if whole is given else verified(whole, whole.model(), seeds, window)
         return _judged(benches, before, after)
     physical = chosen.candidate.physical(chosen.unit, scales)
     try:
         model = whole.model(whole.variant(chosen.candidate, physical))
-        after = verified(whole, model, seeds, whole)
+        after = verified(whole, model, seeds, window)
     except IntegrationError:
         return Closing(benches, before, before, misfits(whole, before, before), True)
     return _judged(benches, before, after)
@@ -52,15 +52,15 @@ def _judged(benches, before, after):
     return Closing(benches, before, after, rows, makes_worse(rows[split]))
 
 
-def without_chosen(closed):
+def without_chosen(closed, window):
     """Return a Closing in which nothing more is added than what was adopted; nothing at all where
-    that makes the records that took no part worse too.
+    that makes the records that took no part worse too; window: see closing.
     """
     given, whole = closed.benches
     before = closed.before
     if whole is not given:
         seeds = before.features.shape[1]
-        found = _judged(closed.benches, before, verified(whole, whole.model(), seeds, whole))
+        found = _judged(closed.benches, before, verified(whole, whole.model(), seeds, window))
         if not found.worse:
             return found
     return Closing(closed.benches, before, before, misfits(given, before, before))
