@@ -1,5 +1,7 @@
 """From probabilities to a verdict."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -29,7 +31,7 @@ def decided(linear=(), fits=None, **chances):
         for name, chance in chances.items()
     }
     known = {name: fit_at() for name in names.values()} | (fits or {})
-    return decide(chances, known, list(linear))
+    return decide(chances, known, list(linear), before=90.0, values=9)
 
 
 def test_one_explanation_above_nine_in_ten_is_named():
@@ -63,6 +65,12 @@ def test_family_is_named_where_its_law_leaves_something():
         friction=0.98,
     )
     assert other.verdict == "named" and not other.chosen.law_fits
+
+
+def test_explanation_that_leaves_much_is_a_part_of_one():
+    part = replace(fit_at(), left=50.0)  # of 90, where chance leaves 9
+    found = decided(fits={FRICTION: part}, nothing=0.001, something_else=0.019, friction=0.98)
+    assert found.verdict == "partly_explained" and found.ambiguity == [["dry_friction"]]
 
 
 def test_half_a_probability_is_part_of_an_explanation():

@@ -75,5 +75,5 @@ def test_effect_beside_another_is_half_of_the_story():
 
 def test_race_leaves_out_what_is_known_to_be_worse():
     search = searched(chance() + 30.0 * DIRECTIONS[FRICTION])
-    left = contenders(search, posterior(search))
+    left = contenders(search)
     assert left == [FRICTION]  # until it has been run a few times more

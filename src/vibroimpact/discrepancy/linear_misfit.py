@@ -329,6 +329,7 @@ class LinearMisfit:
             channel_point=(("channel", "xyz"), points),
             channel_direction=(("channel", "xyz"), np.tile(np.eye(3), (ALONG, 1))),
             channel_name=("channel", [f"along_{number}" for number in range(len(points))]),
+            channel_kind=("channel", ["displacement"] * len(points)),
         )
         model = linearised(attach(check_config(self.bench.values, "model"), there))
         # one sign for a mode in both models: a mode is itself times -1

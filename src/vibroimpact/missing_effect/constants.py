@@ -5,6 +5,9 @@ NOTHING = 0.3  # that nothing is missing
 SOMETHING_ELSE = 0.1  # that an effect is missing which the catalogue does not hold
 PAIRS = 0.1  # of all that is left: two effects of the catalogue
 NAMED = 0.9  # probability from which an explanation is named, or a set of them given
+# Share of the chi-square beyond chance that an explanation must take away; with less it is a part
+# of one.
+EXPLAINED = 0.75
 # Power of the likelihood: values of one record are less independent than their covariance, of few
 # runs, says.
 POWER = 0.5

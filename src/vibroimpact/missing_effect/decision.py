@@ -43,10 +43,10 @@ class Decision:
     linear_ids: tuple = ()
 
 
-def decide(chances, fits, linear):
+def decide(chances, fits, linear, before, values):
     """Return the Decision of {name: log probability} (search.posterior) and {name: Fit}.
 
-    linear: [(ids, probability)] of what the lowest record told, the most probable first, empty
+    before: chi-square of so many values with nothing added; linear: [(ids, probability)] of what the lowest record told, the most probable first, empty
     where it told nothing: every explanation is beside it, or in its place.
     """
     chances = {name: float(np.exp(chance)) for name, chance in chances.items()}
@@ -67,6 +67,8 @@ def decide(chances, fits, linear):
     elif reached < constants.NAMED:
         verdict = "partly_explained" if rows[0][1] > 0.5 else "unknown"
         chosen = chosen if verdict == "partly_explained" else None
+    elif share_explained(fits[best[0]].left, before, values) < constants.EXPLAINED:
+        verdict = "partly_explained"
     else:
         verdict = "named" if len(together) == 1 else "ambiguous"
     told = verdict in ("named", "ambiguous", "partly_explained")
@@ -87,6 +89,13 @@ def withdrawn_decision(decision):
     part.
     """
     return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
+
+
+def share_explained(left, before, values):
+    """Return the share of a chi-square beyond chance that an explanation takes away; 1 where there
+    was none.
+    """
+    return 1.0 - max(0.0, left - values) / (before - values) if before > values else 1.0
 
 
 def explanations(chances):

@@ -22,7 +22,7 @@ from .verification import closing
 OPEN = 0.3  # probability of something else, beside an explanation or alone, from which two effects
 # are looked for
 ROOM = 20.0  # of log evidence: two effects can gain no less than they cost
-EXPLAINED = 0.8  # chi-square per value of a model that explains a record
+LEAST = 0.8  # chi-square per value of a model that explains a record
 
 
 @dataclass
@@ -68,7 +68,14 @@ class Engine:
             self.refine(search)
         with self.stage("two effects"):
             self.seek_pairs(search)
-        decision = decide(searching.posterior(search), search.fits, linear_sets(prepared))
+        null = search.null
+        decision = decide(
+            searching.posterior(search),
+            search.fits,
+            linear_sets(prepared),
+            float(null.measured @ null.measured),
+            null.values,
+        )
         with self.stage("verification"):
             given, whole = self.whole_benches(prepared)
             closed = closing(given, whole, search.bench, decision.chosen, prepared.scales)
@@ -88,9 +95,8 @@ class Engine:
     def refine(self, search):
         """Run what may be the answer until it is known, its other places too."""
         searching.race(search, self.spent.rounds, self.spent.width)
-        chances = searching.posterior(search)
         for name in searching.leaders(search, 1):
-            if chances[name] > chances["nothing"]:
+            if search.fits[name].log_evidence > 0.0:
                 searching.elsewhere_too(search, search.bench.values, name)
                 searching.race(search, self.spent.rounds, self.spent.width)
 
@@ -103,7 +109,7 @@ class Engine:
             if name == "something else" or name.endswith("+?")
         )
         left = min([search.fits[name].left for name in searching.leaders(search, 3)], default=0.0)
-        room = 0.25 * (left - EXPLAINED * search.null.values)
+        room = 0.25 * (left - LEAST * search.null.values)
         if self.spent.pairs and open_ > OPEN and room > ROOM:
             searching.seek_pairs(search, seconds=self.spent.pairs)
             searching.race(search, self.spent.rounds, self.spent.width, pairs=True)

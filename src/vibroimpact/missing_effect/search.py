@@ -222,29 +222,26 @@ LEAST_RUNS = 3
 KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
 
 
-def contenders(search, chances, pairs=False):
-    """Return the names of explanations that may yet be as probable as the best and are not known
-    well enough, the most probable first.
-
-    chances {name: log probability}. What an emulator does not know may hide some.
+def contenders(search, pairs=False):
+    """Return the names of explanations that may yet explain as much as the best and are not known
+    well enough: by turns those that explain most, and those that may explain more than is known.
     """
-    likely, upper = {}, {}
-    for name, chance in chances.items():
-        plain = name.removesuffix("+?")
-        if plain in search.fits and ("+" in plain) == pairs:
-            more = 0.5 * constants.POWER * search.fits[plain].hidden
-            likely[plain] = max(likely.get(plain, -np.inf), chance)
-            upper[plain] = likely[plain] + more
-    best = max(chances.values())
+    known = {
+        name: found.log_evidence for name, found in search.fits.items() if ("+" in name) == pairs
+    }
+    upper = {
+        name: chance + 0.5 * constants.POWER * search.fits[name].hidden
+        for name, chance in known.items()
+    }
+    best = max([0.0, *known.values()])  # nothing at all explains by 0
     left = [
         name
         for name in upper
         if upper[name] > best - DECIDED
         and search.trials[name].refined < RUNS
-        and (upper[name] - likely[name] > KNOWN or search.trials[name].refined < LEAST_RUNS)
+        and (upper[name] - known[name] > KNOWN or search.trials[name].refined < LEAST_RUNS)
     ]
-    # by turns the likeliest, and those that may be likelier than is known
-    rows = [sorted(left, key=lambda name: -known[name]) for known in (likely, upper)]
+    rows = [sorted(left, key=lambda name: -of[name]) for of in (known, upper)]
     return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
 
 
@@ -254,7 +251,7 @@ CONFIRMED = 2  # explanations that lead are run on all that is compared
 def race(search, rounds, width=4, pairs=False, points=2):
     """Run contenders, `width` at a time, until none is left or the rounds are over."""
     for _ in range(rounds):
-        names = contenders(search, posterior(search), pairs)[:width]
+        names = contenders(search, pairs)[:width]
         if not names:
             break
         refine(search, names, points)
@@ -262,10 +259,9 @@ def race(search, rounds, width=4, pairs=False, points=2):
 
 
 def leaders(search, count, pairs=False):
-    """Return the `count` most probable explanations, with or without something else."""
-    names = dict.fromkeys(name.removesuffix("+?") for name in posterior(search))
-    found = [name for name in names if name in search.fits and ("+" in name) == pairs]
-    return found[:count]
+    """Return the `count` explanations that explain most."""
+    found = [name for name in search.fits if ("+" in name) == pairs]
+    return sorted(found, key=lambda name: -search.fits[name].log_evidence)[:count]
 
 
 def elsewhere_too(search, values, name):
