@@ -1,19 +1,22 @@
 """candidates/<name>.json: the parameters of every explanation that was run more than screened."""
 
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.records import plain_values, write_text
 
 from . import constants
-from .decision import weighted_interval
+from .decision import Decision, weighted_interval
 from .evidence import log_likelihoods
+from .search import Search
 
 POINTS = 41  # along a parameter
 
 
-def write(search, decision, folder):
+def write(search: Search, decision: Decision, folder: Path) -> None:
     """Write the file of every explanation of a Search whose runs go beyond screening, and of the
     one that a Decision chose.
     """
@@ -33,7 +36,7 @@ def write(search, decision, folder):
             write_text(json.dumps(plain_values(content), indent=1), folder / file)
 
 
-def parameters_of(search, name):
+def parameters_of(search: Search, name: str) -> dict[str, Any]:
     """Return {"profile": [...], "parameters": {...}} of an explanation."""
     trial, found = search.trials[name], search.fits[name]
     emulator, law = search.emulator(name), constants.LAWS[0][0]

@@ -4,10 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.verdict.content import Conclusion
 
 from . import constants
+from .evidence import Fit
+
+Chances = dict[str, float]
+Sets = list[tuple[tuple[str, ...], float]]  # ids and the probability of each set
 
 ELSE = "+?"  # after an explanation beside something else
 
@@ -18,12 +23,12 @@ class Chosen:
     interval (parameter, 2) of 90 %; law_fits: whether its law leaves nothing; probability.
     """
 
-    candidate: object
+    candidate: Candidate | Pair
     unit: np.ndarray
     interval: np.ndarray
     law_fits: bool
     probability: float
-    nuisance: object = None
+    nuisance: Nuisance | None = None
 
 
 @dataclass(frozen=True)
@@ -43,10 +48,13 @@ class Decision:
     linear_ids: tuple = ()
 
 
-def decide(chances, fits, linear, before, values):
+def decide(
+    chances: Chances, fits: dict[str, Fit], linear: Sets, before: float, values: int
+) -> Decision:
     """Return the Decision of {name: log probability} (search.posterior) and {name: Fit}.
 
-    before: chi-square of so many values with nothing added; linear: [(ids, probability)] of what the lowest record told, the most probable first, empty
+    before: chi-square of so many values with nothing added; linear:
+    [(ids, probability)] of what the lowest record told, the most probable first, empty
     where it told nothing: every explanation is beside it, or in its place.
     """
     chances = {name: float(np.exp(chance)) for name, chance in chances.items()}
@@ -54,7 +62,8 @@ def decide(chances, fits, linear, before, values):
     nothing, other = chances["nothing"], chances["something else"]
     sets = ambiguity_sets(rows, nothing, linear)
     best = rows[0] if rows and rows[0][1] > nothing else None
-    chosen = None if best is None else chosen_of(best, chances, fits)
+    chosen = None if best is None else chosen_of(best, fits)
+    verdict: Conclusion
     reached, together = smallest(sets)
     if best is None or other > 0.5:
         if linear:
@@ -84,25 +93,25 @@ def decide(chances, fits, linear, before, values):
     )
 
 
-def withdrawn_decision(decision):
+def withdrawn_decision(decision: Decision) -> Decision:
     """Return the Decision where what was chosen is not offered: it makes records worse that took no
     part.
     """
     return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
 
 
-def share_explained(left, before, values):
+def share_explained(left: float, before: float, values: int) -> float:
     """Return the share of a chi-square beyond chance that an explanation takes away; 1 where there
     was none.
     """
     return 1.0 - max(0.0, left - values) / (before - values) if before > values else 1.0
 
 
-def explanations(chances):
+def explanations(chances: Chances) -> list[tuple[str, float, float]]:
     """Return [(name, probability, share of it beside something else)] of explanations, with or
     without something else, the most probable first.
     """
-    both = {}
+    both: dict[str, list[float]] = {}
     for name, chance in chances.items():
         if name in ("nothing", "something else"):
             continue
@@ -117,11 +126,11 @@ def explanations(chances):
     return sorted(rows, key=lambda row: -row[1])
 
 
-def ambiguity_sets(rows, nothing, linear):
+def ambiguity_sets(rows: list[tuple[str, float, float]], nothing: float, linear: Sets) -> Sets:
     """Return [(ids, probability)], the most probable first, of sets of ids that explain the
     campaign.
     """
-    out = {}
+    out: dict[tuple[str, ...], float] = {}
     beside = linear or [((), 1.0)]
     for name, chance, _ in rows:
         candidate = candidate_named(name)
@@ -135,9 +144,10 @@ def ambiguity_sets(rows, nothing, linear):
     return sorted(out.items(), key=lambda row: -row[1])
 
 
-def smallest(sets):
+def smallest(sets: Sets) -> tuple[float, Sets]:
     """Return (probability, sets): the fewest that reach constants.NAMED, all where none do."""
-    reached, out = 0.0, []
+    reached = 0.0
+    out: Sets = []
     for ids, chance in sets:
         if reached >= constants.NAMED:
             break
@@ -145,7 +155,7 @@ def smallest(sets):
     return reached, out
 
 
-def chosen_of(row, chances, fits):
+def chosen_of(row: tuple[str, float, float], fits: dict[str, Fit]) -> Chosen:
     """Return the Chosen of a row of explanations."""
     name, chance, beside = row
     found = fits[name]
@@ -157,11 +167,13 @@ def chosen_of(row, chances, fits):
     )
 
 
-def weighted_interval(samples, weight, ends=(0.05, 0.95)):
+def weighted_interval(
+    samples: np.ndarray, weight: np.ndarray, ends: tuple[float, float] = (0.05, 0.95)
+) -> tuple[np.ndarray, np.ndarray]:
     """Return (low, high), (parameter,) each, that hold 90 % of samples (sample, parameter)."""
     out = np.empty((2, samples.shape[1]))
     for number, column in enumerate(samples.T):
         order = np.argsort(column)
         known = np.cumsum(weight[order])
         out[:, number] = np.interp(ends, known / known[-1], column[order])
-    return out
+    return out[0], out[1]

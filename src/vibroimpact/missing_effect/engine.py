@@ -1,14 +1,17 @@
 """From a campaign and a model to a verdict: every stage in order."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.cost import SIMULATED
 from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
+from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.stopwatch import Stopwatch
 
 from . import search as searching
@@ -44,20 +47,25 @@ class Engine:
         """Return the Effort."""
         return EFFORTS[self.effort]
 
+    @property
+    def spent_so_far(self) -> dict[str, Any]:
+        """Return the `cost` of verdict.json."""
+        return verdict.cost_rows(self.cost, self.simulated)
+
     @contextmanager
-    def stage(self, name):
+    def stage(self, name: str) -> Iterator[None]:
         """Count what a `with` block costs under the name of a stage."""
         known = SIMULATED["records"]
         with self.cost(name):
             yield
         self.simulated[name] = SIMULATED["records"] - known
 
-    def run(self, provenance):
+    def run(self, provenance: dict[str, Any]) -> None:
         """Write verdict.json and what belongs to it into the folder."""
         with self.stage("linear stage"):
             prepared = prepare(self.config, self.campaign, draw=self.seed)
         if prepared.refusal is not None:
-            verdict.refused(self, prepared, provenance)
+            verdict.refused(self.folder, prepared, self.spent_so_far, provenance)
             return
         search = self.null_stage(prepared)
         so_far.write(self.folder, search, prepared)
@@ -79,9 +87,11 @@ class Engine:
         with self.stage("verification"):
             given, whole = self.whole_benches(prepared)
             closed = closing(given, whole, search.bench, decision.chosen, prepared.scales)
-        verdict.write(self, prepared, search, decision, closed, provenance)
+        verdict.write(
+            self.folder, prepared, search, (decision, closed), self.spent_so_far, provenance
+        )
 
-    def null_stage(self, prepared):
+    def null_stage(self, prepared: Prepared) -> searching.Search:
         """Return the Search with its Null."""
         with self.stage("null"):
             bench = workbench(self.config, self.campaign, prepared, self.spent.compared_s)
@@ -92,7 +102,7 @@ class Engine:
             null = null_of(bench, short, records, 0)
         return searching.Search(bench, short, null, prepared.scales)
 
-    def refine(self, search):
+    def refine(self, search: searching.Search) -> None:
         """Run what may be the answer until it is known, its other places too."""
         searching.race(search, self.spent.rounds, self.spent.width)
         for name in searching.leaders(search, 1):
@@ -100,7 +110,7 @@ class Engine:
                 searching.elsewhere_too(search, search.bench.values, name)
                 searching.race(search, self.spent.rounds, self.spent.width)
 
-    def seek_pairs(self, search):
+    def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""
         chances = searching.posterior(search)
         open_ = sum(
@@ -114,7 +124,7 @@ class Engine:
             searching.seek_pairs(search, seconds=self.spent.pairs)
             searching.race(search, self.spent.rounds, self.spent.width, pairs=True)
 
-    def whole_benches(self, prepared):
+    def whole_benches(self, prepared: Prepared) -> tuple[Workbench, Workbench]:
         """Return (Workbench of the model as given, Workbench with what was adopted), of whole
         records.
         """
@@ -125,7 +135,7 @@ class Engine:
         return workbench(self.config, self.campaign, bare, prepared.longest_s), whole
 
 
-def screened(prepared: Prepared):
+def screened(prepared: Prepared) -> list[str]:
     """Return the names of what is run: beside what the lowest record told, or in its place."""
     return [
         candidate.name

@@ -10,6 +10,8 @@ from scipy.special import logsumexp
 from scipy.stats import qmc
 
 from . import constants
+from .null import Null
+from .trials import AnyEmulator
 
 SAMPLES = 256
 NEAR = 128  # samples about the best so far
@@ -35,7 +37,9 @@ class Fit:
     hidden: float
 
 
-def fit(emulator, count, null, start=None, seed=3):
+def fit(
+    emulator: AnyEmulator, count: int, null: Null, start: np.ndarray | None = None, seed: int = 3
+) -> Fit:
     """Return the Fit of an Emulator of `count` parameters against a Null; start (parameter,): where
     the answer is near, None.
     """
@@ -81,7 +85,7 @@ class Likelihoods:
     nearer: np.ndarray
 
     @classmethod
-    def of(cls, emulator, units, null):
+    def of(cls, emulator: AnyEmulator, units: np.ndarray, null: Null) -> "Likelihoods":
         """Return the Likelihoods at units (point, parameter)."""
         rows = [log_likelihoods(emulator, units, null, law) for law, _ in constants.LAWS]
         prior = np.log([prior for _, prior in constants.LAWS])
@@ -89,11 +93,11 @@ class Likelihoods:
         return cls(chance, *rows[0][1:])
 
     @property
-    def over_laws(self):
+    def over_laws(self) -> np.ndarray:
         """Return (point,): whatever the law; far below all others where nothing is explained."""
         return logsumexp(self.chance, axis=0) - FAR * ~(self.seen & self.nearer)
 
-    def evidence(self, about, density):
+    def evidence(self, about: "Likelihoods", density: np.ndarray) -> np.ndarray:
         """Return (law,): log evidence over a prior that is flat where the effect is seen; about:
         Likelihoods of samples of a density (point,) about the best, which find a peak that even
         samples step over.
@@ -109,7 +113,7 @@ class Likelihoods:
         ) - np.log(share)
 
 
-def hidden(rest, variance):
+def hidden(rest: np.ndarray, variance: np.ndarray) -> np.ndarray:
     """Return by how much less chi-square may remain within two standard deviations of the emulator:
     rest, variance (..., direction).
     """
@@ -125,7 +129,9 @@ def _proposal(near, best):
     )
 
 
-def log_likelihoods(emulator, units, null, law):
+def log_likelihoods(
+    emulator: AnyEmulator, units: np.ndarray, null: Null, law: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (log likelihood against nothing, seen, nearer), (point,) each, at units (point,
     parameter).
 
@@ -136,10 +142,10 @@ def log_likelihoods(emulator, units, null, law):
     mean, variance = emulator(units)
     change = mean @ emulator.directions
     diagonal = 1.0 + (law * change) ** 2
-    columns = [np.sqrt(variance)[:, :, None] * emulator.directions]
+    parts = [np.sqrt(variance)[:, :, None] * emulator.directions]
     for group in np.unique(null.groups):
-        columns.append((constants.LAW_COMMON * law * change * (null.groups == group))[:, None])
-    columns = np.concatenate(columns, axis=1)
+        parts.append((constants.LAW_COMMON * law * change * (null.groups == group))[:, None])
+    columns = np.concatenate(parts, axis=1)
     rest = null.measured - change
     weighted = columns / diagonal[:, None]
     inner = np.eye(columns.shape[1]) + weighted @ columns.transpose(0, 2, 1)
@@ -158,7 +164,7 @@ class SomethingElse:
     all trials.
     """
 
-    def __init__(self, changes, noise, null):
+    def __init__(self, changes: np.ndarray, noise: np.ndarray, null: Null) -> None:
         self.null = null
         whole = np.sum(changes**2, axis=1)
         told = whole - noise * null.values > constants.SEEN
@@ -171,7 +177,7 @@ class SomethingElse:
         self.share = (1.0 - constants.WHITE) * null.values * share / max(share.sum(), 1.0e-12)
         self.sizes = np.geomspace(*constants.SIZES, 24)
 
-    def log_evidence(self, mean):
+    def log_evidence(self, mean: np.ndarray) -> float:
         """Return the tempered log evidence against nothing that the measurement is mean (value,)
         and something else.
         """

@@ -3,11 +3,13 @@
 import numpy as np
 
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.prepared import Prepared
 
 from . import constants
+from .decision import Sets
 
 
-def linear_sets(prepared):
+def linear_sets(prepared: Prepared) -> Sets:
     """Return [(ids, probability)], the most probable first, of the effects that a Prepared adopts
     and those that its lowest record cannot tell from them; empty where it adopts none.
 
@@ -15,7 +17,7 @@ def linear_sets(prepared):
     """
     if prepared.adopted is None:
         return []
-    out = {}
+    out: dict[tuple[str, ...], float] = {}
     for row in prepared.linear:
         ids = tuple(sorted(candidate_named(row["name"]).ids))
         odds = row["gain"] + np.log(constants.PAIRS) * (len(ids) - 1)

@@ -7,9 +7,10 @@ from scipy import linalg
 
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.workbench import Workbench
 
 
-def nuisance_draws(bench, count, seed):
+def nuisance_draws(bench: Workbench, count: int, seed: int) -> list[linear.Nuisance]:
     """Return `count` Nuisances of a Workbench: of the modes that its lowest record shows from
     their posterior, of the others from their prior.
 

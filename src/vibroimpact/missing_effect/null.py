@@ -9,6 +9,7 @@ from scipy import linalg, stats
 from vibroimpact.discrepancy.features import FeatureLayout, compressed
 from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, shrunk
 from vibroimpact.discrepancy.null import bursting, driven_channels
+from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.kernels.lanes import LANES
 
 from . import constants
@@ -35,31 +36,31 @@ class Null:
     groups: np.ndarray
 
     @cached_property
-    def mean(self):
+    def mean(self) -> np.ndarray:
         """Return (record, feature)."""
         return self.features.mean(axis=1)
 
     @property
-    def covariance(self):
+    def covariance(self) -> np.ndarray:
         """Return (record, feature, feature)."""
         return self.factor @ self.factor.transpose(0, 2, 1)
 
     @property
-    def seed_variance(self):
+    def seed_variance(self) -> np.ndarray:
         """Return (record, feature): the variance of one run."""
         return self.features.var(axis=1, ddof=1)
 
     @property
-    def seeds(self):
+    def seeds(self) -> int:
         """Return the number of runs of every record."""
         return self.features.shape[1]
 
     @property
-    def values(self):
+    def values(self) -> int:
         """Return the number of values."""
         return self.measured.size
 
-    def change(self, features, screened=False):
+    def change(self, features: np.ndarray, screened: bool = False) -> np.ndarray:
         """Return (value,): what features (record, feature) differ by from the mean; screened: they
         are of the shorter stretch.
         """
@@ -73,7 +74,7 @@ class Null:
             ]
         )
 
-    def probability(self, rest=None):
+    def probability(self, rest: np.ndarray | None = None) -> float:
         """Return how probable a measurement as far off a model as rest (value,) is by chance; as
         far off the null as it is where None.
         """
@@ -81,7 +82,7 @@ class Null:
         return float(stats.chi2.sf(rest @ rest, self.values))
 
 
-def null_of(bench, short, records, seed):
+def null_of(bench: Workbench, short: Workbench, records: np.ndarray, seed: int) -> Null:
     """Return the Null of the records of a Workbench of whole records and of one of the stretch that
     is screened.
     """
@@ -93,8 +94,8 @@ def null_of(bench, short, records, seed):
         responses = there.respond(there.model(), runs)
         whole.append(bench.noisy_features(runs, responses).reshape(len(records), seeds, -1))
         screened.append(short.noisy_features(runs, responses).reshape(len(records), seeds, -1))
-    whole, screened = np.concatenate(whole, axis=1), np.concatenate(screened, axis=1)
-    null = _scatter(bench, records, whole, screened.mean(axis=1))
+    features, shorter = np.concatenate(whole, axis=1), np.concatenate(screened, axis=1)
+    null = _scatter(bench, records, features, shorter.mean(axis=1))
     return replace(null, measured=null.change(bench.measured_features[records]))
 
 

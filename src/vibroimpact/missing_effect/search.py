@@ -8,15 +8,22 @@ import numpy as np
 from scipy.special import logsumexp
 
 from vibroimpact.config.reading import ConfigError
-from vibroimpact.discrepancy.candidates import Pair, candidate_named, elsewhere, other_places
+from vibroimpact.discrepancy.candidates import (
+    Candidate,
+    Pair,
+    candidate_named,
+    elsewhere,
+    other_places,
+)
 from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 
 from . import constants
 from .evidence import SomethingElse, fit
 from .null import Null
-from .trials import Emulator, PairEmulator, Trial
+from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 
 
 @dataclass
@@ -33,7 +40,7 @@ class Search:
     fits: dict = field(default_factory=dict)
     seed: int = 1000
 
-    def run(self, name, units, short=True, first=False):
+    def run(self, name: str, units: np.ndarray, short: bool = True, first: bool = False) -> None:
         """Run an explanation at units (point, parameter) and fit it again; what cannot be run is
         kept as failed. short: on the stretch that is screened; first: of the first points.
         """
@@ -48,7 +55,7 @@ class Search:
             trial.screened = len(trial.noise)
         self.fit(name)
 
-    def fit(self, name):
+    def fit(self, name: str) -> None:
         """Fit an explanation again, if it has runs."""
         trial = self.trials[name]
         if not len(trial.noise):
@@ -56,7 +63,7 @@ class Search:
         start = trial.unit[np.argmin(np.sum((self.null.measured - trial.change) ** 2, axis=1))]
         self.fits[name] = fit(self.emulator(name), trial.unit.shape[1], self.null, start)
 
-    def emulator(self, name):
+    def emulator(self, name: str) -> AnyEmulator:
         """Return the Emulator, or PairEmulator, of an explanation that has runs."""
         trial = self.trials[name]
         if isinstance(trial.candidate, Pair):
@@ -84,7 +91,7 @@ class Search:
         noise = each.var(axis=0, ddof=1).mean() if seeds > 1 else 1.0
         return self.null.change(features.mean(axis=1), short), noise / seeds
 
-    def something_else(self):
+    def something_else(self) -> SomethingElse:
         """Return the SomethingElse of all trials."""
         trials = [trial for trial in self.trials.values() if trial.screened]
         return SomethingElse(
@@ -93,7 +100,7 @@ class Search:
             self.null,
         )
 
-    def explains(self, rest):
+    def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
         runs takes away}, of those screened.
         """
@@ -112,7 +119,7 @@ BELOW = -0.2  # of the searched range: where an effect is nothing whose size is 
 # logarithm from little to much
 
 
-def neutral_unit(candidate, scales):
+def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray | None:
     """Return (parameter,) normalised where an explanation changes nothing, None where its range
     holds no such place and does not lead to one.
     """
@@ -123,12 +130,12 @@ def neutral_unit(candidate, scales):
     return unit if np.isfinite(unit).all() else None
 
 
-def posterior(search):
+def posterior(search: Search) -> dict[str, float]:
     """Return {name: log probability}, the most probable first, of nothing, something else, every
     explanation, and every one of them beside something else (its name with "+?").
     """
     else_ = search.something_else()
-    families = {}
+    families: dict[str, list[str]] = {}
     for name in search.fits:
         families.setdefault(family_of(name), []).append(name)
     pairs = [family for family in families if "+" in family]
@@ -161,7 +168,7 @@ def posterior(search):
     return {name: value - total for name, value in sorted(out.items(), key=lambda row: -row[1])}
 
 
-def family_of(name):
+def family_of(name: str) -> str:
     """Return the ids of an explanation's effects."""
     return "+".join(sorted(candidate_named(name).ids))
 
@@ -171,7 +178,7 @@ SECOND = {1: ((0.55,), (0.92,)), 2: ((0.3, 0.7), (0.7, 0.3)), 3: ((0.3, 0.7, 0.5
 VECTOR = ((0.65, 0.5), (0.5, 0.65)), ((0.35, 0.5), (0.5, 0.35))
 
 
-def first_points(candidate, again=False):
+def first_points(candidate: Candidate, again: bool = False) -> np.ndarray:
     """Return (point, parameter): where an explanation is run first; where it is run again."""
     count = len(candidate.effect.parameters)
     if count == 2 and len(candidate.signed) == 2:
@@ -179,9 +186,9 @@ def first_points(candidate, again=False):
     return np.array((SECOND if again else FIRST)[count])
 
 
-def first_explanations(screened, places=3):
+def first_explanations(screened: list[str], places: int = 3) -> list[str]:
     """Return the names to begin with: of every effect `places` places at most."""
-    by_effect = {}
+    by_effect: dict[str, list[str]] = {}
     for name in screened:
         by_effect.setdefault(candidate_named(name).effect_id, []).append(name)
     return [name for names in by_effect.values() for name in names[:places]]
@@ -191,7 +198,7 @@ MAY = 0.25  # of the chi-square that the best direction takes away
 LEAST = 5
 
 
-def screen(search, names):
+def screen(search: Search, names: list[str]) -> None:
     """Run every explanation at its first points, and those that may explain the measurement at
     more.
     """
@@ -204,7 +211,7 @@ def screen(search, names):
             search.run(name, first_points(candidate_named(name), again=True), first=True)
 
 
-def refine(search, names, points, short=True):
+def refine(search: Search, names: list[str], points: int, short: bool = True) -> None:
     """Run explanations at `points` points each: the most probable, and others drawn from what is
     known of their parameters.
     """
@@ -222,7 +229,7 @@ LEAST_RUNS = 3
 KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
 
 
-def contenders(search, pairs=False):
+def contenders(search: Search, pairs: bool = False) -> list[str]:
     """Return the names of explanations that may yet explain as much as the best and are not known
     well enough: by turns those that explain most, and those that may explain more than is known.
     """
@@ -248,7 +255,7 @@ def contenders(search, pairs=False):
 CONFIRMED = 2  # explanations that lead are run on all that is compared
 
 
-def race(search, rounds, width=4, pairs=False, points=2):
+def race(search: Search, rounds: int, width: int = 4, pairs: bool = False, points: int = 2) -> None:
     """Run contenders, `width` at a time, until none is left or the rounds are over."""
     for _ in range(rounds):
         names = contenders(search, pairs)[:width]
@@ -258,13 +265,13 @@ def race(search, rounds, width=4, pairs=False, points=2):
     refine(search, leaders(search, CONFIRMED, pairs), points, short=False)
 
 
-def leaders(search, count, pairs=False):
+def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
     """Return the `count` explanations that explain most."""
     found = [name for name in search.fits if ("+" in name) == pairs]
     return sorted(found, key=lambda name: -search.fits[name].log_evidence)[:count]
 
 
-def elsewhere_too(search, values, name):
+def elsewhere_too(search: Search, values: Values, name: str) -> None:
     """Run a leading explanation at other places: of an effect at a point at the other points, of
     one at all supports at each of them alone.
     """
@@ -274,7 +281,7 @@ def elsewhere_too(search, values, name):
             search.run(other.name, unit)
 
 
-def seek_pairs(search, firsts=2, seconds=6):
+def seek_pairs(search: Search, firsts: int = 2, seconds: int = 6) -> list[str]:
     """Run the leading explanations with a second effect each, of those that may explain what the
     first leaves; return the pairs' names.
     """

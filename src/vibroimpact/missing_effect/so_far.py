@@ -3,18 +3,23 @@ left.
 """
 
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.prepared import Prepared
+from vibroimpact.discrepancy.signals import Signals
 from vibroimpact.records import plain_values, write_text
 
-from .search import posterior
+from .null import Null
+from .search import Search, posterior
 
 WORST = 5  # places that are told
 
 
-def write(folder, search, prepared):
+def write(folder: Path, search: Search, prepared: Prepared) -> None:
     """Write so_far.json of a Search into the folder."""
     null = search.null
     content = {
@@ -33,9 +38,9 @@ def write(folder, search, prepared):
     write_text(json.dumps(plain_values(content), indent=1), folder / "so_far.json")
 
 
-def by_effect(chances):
+def by_effect(chances: dict[str, float]) -> list[tuple[tuple[str, ...], float]]:
     """Return [(ids, probability)] of {name: log probability}, the most probable first."""
-    out = {}
+    out: dict[tuple[str, ...], float] = {}
     for name, chance in chances.items():
         if name not in ("nothing", "something else"):
             ids = tuple(sorted(candidate_named(name.removesuffix("+?")).ids))
@@ -43,7 +48,7 @@ def by_effect(chances):
     return sorted(out.items(), key=lambda row: -row[1])
 
 
-def where(null, signals):
+def where(null: Null, signals: Signals) -> list[dict[str, Any]]:
     """Return the rows of channels and records that are farthest off, in sigmas of a feature."""
     whole = null.measured.reshape(len(null.records), -1)
     rows = [

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy import linalg
 
+from vibroimpact.discrepancy.candidates import Candidate, Pair
+
 from . import constants
 
 LEAST_SIGNAL = 0.1  # of the scatter: no change is known to be less
@@ -18,7 +20,7 @@ class Trial:
     screened: how many of the runs, the first, are of the stretch that is screened.
     """
 
-    candidate: object
+    candidate: Candidate | Pair
     unit: np.ndarray
     change: np.ndarray
     noise: np.ndarray
@@ -26,12 +28,12 @@ class Trial:
     screened: int = 0
 
     @property
-    def refined(self):
+    def refined(self) -> int:
         """Return the number of runs beside those of the stretch that is screened."""
         return len(self.noise) - self.screened
 
     @classmethod
-    def empty(cls, candidate, values):
+    def empty(cls, candidate: Candidate | Pair, values: int) -> "Trial":
         """Return the Trial of a candidate without runs."""
         return cls(
             candidate,
@@ -40,7 +42,7 @@ class Trial:
             np.zeros(0),
         )
 
-    def add(self, unit, change, noise):
+    def add(self, unit: np.ndarray, change: np.ndarray, noise: float) -> None:
         """Add a run."""
         self.unit = np.vstack([self.unit, unit])
         self.change = np.vstack([self.change, change])
@@ -55,7 +57,9 @@ class Emulator:
     directions (direction, value) are orthonormal: those that the runs, smoothed, lie along.
     """
 
-    def __init__(self, trial, neutral=None, centred=True):
+    def __init__(
+        self, trial: Trial, neutral: np.ndarray | None = None, centred: bool = True
+    ) -> None:
         unit, change, noise = trial.unit, trial.change, trial.noise
         self.periodic = list(trial.candidate.periodic)
         centre = np.zeros(change.shape[1])
@@ -95,7 +99,7 @@ class Emulator:
             distance[..., number] = np.sin(np.pi * distance[..., number]) / np.pi
         return np.exp(-0.5 * np.sum(distance**2, axis=-1) / self.length**2)
 
-    def __call__(self, unit):
+    def __call__(self, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (mean, variance), (point, direction) each, at unit (point, parameter)."""
         against = self._kernel(np.atleast_2d(unit), self.unit)
         told = np.sum((against @ self.inverse) * against, axis=1)
@@ -109,7 +113,9 @@ class PairEmulator:
     one's parameters.
     """
 
-    def __init__(self, trial, first, second, split):
+    def __init__(
+        self, trial: Trial, first: "AnyEmulator", second: "AnyEmulator", split: int
+    ) -> None:
         self.first, self.second, self.split = first, second, split
         sum_ = np.array([self._sum(unit) for unit in trial.unit])
         self.rest = Emulator(
@@ -126,7 +132,7 @@ class PairEmulator:
             )
         )
 
-    def __call__(self, unit):
+    def __call__(self, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (mean, variance), (point, direction) each, at unit (point, parameter)."""
         unit = np.atleast_2d(unit)
         rows = [
@@ -138,3 +144,6 @@ class PairEmulator:
         open_ = np.clip(rows[2][1].sum(axis=1) / (2.0 * self.rest.signal.sum()), 0.0, 1.0)
         variances = [rows[0][1] * open_[:, None], rows[1][1] * open_[:, None], rows[2][1]]
         return np.hstack([mean for mean, _ in rows]), np.hstack(variances)
+
+
+AnyEmulator = Emulator | PairEmulator

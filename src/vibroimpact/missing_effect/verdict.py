@@ -3,6 +3,7 @@ the model that runs.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,9 @@ from vibroimpact.discrepancy.completed_model import not_offered, updated_model
 from vibroimpact.discrepancy.conclusion import COLUMNS, SHOWN, bounds, contract_checks, where
 from vibroimpact.discrepancy.invariances import broken_invariances
 from vibroimpact.discrepancy.next_measurement import next_measurement
+from vibroimpact.discrepancy.prepared import Prepared
 from vibroimpact.discrepancy.verdict import effects_of
+from vibroimpact.effects.effect import Values
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
@@ -25,23 +28,24 @@ from vibroimpact.verdict.content import (
 from vibroimpact.verdict.file import write_verdict
 
 from . import candidate_files
-from .decision import withdrawn_decision
+from .decision import Decision, withdrawn_decision
+from .null import Null
 from .search import Search
-from .verification import without_chosen
+from .verification import Closing, without_chosen
 
 EMPTY = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
 
 
-def refused(engine, prepared, provenance):
+def refused(folder: Path, prepared: Prepared, cost: dict[str, Any], provenance: Values) -> None:
     """Write the verdict of a campaign that can not be tested."""
-    folder, nothing = Path(engine.folder), Misfit(**EMPTY)
+    nothing = Misfit(**EMPTY)
     write_verdict(
         not_testable(
             contract_checks(prepared.checks),
             provenance,
             next_measurement=prepared.refusal,
             misfit=MisfitBySplit(fit=nothing, holdout=nothing),
-            cost=cost_rows(engine.cost, {}),
+            cost=cost,
         ),
         folder / "verdict.json",
     )
@@ -54,9 +58,18 @@ def refused(engine, prepared, provenance):
     write_text("# not testable: the model is as it was\n", folder / "model_updated.yaml")
 
 
-def write(engine, prepared, search, decision, closed, provenance):
-    """Write everything into the folder of an Engine."""
-    folder, bench = Path(engine.folder), search.bench
+def write(
+    folder: Path,
+    prepared: Prepared,
+    search: Search,
+    found: tuple[Decision, Closing],
+    cost: dict[str, Any],
+    provenance: Values,
+) -> None:
+    """Write everything into the folder; found: the Decision and its Closing; cost: that of
+    verdict.json.
+    """
+    (decision, closed), bench = found, search.bench
     withdrawn = None
     if closed.worse and decision.chosen is not None:
         withdrawn = {
@@ -75,12 +88,12 @@ def write(engine, prepared, search, decision, closed, provenance):
     content = {
         **decision_rows(search, prepared, decision, ranking),
         **evidence_rows(search, prepared, decision, closed, compared),
-        "cost": cost_rows(engine.cost, engine.simulated),
+        "cost": cost,
+        "seconds": cost["cpu_seconds"],
+        "simulations": cost["simulations"],
         "withdrawn": withdrawn,
         "provenance": provenance,
     }
-    content["seconds"] = content["cost"]["cpu_seconds"]
-    content["simulations"] = content["cost"]["simulations"]
     write_verdict(Verdict.from_values(content), folder / "verdict.json")
     write_table(ranking, folder / "ranking.csv", columns=(*COLUMNS, "probability"))
     for name, of, runs, told in (
@@ -98,7 +111,9 @@ def write(engine, prepared, search, decision, closed, provenance):
     )
 
 
-def decision_rows(search, prepared, decision, ranking):
+def decision_rows(
+    search: Search, prepared: Prepared, decision: Decision, ranking: list[Values]
+) -> Values:
     """Return the part of verdict.json that says what is missing, and how sure that is."""
     effects = effects_of(prepared, decision, search.bench.bare)
     chosen = decision.chosen
@@ -131,7 +146,9 @@ def decision_rows(search, prepared, decision, ranking):
     }
 
 
-def evidence_rows(search, prepared, decision, closed, compared):
+def evidence_rows(
+    search: Search, prepared: Prepared, decision: Decision, closed: Closing, compared: tuple
+) -> Values:
     """Return the part of verdict.json that says how far model and measurement are apart."""
     null, (given, _) = search.null, closed.benches
     rest = null.measured
@@ -146,7 +163,7 @@ def evidence_rows(search, prepared, decision, closed, compared):
         "regions": (
             []
             if decision.verdict == "none"
-            else mapping.regions(given, *compared[:2], misfit.counted(given))
+            else mapping.regions(given, compared[0], compared[1], misfit.counted(given))
         ),
         "misfit": closed.misfit,
         "p_global_before": null.probability(),
@@ -156,7 +173,7 @@ def evidence_rows(search, prepared, decision, closed, compared):
     }
 
 
-def left_out(search: Search):
+def left_out(search: Search) -> list[Values]:
     """Return the rows of checks for explanations that could not be run at all."""
     return [
         {
@@ -172,7 +189,7 @@ def left_out(search: Search):
     ]
 
 
-def ranking_rows(search, prepared, decision):
+def ranking_rows(search: Search, prepared: Prepared, decision: Decision) -> list[Values]:
     """Return the rows of ranking.csv, the most probable first."""
     prefix = [] if prepared.adopted is None else list(decision.linear_ids)
     rows = []
@@ -197,12 +214,12 @@ def ranking_rows(search, prepared, decision):
     return rows
 
 
-def beyond(chi_square, null):
+def beyond(chi_square: float, null: Null) -> float:
     """Return by how many sigmas, RMS over all values, a chi-square is beyond chance."""
     return float(np.sqrt(max(0.0, chi_square / null.values - 1.0)))
 
 
-def cost_rows(stages, simulated):
+def cost_rows(stages: dict[str, float], simulated: dict[str, int]) -> dict[str, Any]:
     """Return the `cost` of verdict.json of {stage: CPU seconds} and {stage: records simulated}."""
     return {
         "cpu_seconds": sum(stages.values()),
@@ -214,6 +231,6 @@ def cost_rows(stages, simulated):
     }
 
 
-def plain_attributes(provenance):
+def plain_attributes(provenance: Values) -> Values:
     """Return the texts and numbers of a provenance, as attributes of a file."""
     return {key: value for key, value in provenance.items() if isinstance(value, str | int | float)}

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 from vibroimpact.discrepancy.conclusion import Verified, misfits, verified
 from vibroimpact.discrepancy.misfit import makes_worse
+from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.contact_convergence import IntegrationError
+
+from .decision import Chosen
 
 RUNS = 32  # of whole records in all
 
@@ -26,7 +29,13 @@ class Closing:
     worse: bool = False
 
 
-def closing(given, whole, window, chosen, scales):
+def closing(
+    given: Workbench,
+    whole: Workbench,
+    window: Workbench,
+    chosen: Chosen | None,
+    scales: dict[str, float],
+) -> Closing:
     """Return the Closing of a Workbench of the model as given and one with what was adopted, and
     what is Chosen (None: nothing more); window: Workbench of what was compared.
     """
@@ -52,7 +61,7 @@ def _judged(benches, before, after):
     return Closing(benches, before, after, rows, makes_worse(rows[split]))
 
 
-def without_chosen(closed, window):
+def without_chosen(closed: Closing, window: Workbench) -> Closing:
     """Return a Closing in which nothing more is added than what was adopted; nothing at all where
     that makes the records that took no part worse too; window: see closing.
     """
