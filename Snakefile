@@ -70,7 +70,7 @@ rule all:
 
 
 rule discrepancy:
-    """Compare a measured campaign with a model: --config campaign=FILE [model=FILE] [effort=NAME]."""
+    """Compare a measured campaign with a model: --config campaign=FILE [effort=NAME]."""
     input:
         verdict=f"{DISCREPANCY}/verdict.json",
         model=f"{DISCREPANCY}/model_updated.yaml",

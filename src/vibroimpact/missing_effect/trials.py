@@ -77,7 +77,7 @@ class Emulator:
         smooth = self._kernel(unit, unit) @ self.inverse @ (change - centre) + centre
         _, sizes, directions = linalg.svd(smooth, full_matrices=False)
         kept = sizes**2 > NEGLIGIBLE * np.sum(sizes**2)
-        self.directions = directions[kept]
+        self.directions: np.ndarray = directions[kept]
         self.centre = self.directions @ centre
         self.solved = self.inverse @ (change - centre) @ self.directions.T
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
@@ -121,7 +121,7 @@ class PairEmulator:
         self.rest = Emulator(
             Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise), centred=False
         )
-        self.directions = np.vstack([first.directions, second.directions, self.rest.directions])
+        self.directions: np.ndarray = np.vstack([first.directions, second.directions, self.rest.directions])
 
     def _sum(self, unit):
         return sum(
