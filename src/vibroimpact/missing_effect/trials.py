@@ -121,7 +121,8 @@ class PairEmulator:
         self.rest = Emulator(
             Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise), centred=False
         )
-        self.directions: np.ndarray = np.vstack([first.directions, second.directions, self.rest.directions])
+        parts = (first, second, self.rest)
+        self.directions: np.ndarray = np.vstack([part.directions for part in parts])
 
     def _sum(self, unit):
         return sum(
