@@ -41,7 +41,6 @@ def null_with(measured):
         records=np.array([0]),
         layout=None,
         features=np.zeros((1, 2, VALUES)),
-        screened_mean=np.zeros((1, VALUES)),
         factor=np.eye(VALUES)[None],
         measured=measured,
         groups=np.repeat([0, 1], VALUES // 2),

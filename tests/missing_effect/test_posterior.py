@@ -27,12 +27,11 @@ def searched(measured):
         records=np.array([0]),
         layout=None,
         features=np.zeros((1, 2, VALUES)),
-        screened_mean=np.zeros((1, VALUES)),
         factor=np.eye(VALUES)[None],
         measured=measured,
         groups=np.zeros(VALUES, int),
     )
-    search = Search(None, None, null, dict.fromkeys(("one", "contact_stiffness"), 1.0))
+    search = Search(None, null, dict.fromkeys(("one", "contact_stiffness"), 1.0))
     for name in (FRICTION, DAMPING, STIFFNESS):
         changes = SIZE * UNITS * DIRECTIONS[name]
         trial = Trial(candidate_named(name), UNITS, changes, np.full(4, 1.0e-3), screened=4)

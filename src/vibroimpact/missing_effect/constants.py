@@ -28,5 +28,4 @@ SIZES = (0.3, 30.0)
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances
-SCREENED_S = 12.0
-LENGTHS = (0.1, 0.2, 0.4, 0.8)  # of the searched range: how far a simulated point tells
+LENGTHS = (0.15, 0.3, 0.6, 1.2)  # of the searched range: how far a simulated point tells

@@ -5,19 +5,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Effort:
-    """compared_s, screened_s: of every record that runs last; rounds: of the race, at most; width:
+    """compared_s: of every record that is compared; rounds: of the race, at most; width:
     explanations in a round; pairs: second effects that are tried beside each leading one.
     """
 
     compared_s: float
-    screened_s: float
     rounds: int
     width: int
     pairs: int
 
 
 EFFORTS = {
-    "quick": Effort(16.0, 8.0, 1, 3, 0),
-    "standard": Effort(24.0, 10.0, 4, 3, 6),
-    "thorough": Effort(48.0, 16.0, 8, 6, 12),
+    "quick": Effort(10.0, 1, 3, 0),
+    "standard": Effort(16.0, 4, 3, 6),
+    "thorough": Effort(30.0, 8, 6, 12),
 }

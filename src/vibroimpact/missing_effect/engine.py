@@ -95,12 +95,11 @@ class Engine:
         """Return the Search with its Null."""
         with self.stage("null"):
             bench = workbench(self.config, self.campaign, prepared, self.spent.compared_s)
-            short = workbench(self.config, self.campaign, prepared, self.spent.screened_s)
             records = bench.signals.fit()
             if bench.reads_lowest:
                 records = records[records != bench.signals.lowest]
-            null = null_of(bench, short, records, 0)
-        return searching.Search(bench, short, null, prepared.scales)
+            null = null_of(bench, records, 0)
+        return searching.Search(bench, null, prepared.scales)
 
     def refine(self, search: searching.Search) -> None:
         """Run what may be the answer until it is known, its other places too."""

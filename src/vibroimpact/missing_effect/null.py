@@ -9,6 +9,7 @@ from scipy import linalg, stats
 from vibroimpact.discrepancy.features import FeatureLayout, compressed
 from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, shrunk
 from vibroimpact.discrepancy.null import bursting, driven_channels
+from vibroimpact.discrepancy.survivors import of_survivors
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.kernels.lanes import LANES
 
@@ -19,10 +20,9 @@ from .nuisances import nuisance_draws
 @dataclass(frozen=True)
 class Null:
     """records (record,) that are compared; layout: FeatureLayout; features (record, run, feature)
-    of the model's runs, of which mean (record, feature); screened_mean: the same of the shorter
-    stretch; factor (record, feature, feature): Cholesky factors of the covariance of a record about
-    the mean; measured (value,): the whitened difference of the measurement from it; groups
-    (value,): whether the force drives the channel.
+    of the model's runs; factor (record, feature, feature): Cholesky factors of the covariance of a
+    record about their mean; measured (value,): the whitened difference of the measurement from it;
+    groups (value,): whether the force drives the channel.
 
     A value is a feature of a record in units of the covariance, all records in a row.
     """
@@ -30,7 +30,6 @@ class Null:
     records: np.ndarray
     layout: FeatureLayout
     features: np.ndarray
-    screened_mean: np.ndarray
     factor: np.ndarray
     measured: np.ndarray
     groups: np.ndarray
@@ -60,16 +59,13 @@ class Null:
         """Return the number of values."""
         return self.measured.size
 
-    def change(self, features: np.ndarray, screened: bool = False) -> np.ndarray:
-        """Return (value,): what features (record, feature) differ by from the mean; screened: they
-        are of the shorter stretch.
-        """
-        mean = self.screened_mean if screened else self.mean
+    def change(self, features: np.ndarray) -> np.ndarray:
+        """Return (value,): what features (record, feature) differ by from the mean."""
         return np.concatenate(
             [
                 linalg.solve_triangular(factor, row, lower=True)
                 for factor, row in zip(
-                    self.factor, compressed(features - mean, self.layout), strict=True
+                    self.factor, compressed(features - self.mean, self.layout), strict=True
                 )
             ]
         )
@@ -82,24 +78,19 @@ class Null:
         return float(stats.chi2.sf(rest @ rest, self.values))
 
 
-def null_of(bench: Workbench, short: Workbench, records: np.ndarray, seed: int) -> Null:
-    """Return the Null of the records of a Workbench of whole records and of one of the stretch that
-    is screened.
-    """
+def null_of(bench: Workbench, records: np.ndarray, seed: int) -> Null:
+    """Return the Null of records of a Workbench."""
     seeds = max(1, LANES // len(records))
-    whole, screened = [], []
+    rows = []
     for number, nuisance in enumerate(nuisance_draws(bench, constants.NULL_DRAWS, seed)):
         there = bench.corrected_by(nuisance)
         runs = bench.runs(records, seeds, seed + seeds * number)
-        responses = there.respond(there.model(), runs)
-        whole.append(bench.noisy_features(runs, responses).reshape(len(records), seeds, -1))
-        screened.append(short.noisy_features(runs, responses).reshape(len(records), seeds, -1))
-    features, shorter = np.concatenate(whole, axis=1), np.concatenate(screened, axis=1)
-    null = _scatter(bench, records, features, shorter.mean(axis=1))
+        rows.append(there.features(there.model(), runs).reshape(len(records), seeds, -1))
+    null = _scatter(bench, records, of_survivors(np.concatenate(rows, axis=1)))
     return replace(null, measured=null.change(bench.measured_features[records]))
 
 
-def _scatter(bench, records, features, screened_mean):
+def _scatter(bench, records, features):
     """Return the Null of features (record, run, feature) without its measurement."""
     layout, driven = bench.layout, driven_channels(bench)
     count, common = features.shape[1], free_directions(layout, driven)
@@ -114,7 +105,6 @@ def _scatter(bench, records, features, screened_mean):
         np.asarray(records),
         layout,
         features,
-        screened_mean,
         np.array(factors),
         np.zeros(0),
         groups,

@@ -28,12 +28,11 @@ from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 
 @dataclass
 class Search:
-    """A Workbench of what is compared and one of what is screened, the Null, and all Trials so far
-    {name: Trial} with their Fits {name: Fit}.
+    """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
+    Fits {name: Fit}.
     """
 
     bench: Workbench
-    short: Workbench
     null: Null
     scales: dict
     trials: dict = field(default_factory=dict)
@@ -42,13 +41,14 @@ class Search:
 
     def run(self, name: str, units: np.ndarray, short: bool = True, first: bool = False) -> None:
         """Run an explanation at units (point, parameter) and fit it again; what cannot be run is
-        kept as failed. short: on the stretch that is screened; first: of the first points.
+        kept as failed. first: they are the first
+        points of it.
         """
         candidate = candidate_named(name)
         trial = self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
         for unit in np.atleast_2d(units):
             try:
-                trial.add(unit, *self._change(candidate, unit, short))
+                trial.add(unit, *self._change(candidate, unit))
             except (IntegrationError, ConfigError) as error:
                 trial.failed.append((unit, str(error)))
         if first:
@@ -73,10 +73,10 @@ class Search:
             return PairEmulator(trial, first, second, trial.candidate.split)
         return Emulator(trial, neutral_unit(trial.candidate, self.scales))
 
-    def _change(self, candidate, unit, short):
+    def _change(self, candidate, unit):
         """Return (change (value,), variance of a value) of one batch of runs."""
-        bench = self.short if short else self.bench
-        records, physical = self.null.records, candidate.physical(unit, self.scales)
+        bench, records = self.bench, self.null.records
+        physical = candidate.physical(unit, self.scales)
         seeds = max(1, LANES // len(records))
         runs = bench.runs(records, seeds, self.seed)
         self.seed += seeds
@@ -87,9 +87,9 @@ class Search:
         ).reshape(len(records), seeds, -1)
         if np.isnan(features).any():
             raise IntegrationError("a run was thrown off")
-        each = np.array([self.null.change(features[:, run], short) for run in range(seeds)])
+        each = np.array([self.null.change(features[:, run]) for run in range(seeds)])
         noise = each.var(axis=0, ddof=1).mean() if seeds > 1 else 1.0
-        return self.null.change(features.mean(axis=1), short), noise / seeds
+        return self.null.change(features.mean(axis=1)), noise / seeds
 
     def something_else(self) -> SomethingElse:
         """Return the SomethingElse of all trials."""
@@ -186,7 +186,7 @@ def first_points(candidate: Candidate, again: bool = False) -> np.ndarray:
     return np.array((SECOND if again else FIRST)[count])
 
 
-def first_explanations(screened: list[str], places: int = 3) -> list[str]:
+def first_explanations(screened: list[str], places: int = 2) -> list[str]:
     """Return the names to begin with: of every effect `places` places at most."""
     by_effect: dict[str, list[str]] = {}
     for name in screened:
@@ -211,7 +211,7 @@ def screen(search: Search, names: list[str]) -> None:
             search.run(name, first_points(candidate_named(name), again=True), first=True)
 
 
-def refine(search: Search, names: list[str], points: int, short: bool = True) -> None:
+def refine(search: Search, names: list[str], points: int) -> None:
     """Run explanations at `points` points each: the most probable, and others drawn from what is
     known of their parameters.
     """
@@ -220,7 +220,7 @@ def refine(search: Search, names: list[str], points: int, short: bool = True) ->
         found = search.fits[name]
         drawn = found.samples[random.choice(len(found.samples), points - 1, p=found.weight)]
         moved = drawn + 0.04 * random.standard_normal(drawn.shape)
-        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0), short)
+        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0))
 
 
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
@@ -252,17 +252,13 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
     return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
 
 
-CONFIRMED = 2  # explanations that lead are run on all that is compared
-
-
 def race(search: Search, rounds: int, width: int = 4, pairs: bool = False, points: int = 2) -> None:
     """Run contenders, `width` at a time, until none is left or the rounds are over."""
     for _ in range(rounds):
         names = contenders(search, pairs)[:width]
         if not names:
-            break
+            return
         refine(search, names, points)
-    refine(search, leaders(search, CONFIRMED, pairs), points, short=False)
 
 
 def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:

@@ -17,7 +17,7 @@ NEGLIGIBLE = 1.0e-3  # of what the runs change: directions below it are left out
 class Trial:
     """An explanation and its runs: candidate; unit (run, parameter) from 0 to 1; change (run,
     value) and noise (run,): variance of a value of it; failed: [(unit, sentence)];
-    screened: how many of the runs, the first, are of the stretch that is screened.
+    screened: how many of the runs, the first, were placed without regard to the measurement.
     """
 
     candidate: Candidate | Pair
@@ -29,7 +29,7 @@ class Trial:
 
     @property
     def refined(self) -> int:
-        """Return the number of runs beside those of the stretch that is screened."""
+        """Return the number of runs beside the first."""
         return len(self.noise) - self.screened
 
     @classmethod
