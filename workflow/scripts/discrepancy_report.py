@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from vibroimpact.config.reading import check_config
 from vibroimpact.discrepancy.dag import QUICK_S
 from vibroimpact.discrepancy.results_folder import read_results
 from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
@@ -12,7 +13,7 @@ from vibroimpact.reports.discrepancy_page import discrepancy_page
 redirect_output(snakemake.log[0])
 folder = Path(snakemake.output.page).parent
 results = read_results(folder)
-sheets = discrepancy_figures(results)
+sheets = discrepancy_figures(results, check_config(snakemake.params.config, "model"))
 for sheet in sheets:
     sheet.save(folder / "figures")
 shown = [folder / "figures" / f"{sheet.name}.png" for sheet in sheets if sheet.tables]
@@ -22,6 +23,7 @@ write_text(
         results.verdict,
         shown,
         quick_s=QUICK_S if snakemake.params.quick else None,
+        model=str(folder / "model_updated.yaml"),
     ),
     snakemake.output.page,
 )

@@ -4,6 +4,7 @@ prediction and a model that runs.
 
 import numpy as np
 
+from vibroimpact.discrepancy.completed_model import not_offered
 from vibroimpact.records import write_table, write_text
 from vibroimpact.spectra.periodic_lines import PeriodError
 from vibroimpact.verdict.content import not_testable
@@ -43,7 +44,9 @@ def write_outcome(told, campaign, study, files):
     verdict, rows, completed = told
     write_table(rows, files.prediction, PREDICTION)
     write_values(completed or {}, files.completed)
-    if completed:
+    if verdict.withdrawn is not None:
+        write_text(not_offered(verdict.withdrawn.to_values()), files.model)
+    elif completed:
         write_configuration(completed, campaign, study, files.model)
     else:
         write_text(
