@@ -2,12 +2,11 @@
 and told as a verdict.
 """
 
-import time
-
 import numpy as np
 from scipy.stats import chi2
 
 from vibroimpact.config.measured_structure import ELSEWHERE
+from vibroimpact.discrepancy.cost import Meter, total_cost, with_cost
 from vibroimpact.discrepancy.misfit import makes_worse
 from vibroimpact.spectra.periodic_lines import line_power
 from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
@@ -32,9 +31,9 @@ def conclude(campaign, study, linear, singles, additions, told=print, checks=(),
     """Return (Verdict, rows of prediction.csv, completed {chosen, trial, choice}) of a campaign
     from its candidates' values.
 
-    checks: rows of what was checked before; provenance: see provenance.origin.
+    checks: rows of what was checked before; provenance: see provenance.verdict_origin.
     """
-    began = time.monotonic()
+    meter = Meter("verdict")
     levels, names, _ = levels_of(campaign)
     reference, joint, again = (
         {
@@ -104,11 +103,7 @@ def conclude(campaign, study, linear, singles, additions, told=print, checks=(),
     verdict = _verdict(choice, kind, alone, before, completed, effects, trial)
     verdict |= _withdrawn(verdict, effects)
     verdict["checks"] = [*checks, *check_periods(levels, names, study.band_Hz)]
-    simulations = sum(each["passes"] for each in (*singles, *additions)) + minimum.passes
-    verdict |= {
-        "seconds": time.monotonic() - began,
-        "simulations": simulations * fit.values(fit.start).size * len(fitted.levels),
-    }
+    verdict |= with_cost(total_cost([], meter.read()))
     if provenance is not None:
         verdict["provenance"] = provenance
     return (
