@@ -11,6 +11,7 @@ from scipy import linalg
 from tests import two_masses
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.completion.candidate import run_candidate
+from vibroimpact.completion.conclude import _withdrawn
 from vibroimpact.completion.long_records import long_record_lines
 from vibroimpact.completion.outcome import outcome
 from vibroimpact.completion.own_records import unsettled_periods
@@ -38,6 +39,7 @@ KEYS = {
     "seconds",
     "simulations",
     "provenance",
+    "cost",
 }
 FEW = ("cubic_stiffness", "clearance", "single_friction", "saturation_stiffness", "quadratic_drag")
 
@@ -125,9 +127,23 @@ def test_cubic_spring_is_named_and_located(tmp_path):
     ).sensor_names == ("upper.x", "lower.x")
 
 
+def test_law_that_makes_held_out_levels_worse_is_withdrawn():
+    effects = [{"id": "cubic_stiffness", "location": "a", "parameters": {}}]
+    row = {"before_dB": 8.9, "after_dB": 10.5, "floor_dB": 1.0, "closed_fraction": -0.18}
+    fitted = row | {"after_dB": 2.0, "closed_fraction": 0.8}
+    verdict = {"verdict": "named", "p_global_before": 1.0e-9}
+    told = _withdrawn(verdict | {"misfit": {"fit": fitted, "holdout": row}}, effects)
+    assert (told["verdict"], told["effects"], told["ambiguity_set"]) == ("unknown", [], [])
+    assert told["withdrawn"]["effects"] == effects
+    assert told["misfit"]["fit"]["after_dB"] == 8.9  # the model as given: nothing is added
+    better = {"fit": fitted, "holdout": fitted}
+    assert _withdrawn(verdict | {"misfit": better}, effects) == {}
+
+
 def test_linear_structure_gets_verdict_none(tmp_path):
     verdict = judged("nothing", tmp_path)[0]
     assert verdict.verdict == "none" and verdict.effects == [] and verdict.ambiguity_set == []
+    assert verdict.regions == []
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ from tests.discrepancy_results import (
 )
 from vibroimpact.discrepancy.results_folder import best_places, read_results
 from vibroimpact.display_units import display_unit
+from vibroimpact.figures.discrepancy.place import place_figure
 from vibroimpact.figures.discrepancy.ranking import axis_label, found_of, named_of
 from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
 from vibroimpact.figures.discrepancy.spectra import chosen_channels, chosen_records
@@ -270,7 +271,7 @@ def test_quick_report_states_its_limits():
 def test_a_run_without_map_or_candidates_says_so(tmp_path):
     write_verdict(made_up_verdict("not_testable"), tmp_path / "verdict.json")
     sheets = discrepancy_figures(read_results(tmp_path))
-    assert len(sheets) == 5 and all(sheet.tables == [] for sheet in sheets)
+    assert len(sheets) == 6 and all(sheet.tables == [] for sheet in sheets)
     for sheet in sheets:
         sheet.save(tmp_path)
         assert [text.get_text() for axes in sheet.axes.values() for text in axes.texts]
@@ -302,7 +303,8 @@ def test_report_is_one_self_contained_file(folder, figures):
     page = discrepancy_page("dev <friction>", verdict, files)
     assert not re.findall(r'(?:src|href)="(?!data:)', page) and "dev &lt;friction&gt;" in page
     images = re.findall(r"base64,([^\"]+)", page)
-    assert [base64.b64decode(image) for image in images] == [file.read_bytes() for file in files]
+    shown = [base64.b64decode(image) for image in images]
+    assert sorted(shown) == sorted(file.read_bytes() for file in files)
     for part in (
         "The model lacks dry friction (mu 0.149, between 0.128 and 0.171)",
         "the contact rubs",
@@ -358,3 +360,115 @@ def test_region_names_each_nearby_mode_once():
     assert "nearest modes" not in discrepancy_page(
         "campaign", made_up_verdict(regions=[without]), []
     )
+
+
+STORY = (
+    "What is missing",
+    "How sure",
+    "Where it shows",
+    "What adding it does",
+    "What was ruled out, and why",
+    "What to do next",
+)
+
+
+def test_page_tells_one_story_in_order():
+    page = discrepancy_page("campaign", made_up_verdict(), [], model="results/a/model_updated.yaml")
+    places = [page.index(f"{part}\n") if "?" in part else page.index(part) for part in STORY]
+    assert places == sorted(places)
+    assert "snakemake -j2 --configfile results/a/model_updated.yaml" in page
+    assert "campaign=FILE model=results/a/model_updated.yaml" in page
+    assert "screened" not in page and "explains less" in page
+
+
+def test_closed_share_is_one_number_on_the_page():
+    rows = made_up_verdict().to_values()["ranking"]
+    assert rows[0]["closed_fraction"] == 0.87  # of what is named: that of its misfit
+    page = discrepancy_page("campaign", made_up_verdict(ranking=rows[:1]), [])
+    held_out = page.index("held out: not fitted"), page.index("<td>fitted</td>")
+    assert "closes 87 % of the excess misfit on records that took no part" in page
+    assert "87 %" in page[held_out[0] : held_out[1]]
+    assert set(re.findall(r"\d+ %(?= ?</td>)", page)) == {"87 %"}
+
+
+def test_no_region_is_shown_where_nothing_is_missing():
+    page = discrepancy_page("campaign", made_up_verdict("none", regions=[]), [])
+    assert "no band is singled out" in page and "<th>nearest modes" not in page
+    open_page = discrepancy_page("campaign", made_up_verdict("unknown", regions=[]), [])
+    assert "No band is beyond chance by itself" in open_page
+
+
+def test_probabilities_are_bars_and_are_explained():
+    values = made_up_verdict().to_values()
+    values["ranking"][0]["probability"] = 0.93
+    values["ranking"][2]["probability"] = 0.02
+    friction = values["effects"][0] | {"family": "friction", "law_fits": "no"}
+    verdict = made_up_verdict(
+        ranking=values["ranking"],
+        effects=[friction],
+        probability_none=0.0,
+        probability_something_else=0.05,
+        ambiguity_probability=[0.93],
+    )
+    page = discrepancy_page("campaign", verdict, [])
+    bars = [int(width) for width in re.findall(r'class="bar" style="width: (\d+)px', page)]
+    assert bars == [223, 12, 5, 0]  # of 240 pixels, the most probable first
+    for part in ("93 %", "something that is not in the catalogue", "nine in ten", "no law that"):
+        assert part in page, part
+    without = discrepancy_page("campaign", made_up_verdict(), [])
+    assert "nine in ten" not in without and 'class="bar"' not in without
+
+
+def test_a_model_that_makes_others_worse_is_told_not_offered():
+    values = made_up_verdict().to_values()
+    worse = values["misfit"]["holdout"] | {"before_dB": 8.9, "after_dB": 10.5}
+    withdrawn = {"effects": values["effects"], "misfit": {"fit": None, "holdout": worse}}
+    verdict = made_up_verdict("unknown", withdrawn=withdrawn, most_probable=values["effects"])
+    page = discrepancy_page("campaign", verdict, [])
+    assert "Tried and not offered: dry friction" in page
+    assert "8.9 dB before, 10.5 dB after" in page and "configfile" not in page
+    assert "makes records worse that took no part" in page  # its row among those ruled out
+
+
+def test_cost_of_all_stages_is_on_the_page():
+    stages = {"null": {"cpu_seconds": 10.0, "simulations": 72}}
+    cost = {"cpu_seconds": 10.0, "simulations": 72, "by_stage": stages}
+    page = discrepancy_page("campaign", made_up_verdict(cost=cost), [])
+    assert '<td>null</td><td class="number">10</td>' in page
+
+
+def with_points(data):
+    """A map with the places of channels and of the force on the tube of the study."""
+    apex = np.tile([0.0, 0.0, 1.0], (len(CHANNELS), 1))
+    across = np.tile([0.0, 1.0, 0.0], (len(CHANNELS), 1))
+    force = [[-0.2121, 0.0, 0.9121]]
+    return data.assign(
+        channel_point=(("channel", "xyz"), apex),
+        channel_direction=(("channel", "xyz"), across),
+        force_channel_point=(("force_channel", "xyz"), force),
+        force_channel_direction=(("force_channel", "xyz"), across[:1]),
+    )
+
+
+@pytest.mark.parametrize(
+    ("effect", "location", "marked"),
+    [
+        ("dry_friction", "all", [(-0.3, 0.35), (0.3, 0.35)]),
+        ("gap", "left", [(-0.3, 0.35)]),
+        ("added_mass", "apex", [(0.0, 1.0)]),
+        ("sensor_gain", "apex_y", [(0.0, 1.0)]),
+        ("sensor_gain", "force", [(-0.2121, 0.9121)]),
+        ("cubic_stiffness", "leg: at apex, to the ground", [(0.0, 1.0)]),
+        ("modal_damping", "all", None),
+    ],
+)
+def test_place_of_an_effect_is_marked(study_config, effect, location, marked):
+    found = FoundEffect(id=effect, location=location, parameters={})
+    (sheet,) = place_figure(study_config, with_points(made_up_map(1.0)), [found])
+    (table,) = [table for _, curve, table in sheet.tables if curve == f"{effect} at {location}"]
+    spots = np.transpose([table["x_m"], table["z_m"]])
+    if marked is None:  # all of the tube
+        assert len(spots) > 100
+    else:
+        np.testing.assert_allclose(spots, marked, atol=2.0e-4)
+    assert effect.replace("_", " ") in [text.get_text() for text in sheet.axes["main"].texts]

@@ -1,6 +1,7 @@
 # The figures and the report page of a discrepancy run.
 
 DISCREPANCY_FIGURES = (
+    "discrepancy_place",
     "discrepancy_map",
     "discrepancy_psd",
     "discrepancy_ranking",
@@ -54,7 +55,9 @@ rule _discrepancy_report:
         runtime=minutes(10),
     params:
         library=library("discrepancy_report"),
+        config=MODEL.model_dump(mode="json"),
         name=LOOKED_AT,
+        compared_s=EFFORTS[EFFORT].compared_s if EFFORT else None,
     message:
         f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"
     script:

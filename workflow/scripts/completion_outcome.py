@@ -3,12 +3,15 @@
 from vibroimpact.completion.outcome import outcome, write_outcome
 from vibroimpact.completion.store import read_kept, read_values
 from vibroimpact.completion.study import study_of
+from vibroimpact.discrepancy.cost import Meter, total_cost
 from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import origin
+from vibroimpact.provenance import verdict_origin
 
 redirect_output(snakemake.log[0])
+meter = Meter("verdict", begun=0.0)
 campaign, prepared = read_kept(snakemake.input.campaign), read_values(snakemake.input.study)
-study, source = study_of(prepared), origin(snakemake.params.structure, snakemake.params.library)
+study, structure = study_of(prepared), snakemake.params.structure
+source = verdict_origin(structure, snakemake.input.campaign, None)
 singles, additions = (
     [read_values(path) for path in paths]
     for paths in (snakemake.input.singles, snakemake.input.additions)
@@ -16,4 +19,7 @@ singles, additions = (
 told = outcome(
     campaign, study, prepared, read_values(snakemake.input.linear), singles, additions, source
 )
-write_outcome(told, campaign, study, snakemake.output)
+files = snakemake.input
+made = [files.study, *files.singles, *files.additions]
+cost = total_cost(made, meter.read())
+write_outcome(told, campaign, study, snakemake.output, cost)

@@ -1,5 +1,7 @@
 """The figures and the report page of a user's completion."""
 
+from pathlib import Path
+
 from vibroimpact.completion.store import read_kept, read_values
 from vibroimpact.completion.study import study_of
 from vibroimpact.figures.discrepancy.completion import saved_sheets
@@ -22,4 +24,8 @@ shown = saved_sheets(
     verdict,
     *tables,
 )
-write_text(discrepancy_page(snakemake.params.name, verdict, shown, NOISE), snakemake.output.page)
+model = str(Path(snakemake.output.page).with_name("model_updated.yaml"))
+write_text(
+    discrepancy_page(snakemake.params.name, verdict, shown, NOISE, model=model),
+    snakemake.output.page,
+)

@@ -2,12 +2,12 @@
 and told as a verdict.
 """
 
-import time
-
 import numpy as np
 from scipy.stats import chi2
 
 from vibroimpact.config.measured_structure import ELSEWHERE
+from vibroimpact.discrepancy.cost import Meter, total_cost, with_cost
+from vibroimpact.discrepancy.misfit import makes_worse
 from vibroimpact.spectra.periodic_lines import line_power
 from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
 
@@ -31,9 +31,9 @@ def conclude(campaign, study, linear, singles, additions, told=print, checks=(),
     """Return (Verdict, rows of prediction.csv, completed {chosen, trial, choice}) of a campaign
     from its candidates' values.
 
-    checks: rows of what was checked before; provenance: see provenance.origin.
+    checks: rows of what was checked before; provenance: see provenance.verdict_origin.
     """
-    began = time.monotonic()
+    meter = Meter("verdict")
     levels, names, _ = levels_of(campaign)
     reference, joint, again = (
         {
@@ -99,15 +99,11 @@ def conclude(campaign, study, linear, singles, additions, told=print, checks=(),
             left[0] * _unsettled(tried, modes_of(linear["base"])),
         ),
     )
-    verdict = _verdict(
-        study, choice, kind, alone, before, completed, told_parameters(fit, minimum, trial), trial
-    )
+    effects = _effects(study, choice, told_parameters(fit, minimum, trial), trial)
+    verdict = _verdict(choice, kind, alone, before, completed, effects, trial)
+    verdict |= _withdrawn(verdict, effects)
     verdict["checks"] = [*checks, *check_periods(levels, names, study.band_Hz)]
-    simulations = sum(each["passes"] for each in (*singles, *additions)) + minimum.passes
-    verdict |= {
-        "seconds": time.monotonic() - began,
-        "simulations": simulations * fit.values(fit.start).size * len(fitted.levels),
-    }
+    verdict |= with_cost(total_cost([], meter.read()))
     if provenance is not None:
         verdict["provenance"] = provenance
     return (
@@ -120,6 +116,32 @@ def conclude(campaign, study, linear, singles, additions, told=print, checks=(),
             "ids": choice.ids,
         },
     )
+
+
+def _withdrawn(verdict, told):
+    """Return what changes of a verdict whose completed model makes the held-out levels worse: it is
+    told and not offered. Empty where it makes them better. told: rows of its effects.
+    """
+    held_out = verdict["misfit"]["holdout"]
+    if held_out is None or verdict["verdict"] == "none" or not makes_worse(held_out):
+        return {}
+    return {
+        "verdict": "unknown",
+        "effects": [],
+        "ambiguity_set": [],
+        "next_measurement": None,
+        "p_global_after": verdict["p_global_before"],
+        "withdrawn": {"effects": told, "misfit": verdict["misfit"]},
+        "misfit": {split: _unchanged(row) for split, row in verdict["misfit"].items()},
+    }
+
+
+def _unchanged(row):
+    """Return the misfit of the model as given in the place of the completed one's."""
+    return row and row | {
+        "after_dB": row["before_dB"],
+        "closed_fraction": row["closed_fraction"] and 0.0,
+    }
 
 
 def _modes(linear, which, level):
@@ -178,7 +200,22 @@ def _unsettled(levels, modes):
     )
 
 
-def _verdict(study, choice, kind, records, before, after, parameters, trial):
+def _effects(study, choice, parameters, trial):
+    """The rows of effects of the completed model."""
+    elsewhere = _places_as_good(choice)
+    return [
+        {
+            "id": LAWS[term.law].id,
+            "location": _location(study, term) + elsewhere,
+            "parameters": {
+                name: each | {"unit": study.unit(each["unit"])} for name, each in told.items()
+            },
+        }
+        for term, told in zip(trial.terms, parameters, strict=True)
+    ]
+
+
+def _verdict(choice, kind, records, before, after, effects, trial):
     """The verdict but for checks and times."""
     names = trial.modes.names
     first, floor = disagreement(records, before)
@@ -189,17 +226,6 @@ def _verdict(study, choice, kind, records, before, after, parameters, trial):
         split: misfit_summary(first[part], last[part], floor[part]) if any(part) else None
         for split, part in parts.items()
     }
-    elsewhere = _places_as_good(choice)
-    effects = [
-        {
-            "id": LAWS[term.law].id,
-            "location": _location(study, term) + elsewhere,
-            "parameters": {
-                name: each | {"unit": study.unit(each["unit"])} for name, each in told.items()
-            },
-        }
-        for term, told in zip(trial.terms, parameters, strict=True)
-    ]
     ranking = [
         {
             "ids": choice.ids[name],
@@ -216,7 +242,8 @@ def _verdict(study, choice, kind, records, before, after, parameters, trial):
         "ranking": ranking,
         "next_measurement": _next(kind, choice),
         "broken_invariances": _broken(records, before, trial),
-        "regions": regions(records, before, names),
+        # where the levels together are within chance, no band of them is marked
+        "regions": [] if kind == "none" else regions(records, before, names),
         "misfit": misfit,
         "p_global_before": _p_value(first, floor),
         "p_global_after": _p_value(last, floor),

@@ -4,9 +4,11 @@ prediction and a model that runs.
 
 import numpy as np
 
+from vibroimpact.discrepancy.completed_model import not_offered
+from vibroimpact.discrepancy.cost import with_cost
 from vibroimpact.records import write_table, write_text
 from vibroimpact.spectra.periodic_lines import PeriodError
-from vibroimpact.verdict.content import not_testable
+from vibroimpact.verdict.content import Verdict, not_testable
 from vibroimpact.verdict.file import write_verdict
 
 from .conclude import conclude
@@ -36,14 +38,17 @@ def outcome(campaign, study, prepared, linear, singles, additions, provenance, t
         return _refused(campaign, study, prepared, linear, str(error), provenance)
 
 
-def write_outcome(told, campaign, study, files):
+def write_outcome(told, campaign, study, files, cost):
     """Write an outcome: files has the paths verdict, prediction, completed and model. Without a
-    linear model the last two say so.
+    linear model the last two say so. cost: of all jobs, as cost.total_cost returns it.
     """
     verdict, rows, completed = told
+    verdict = Verdict.from_values(verdict.to_values() | with_cost(cost))
     write_table(rows, files.prediction, PREDICTION)
     write_values(completed or {}, files.completed)
-    if completed:
+    if verdict.withdrawn is not None:
+        write_text(not_offered(verdict.withdrawn.to_values()), files.model)
+    elif completed:
         write_configuration(completed, campaign, study, files.model)
     else:
         write_text(

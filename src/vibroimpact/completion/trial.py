@@ -8,6 +8,7 @@ import numpy as np
 from scipy.fft import next_fast_len
 
 from vibroimpact.contact.laws import LocalLaws
+from vibroimpact.discrepancy.cost import count_simulated
 from vibroimpact.identify.modal_fit import Ridge, channel_scale, pack, unpack
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
@@ -133,6 +134,7 @@ class Records:
         motion.
         """
         model, along = trial.model()
+        count_simulated(len(self.levels) if along.shape[1] else 0)
         out = [None] * len(self.levels)
         for part, drive, samples in self.groups:
             drive, samples = self.with_offsets(trial, part, drive, samples)

@@ -1,3 +1,3 @@
-"""Where simulation and measurement disagree, which effect is missing, and how far adding it closes
-the gap.
+"""Where simulation and measurement disagree, which effect is missing, and how much of the
+misfit adding it closes.
 """

@@ -25,7 +25,7 @@ from . import jobs, mapping, misfit, naming, power_balance, priors, verdict
 from .by_level import by_level
 from .candidates import Pair, candidate_named
 from .completed_model import not_offered, updated_model
-from .cost import total_cost
+from .cost import total_cost, with_cost
 from .estimate_scatter import with_scatter
 from .invariances import broken_invariances, one_sided_rows
 from .law_directions import within_any_law
@@ -166,14 +166,12 @@ def conclude(run, screening, final_files, provenance, meter, quick=False):
             + bounds(decision, prepared)
             + one_sided_rows(bench, null, measured, after.compared[null.records])
         ),
-        "seconds": spent["cpu_seconds"],
-        "simulations": spent["simulations"],
+        **with_cost(spent),
         "not_testable": prepared.not_testable,
         "linear": prepared.linear[:SHOWN],
         "explained_z": decision.explained.tolist(),
         "most_probable": most_probable,
         "provenance": provenance,
-        "cost": spent,
         "withdrawn": withdrawn,
     }
     write_verdict(Verdict.from_values(content), folder / "verdict.json")

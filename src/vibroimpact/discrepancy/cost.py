@@ -70,3 +70,12 @@ def total_cost(outputs, last):
         "simulations": sum(row["simulations"] for row in stages.values()),
         "by_stage": stages,
     }
+
+
+def with_cost(cost):
+    """Return {key: value} of verdict.json that a cost, as total_cost returns it, fills."""
+    return {
+        "seconds": cost["cpu_seconds"],
+        "simulations": cost["simulations"],
+        "cost": cost,
+    }

@@ -167,6 +167,10 @@ MAP_ABOUT = {
     "gap": _about("radial gap of the record", "m"),
     "split": _about("use of the record: fit or holdout"),
     "channel_name": _about("name of the channel"),
+    "channel_point": _about("place of the channel", "m"),
+    "channel_direction": _about("positive sense of the channel", "1"),
+    "force_channel_point": _about("place of the force", "m"),
+    "force_channel_direction": _about("positive sense of the force", "1"),
     "psd_frequency": _about("frequency", "Hz"),
     "psd_measured": _about("measured power spectral density", comment=PSD_UNIT),
     "psd_simulated_mean": _about("simulated PSD, mean over seeds", comment=PSD_UNIT),
@@ -205,6 +209,10 @@ def map_dataset(bench, compared, seeds, responses):
         "psd_simulated_low": (line, shown.min(axis=0)),
         "psd_simulated_high": (line, shown.max(axis=0)),
     }
+    for role in ("channel", "force_channel"):
+        for part in ("point", "direction"):
+            values = bench.campaign[f"{role}_{part}"].values.astype(float)
+            data[f"{role}_{part}"] = ((role, "xyz"), values)
     described = {name: (*variable, MAP_ABOUT[name]) for name, variable in data.items()}
     return xr.Dataset(described, attrs={"title": "vibroimpact map of the discrepancy"})
 

@@ -1,27 +1,56 @@
 """The report of one campaign as a single HTML file with embedded figures.
 
-It has the verdict, the effects, misfit, map, ranking and checks.
+It tells one story: what is missing, how sure, where it shows, what adding it does on records that
+took no part, what was ruled out and why, and what to do next.
 """
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.discrepancy.results_folder import best_places
-from vibroimpact.display_units import display_unit
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.verdict.content import Misfit, Verdict
 
 from .number_text import digits, percent
 from .page_style import STYLE
+from .verdict_words import (
+    for_reading,
+    in_words,
+    judgement,
+    next_steps,
+    probability_text,
+    unit_text,
+    verdict_sentence,
+    where_it_shows,
+    withdrawn_sentence,
+)
 
 TEMPLATE = Path(__file__).with_suffix(".html")
-SPLITS = {"fit": "fitted", "holdout": "held out"}
+# The records of each misfit, what took no part first.
+SPLITS = {
+    "verification": "verification: took no part",
+    "holdout": "held out: not fitted",
+    "selection": "selection: the name was chosen with them",
+    "fit": "fitted",
+}
+# Section of the page by the figure's name; others go to what adding the effect does.
+SECTIONS = {
+    "discrepancy_place": "what",
+    "mounting": "what",
+    "restoring_force": "what",
+    "discrepancy_profiles": "sure",
+    "discrepancy_levels": "sure",
+    "discrepancy_map": "where",
+    "where": "where",
+    "discrepancy_ranking": "ruled_out",
+}
+BAR_PX = 240  # of a probability of 1
 MOST_ROWS, MOST_MODES = 20, 6
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
@@ -35,7 +64,8 @@ def discrepancy_page(
     verdict: Verdict,
     figures: Iterable[Path],
     floor: str = SEEDS,
-    quick_s: float | None = None,
+    compared_s: float | None = None,
+    model: str | None = None,
 ) -> str:
     """Return the HTML page.
 
@@ -43,7 +73,8 @@ def discrepancy_page(
     verdict: its Verdict.
     figures: PNG files in their order, each with its caption in a .txt file of the same name.
     floor: meaning of the floor of the misfit, SEEDS or NOISE.
-    quick_s: s of each record that a quick run used, None for a full run.
+    compared_s: s of each record that a search by evidence compared, None for another search.
+    model: path of the completed model, model_updated.yaml beside the page where None.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
@@ -51,33 +82,92 @@ def discrepancy_page(
         f"{test}, {TESTS[test]}" if test in TESTS else str(test)
         for test in verdict.broken_invariances
     ]
+    shown = verdict.shown_effects()
     return template.render(
         style=STYLE,
         name=name,
         verdict=verdict,
         floor=floor,
-        quick_s=None if quick_s is None else digits(quick_s),
+        compared_s=None if compared_s is None else digits(compared_s),
         sentence=verdict_sentence(verdict),
+        withdrawn=withdrawn_sentence(verdict),
         effects=[*_effect_rows(verdict)],
+        families=any(effect.family or effect.law_fits for effect in shown),
+        completed=bool(shown),
+        probabilities=_probabilities(verdict),
         misfit=[*_misfit_rows(verdict)],
-        p_before=_probability(verdict.p_global_before),
-        p_after=_probability(verdict.p_global_after),
+        p_before=probability_text(verdict.p_global_before),
+        p_after=probability_text(verdict.p_global_after),
         regions=[_region_row(region) for region in verdict.regions[:MOST_ROWS]],
+        where_it_shows=where_it_shows(verdict),
         broken="; ".join(tests),
-        figures=embedded(figures),
-        ranking=[
+        figures=_by_section(figures),
+        ranking=_ranking_rows(verdict),
+        untestable=", ".join(in_words([name]) for name in verdict.not_testable),
+        steps=next_steps(verdict, model or "model_updated.yaml"),
+        checks=sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level]),
+        seconds=digits(verdict.seconds),
+        stages=_stages(verdict),
+        provenance=[*_flat(verdict.provenance)],
+    )
+
+
+def _by_section(figures):
+    """Return {section: [{name, caption, data}]} of PNG files."""
+    sections: dict[str, list] = {
+        section: [] for section in ("what", "sure", "where", "adding", "ruled_out")
+    }
+    for figure in embedded(figures):
+        sections[SECTIONS.get(figure["name"], "adding")].append(figure)
+    return sections
+
+
+def _ranking_rows(verdict):
+    rows, known = [], set()
+    for row in best_places([row.to_values() for row in verdict.ranking])[:MOST_ROWS]:
+        ids = tuple(sorted(row["ids"]))
+        rows.append(
             {
                 "ids": in_words(row["ids"]),
                 "location": ", ".join((row.get("location") or "").split("+")),
+                "probability": percent(row.get("probability")),
                 "score": digits(row["heldout_score"]),
                 "closed": percent(row["closed_fraction"]),
+                "judgement": judgement(verdict, row, ids not in known),
             }
-            for row in best_places([row.to_values() for row in verdict.ranking])[:MOST_ROWS]
-        ],
-        checks=sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level]),
-        seconds=digits(verdict.seconds),
-        provenance=[*_flat(verdict.provenance)],
-    )
+        )
+        known.add(ids)
+    return rows
+
+
+def _probabilities(verdict):
+    """Return [{words, probability, width of its bar in pixels}] of all explanations that have a
+    probability, the most probable first.
+    """
+    known = {tuple(sorted(row.ids)): row.probability for row in verdict.ranking}
+    sets = zip(verdict.ambiguity_set, verdict.ambiguity_probability, strict=False)
+    known |= {tuple(sorted(ids)): probability for ids, probability in sets}
+    rows = [(in_words(ids), probability) for ids, probability in known.items()]
+    rows.append(("nothing is missing", verdict.probability_none))
+    rows.append(("something that is not in the catalogue", verdict.probability_something_else))
+    told = sorted([row for row in rows if row[1] is not None], key=lambda row: -row[1])
+    return [
+        {"words": words, "probability": percent(value), "width": round(BAR_PX * value)}
+        for words, value in told[:MOST_ROWS]
+    ]
+
+
+def _stages(verdict):
+    if verdict.cost is None:
+        return []
+    return [
+        {
+            "stage": stage,
+            "seconds": digits(cost.cpu_seconds),
+            "simulations": cost.simulations,
+        }
+        for stage, cost in verdict.cost.by_stage.items()
+    ]
 
 
 def embedded(figures: Iterable[Path]) -> list[dict]:
@@ -95,101 +185,35 @@ def embedded(figures: Iterable[Path]) -> list[dict]:
     ]
 
 
-def verdict_sentence(verdict: Verdict) -> str:
-    """Return the verdict in one or two sentences."""
-    held_out = verdict.misfit.holdout
-    closed = None if held_out is None else held_out.closed_fraction
-    shrinks = (
-        f" Adding it closes {percent(closed)} of the excess misfit on records that were not fitted."
-        if closed is not None
-        else ""
-    )
-    named = "; and ".join(map(_with_parameters, verdict.effects))
-    alternatives = [
-        ids
-        for ids in verdict.ambiguity_set
-        if sorted(ids) != sorted(effect.id for effect in verdict.effects)
-    ]
-    others = (
-        f" This campaign can not distinguish it from {sets_in_words(alternatives)}."
-        if named and alternatives
-        else ""
-    )
-    near = [effect.id for effect in verdict.most_probable]
-    nearest = f" The best candidate, {in_words(near)}, does not explain it." if near else ""
-    refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
-    sentences = {
-        "none": (
-            "No effect is missing: the model explains the campaign within the scatter of its seeds"
-            f" (p-value of the map: {_probability(verdict.p_global_before)})."
-        ),
-        "named": f"The model lacks {named}.{shrinks}{others}",
-        "partly_explained": (
-            f"The model lacks {named}, and something else that is not in the catalogue: the"
-            f" remaining difference is significant.{shrinks}{others}"
-        ),
-        "ambiguous": (
-            "One of these is missing, and this campaign can not decide which:"
-            f" {sets_in_words(verdict.ambiguity_set)}."
-            + shrinks.replace("Adding it", "Adding the most probable of them")
-        ),
-        "unknown": (
-            "The model and the measurement disagree, and no effect of the catalogue explains it:"
-            f" the map says where to look.{nearest}"
-        ),
-        "not_testable": f"The campaign can not be judged. {refusals}".strip(),
-    }
-    return sentences[verdict.verdict]
-
-
-def in_words(ids: Sequence[str]) -> str:
-    """Return effect ids as words: dry friction and gap."""
-    return " and ".join(str(name).replace("_", " ") for name in ids)
-
-
-def sets_in_words(sets: Sequence[Sequence[str]]) -> str:
-    """Return the members of an ambiguity set: dry friction, or foliate obstacle."""
-    return ", or ".join(in_words(ids) for ids in sets)
-
-
-def _with_parameters(effect):
-    """Return an effect in words with its parameters.
-
-    Example: dry friction at both plates (mu 0.149, between 0.128 and 0.171).
-    """
-    values = ", ".join(
-        f"{name.replace('_', ' ')} {digits(value['value'])}{_unit(value['unit'])}, between"
-        f" {digits(value['low'])} and {digits(value['high'])}"
-        for name, value in ((name, _for_reading(row)) for name, row in effect.parameters.items())
-    )
-    place = f" at {effect.location}" if effect.location not in ("", "all") else ""
-    return f"{in_words([effect.id])}{place}" + (f" ({values})" if values else "")
-
-
 def _effect_rows(verdict):
     for effect in verdict.shown_effects():
         known = EFFECTS.get(effect.id)
         head = {
             "effect": in_words([effect.id]),
             "explanation": known.explanation if known else "",
+            "family": effect.family or "",
+            "law_fits": effect.law_fits or "",
             "location": effect.location or "all",
         }
         for name, value in [
-            (name, _for_reading(row)) for name, row in effect.parameters.items()
+            (name, for_reading(row)) for name, row in effect.parameters.items()
         ] or [("", None)]:
             cells = {key: digits(value[key]) if value else "" for key in ("value", "low", "high")}
             yield {
                 **head,
                 "parameter": name.replace("_", " "),
                 **cells,
-                "unit": _unit(value["unit"]).strip() or "-" if value else "",
+                "unit": unit_text(value["unit"]).strip() or "-" if value else "",
             }
-            head = {"effect": "", "explanation": "", "location": ""}
+            head = dict.fromkeys(head, "")
 
 
 def _misfit_rows(verdict):
     for split, words in SPLITS.items():
-        misfit = getattr(verdict.misfit, split) or NOTHING_COMPARED
+        misfit = getattr(verdict.misfit, split)
+        if misfit is None and split in ("verification", "selection"):
+            continue
+        misfit = misfit or NOTHING_COMPARED
         yield {
             "records": words,
             "before": digits(misfit.before_dB),
@@ -226,23 +250,3 @@ def _flat(values, prefix=""):
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
-
-
-def _unit(unit):
-    return "" if unit in ("1", "", "-", None) else f" {unit}"
-
-
-def _for_reading(row):
-    """Return {value, low, high, unit} of an Estimate in the unit that it is shown in."""
-    values = {"value": row.value, "low": row.low, "high": row.high}
-    unit, factor = display_unit(row.unit, values.values())
-    return {
-        "unit": unit,
-        **{key: None if value is None else factor * value for key, value in values.items()},
-    }
-
-
-def _probability(value):
-    if value is None:
-        return "not computed"
-    return "below 0.001" if value < 1e-3 else f"{value:.2g}"

@@ -29,8 +29,9 @@ def map_figure(before, after):
     height = min(max(1.6 + 2.0 * (0.5 + ROW_IN * rows), 5.0), 22.0)
     caption = (
         "Measured over simulated band power (D, dB; mean over seeds) and its significance (z, in"
-        " standard deviations of seeds, calibration and numerical error), by record and channel"
-        " against frequency band: left with the model as given, right with the completed one. Red:"
+        " the standard deviations that the verdict is decided by: seeds, what two codes differ by,"
+        " damping that no record tells), by record and channel against frequency band:"
+        " left with the model as given, right with the completed one. Red:"
         " the measurement is stronger; blue: the simulation is. Grey: the measurement is not 6 dB"
         " above its noise. Records that were held out of the fit are marked with *."
     )

@@ -45,8 +45,8 @@ def ranking_figure(ranking, named=()):
         "Candidates by how much better they explain the records that they were not fitted on (bars)"
         " and those that they were (rings), against the model as given or, where the lowest record"
         " shows a linear effect, the model with it. Red line: the best that chance does on"
-        " campaigns with nothing hidden (98 % of them lie below). Text: share of the distance"
-        " beyond chance that the candidate closes, on all records. Pale bars were judged by the"
+        " campaigns with nothing hidden (98 % of them lie below). Text: share of the excess misfit"
+        " that the candidate closes on the records that took no part. Pale bars were judged by the"
         " emulator alone, dark ones by direct simulation; the named effect, or the most probable of"
         " several, is orange."
     )

@@ -1,0 +1,210 @@
+"""The words of a verdict: its sentence, why candidates were ruled out, and what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from vibroimpact.display_units import display_unit
+from vibroimpact.verdict.content import Verdict
+
+from .number_text import digits, percent
+
+
+def verdict_sentence(verdict: Verdict) -> str:
+    """Return the verdict in one or two sentences."""
+    apart = verdict.misfit.taking_no_part()
+    closed = None if apart is None else apart.closed_fraction
+    shrinks = (
+        f" Adding it closes {percent(closed)} of the excess misfit on records that took no part."
+        if closed is not None
+        else ""
+    )
+    named = "; and ".join(map(_with_parameters, verdict.effects))
+    alternatives = [
+        ids
+        for ids in verdict.ambiguity_set
+        if sorted(ids) != sorted(effect.id for effect in verdict.effects)
+    ]
+    others = (
+        f" This campaign can not distinguish it from {sets_in_words(alternatives)}."
+        if named and alternatives
+        else ""
+    )
+    near = [] if verdict.withdrawn else [effect.id for effect in verdict.most_probable]
+    nearest = f" The best candidate, {in_words(near)}, does not explain it." if near else ""
+    refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
+    sentences = {
+        "none": (
+            "No effect is missing: the model explains the campaign within the scatter of its seeds"
+            f" (p-value of all differences: {probability_text(verdict.p_global_before)})."
+        ),
+        "named": f"The model lacks {named}.{shrinks}{others}",
+        "partly_explained": (
+            f"The model lacks {named}, and something else that is not in the catalogue: the"
+            f" remaining difference is significant.{shrinks}{others}"
+        ),
+        "ambiguous": (
+            "One of these is missing, and this campaign can not decide which:"
+            f" {sets_in_words(verdict.ambiguity_set)}."
+            + shrinks.replace("Adding it", "Adding the most probable of them")
+        ),
+        "unknown": (
+            "The model and the measurement disagree, and no effect of the catalogue explains it:"
+            f" the map says where to look.{nearest}"
+        ),
+        "not_testable": f"The campaign can not be judged. {refusals}".strip(),
+    }
+    return sentences[verdict.verdict]
+
+
+def in_words(ids: Sequence[str]) -> str:
+    """Return effect ids as words: dry friction and gap."""
+    return " and ".join(str(name).replace("_", " ") for name in ids)
+
+
+def sets_in_words(sets: Sequence[Sequence[str]]) -> str:
+    """Return the members of an ambiguity set: dry friction, or foliate obstacle."""
+    return ", or ".join(in_words(ids) for ids in sets)
+
+
+def _with_parameters(effect):
+    """Return an effect in words with its parameters.
+
+    Example: dry friction at both plates (mu 0.149, between 0.128 and 0.171).
+    """
+    values = ", ".join(
+        f"{name.replace('_', ' ')} {digits(value['value'])}{unit_text(value['unit'])}, between"
+        f" {digits(value['low'])} and {digits(value['high'])}"
+        for name, value in ((name, for_reading(row)) for name, row in effect.parameters.items())
+    )
+    place = f" at {effect.location}" if effect.location not in ("", "all") else ""
+    told = f"{in_words([effect.id])}{place}" + (f" ({values})" if values else "")
+    if effect.law_fits == "no":
+        family = in_words([effect.family or effect.id])
+        return f"{family}{place}, by no law that was tried; the nearest is {told}"
+    return told
+
+
+def withdrawn_sentence(verdict: Verdict) -> str:
+    """Return what was tried and is not offered, empty where that is nothing."""
+    if verdict.withdrawn is None:
+        return ""
+    misfit = verdict.withdrawn.misfit.taking_no_part()
+    tried = in_words([effect.id for effect in verdict.withdrawn.effects])
+    numbers = (
+        ""
+        if misfit is None
+        else f": {digits(misfit.before_dB)} dB before, {digits(misfit.after_dB)} dB after"
+    )
+    return (
+        f"Tried and not offered: {tried}. It brings the fitted records nearer and makes those worse"
+        f" that took no part{numbers}."
+    )
+
+
+def where_it_shows(verdict: Verdict) -> str:
+    """Return what the table of regions means, or why there is none."""
+    if verdict.regions:
+        return (
+            f"{len(verdict.regions)} stretches of bands differ by more than chance, the strongest"
+            " first. z counts standard deviations of one record about the model's mean, with all"
+            " that the verdict allows for: seeds, what two codes of one physics differ by, and"
+            " damping that no record tells. Of bands marked so, one in a hundred is of chance."
+        )
+    if verdict.verdict == "none":
+        return (
+            "Nowhere: the records together are within chance, and no band is singled out. The"
+            " largest differences of many are always of some size."
+        )
+    return (
+        "No band is beyond chance by itself: what differs is spread over many, or lies in how"
+        " peaked or coherent the motion is, which the map of band powers does not show."
+    )
+
+
+def judgement(verdict: Verdict, row: dict, first: bool) -> str:
+    """Return why a candidate was taken or ruled out, in words.
+
+    row: of verdict.ranking in plain values; first: whether it is the first of these effects.
+    """
+    ids, score, closed = sorted(row["ids"]), row["heldout_score"], row["closed_fraction"]
+    shown = sorted(effect.id for effect in verdict.shown_effects())
+    withdrawn = verdict.withdrawn.effects if verdict.withdrawn else []
+    if ids == sorted(effect.id for effect in withdrawn) and withdrawn:
+        return "makes records worse that took no part"
+    if ids == shown and first:
+        return "the most probable" if verdict.verdict == "ambiguous" else "named"
+    if ids == shown:
+        return "the same at another place, which explains less"
+    if ids in [sorted(row) for row in verdict.ambiguity_set]:
+        return "not told apart from it"
+    if score is None:
+        return "screened only: others came nearer"
+    if closed is not None and closed < 0.0:
+        return "makes the misfit grow"
+    if score <= 0.0:
+        return "gains nothing on records that it was not fitted to"
+    if verdict.verdict == "none":
+        return "gains no more than chance does"
+    return "explains less" if shown else "leaves a difference beyond chance"
+
+
+def next_steps(verdict: Verdict, model: str) -> list[dict]:
+    """Return [{words, command}] of what to do next; command: None where there is none.
+
+    model: path of the completed model.
+    """
+    if verdict.verdict == "not_testable":
+        return [_step("Mend what the checks refuse, then give the same command again.")]
+    if verdict.verdict == "none":
+        return [_step("Nothing: the model stands as it is for records like these.")]
+    if not verdict.shown_effects():
+        return [
+            _step(
+                "No completed model is offered. Look where the table and the map show the largest"
+                " differences: at the supports, lengths and sensors there."
+            ),
+            _step("Ask what the records alone tell:", "discrepancy", "FILE model=identified"),
+        ]
+    which = " most probable" if verdict.verdict == "ambiguous" else ""
+    steps = [
+        _step(f"Run the study with the{which} completed model:", configfile=model),
+        _step(
+            "See what it still misses, by this campaign or by another one:",
+            "discrepancy",
+            f"FILE model={model}",
+        ),
+    ]
+    if verdict.verdict == "partly_explained":
+        steps.insert(0, _step("Look at what the right half of the map still shows."))
+    return steps
+
+
+def _step(words, target="", campaign="", configfile=""):
+    parts = ["snakemake -j2", target]
+    parts += [f"--config campaign={campaign}"] if campaign else []
+    parts += [f"--configfile {configfile}"] if configfile else []
+    command = " ".join(filter(None, parts)) if campaign or configfile else None
+    return {"words": words, "command": command}
+
+
+def unit_text(unit):
+    """Return a unit after a space, nothing where there is none."""
+    return "" if unit in ("1", "", "-", None) else f" {unit}"
+
+
+def for_reading(row):
+    """Return {value, low, high, unit} of an Estimate in the unit that it is shown in."""
+    values = {"value": row.value, "low": row.low, "high": row.high}
+    unit, factor = display_unit(row.unit, values.values())
+    return {
+        "unit": unit,
+        **{key: None if value is None else factor * value for key, value in values.items()},
+    }
+
+
+def probability_text(value):
+    """Return a p-value as text."""
+    if value is None:
+        return "not computed"
+    return "below 0.001" if value < 1e-3 else f"{value:.2g}"
