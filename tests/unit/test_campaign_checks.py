@@ -408,7 +408,7 @@ def names(campaign, record, channel):
 
 
 def with_kind(campaign, channels, kind, units, of_lines):
-    """The campaign with some channels of another kind; of_lines(values, omega) gives their lines."""
+    """The campaign with some channels of another kind, their lines by of_lines(lines, omega)."""
     campaign = campaign.copy(deep=True)
     rate = float(campaign.attrs["sampling_frequency"])
     values = campaign["response"].values.astype(float)
