@@ -5,6 +5,7 @@ mass in a tube, and the search names it and weighs it.
 import json
 
 import numpy as np
+import pytest
 from scipy.signal import resample_poly
 
 from vibroimpact.campaign.file import read_campaign, write_campaign
@@ -43,6 +44,7 @@ def as_a_vibrometer(campaign):
     )
 
 
+@pytest.mark.slow
 def test_hidden_mass_is_weighed_by_a_vibrometer(study_config, tmp_path):
     hidden = (("added_mass", {"place": "apex", "mass": MASS_KG}),)
     plan = Plan((77, 3), hidden, levels=LEVELS, duration=RECORDED_S, noise=0.0, contact_force=True)

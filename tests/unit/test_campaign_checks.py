@@ -405,3 +405,54 @@ def names(campaign, record, channel):
     return str(campaign["record_name"].values[record]), str(
         campaign["channel_name"].values[channel]
     )
+
+
+def with_kind(campaign, channels, kind, units, of_lines):
+    """The campaign with some channels of another kind, their lines by of_lines(lines, omega)."""
+    campaign = campaign.copy(deep=True)
+    rate = float(campaign.attrs["sampling_frequency"])
+    values = campaign["response"].values.astype(float)
+    omega = 2.0 * np.pi * np.fft.rfftfreq(values.shape[-1], 1.0 / rate)
+    lines = of_lines(np.fft.rfft(values[:, channels], axis=-1), np.maximum(omega, 1.0))
+    values[:, channels] = np.fft.irfft(lines, values.shape[-1], axis=-1)
+    campaign["response"] = (campaign["response"].dims, values)
+    campaign["channel_kind"].values[channels] = kind
+    campaign["channel_units"].values[channels] = units
+    return campaign
+
+
+@pytest.mark.parametrize("velocities", [[0, 2], [0, 1, 2, 3, 4]])
+def test_reversed_channel_is_detected_among_velocities(velocities):
+    kinds = with_kind(made_up(), velocities, "velocity", "m s-1", lambda a, omega: a / (1j * omega))
+    assert complaints(kinds) == []
+    kinds["response"].values[:, 2] *= -1.0
+    assert [(row["check"], row["channel"]) for row in complaints(kinds)] == [
+        ("swapped channels", "y2")
+    ]
+
+
+@pytest.mark.parametrize("resolution", [0.0, 0.05])
+def test_a_load_cell_without_contact_is_no_fault(resolution):
+    """Along the force and silent at the lowest level, in bursts above it; with the steps of its
+    converter, which are the whole of its noise where nothing touches.
+    """
+    campaign = made_up()
+    noise = 0.02 * np.random.default_rng(3).standard_normal((3, campaign.sizes["time"]))
+    inside = np.arange(campaign.sizes["time"]) % 900 < 60
+    hits = np.where(inside, np.abs(campaign["response"].values[:, 1]), 0.0)
+    cell = np.array([0.0, 1.0, 4.0])[:, None] * hits + noise
+    if resolution:
+        cell = np.round(cell / resolution) * resolution
+    campaign["response"].values[:, 4] = cell
+    campaign["channel_kind"].values[4], campaign["channel_units"].values[4] = "contact_force", "N"
+    assert [row for row in complaints(campaign) if row["channel"] == "y4"] == []
+    assert usable_signals(campaign, complaints(campaign))[1].all()
+
+
+def test_a_load_cell_beyond_its_range_is_clipped():
+    campaign = made_up()
+    cell = np.maximum(campaign["response"].values[:, 1], 0.0)
+    campaign["response"].values[:, 4] = np.minimum(cell, 0.4 * cell.max(axis=-1, keepdims=True))
+    campaign["channel_kind"].values[4], campaign["channel_units"].values[4] = "contact_force", "N"
+    clipped = {row["record"] for row in complaints(campaign) if row["check"] == "clipping"}
+    assert clipped == {"low", "middle", "high"}

@@ -47,6 +47,8 @@ def clipped_share(signal: np.ndarray) -> float | None:
         if top <= ONE_SIDED * largest:
             continue
         near = side[side > (1.0 - 2.0 * TOP_SHARES[-1]) * top]
+        if np.all(near == top):  # the converter has no finer step: noise of a silent channel
+            continue
         most = _repeated_top(near, top)
         for share in TOP_SHARES:
             inner = int(np.count_nonzero(near > (1.0 - share) * top))
