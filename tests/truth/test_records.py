@@ -16,7 +16,7 @@ from vibroimpact_truth.tune import WIDE, amount_for
 Y = (0.0, 1.0, 0.0)
 KINDS = ("displacement", "velocity", "acceleration")
 PLATES = {
-    name: Holder(name, at, 0.02, 1.0e6, 3) for name, at in zip("abc", (0.5, 1.0, 1.6), strict=True)
+    name: Holder(name, at, 0.02, 1.0e6, 3) for name, at in (("a", 0.5), ("b", 1.0), ("c", 1.6))
 }
 
 
@@ -60,7 +60,7 @@ def test_order_of_three_supports_does_not_matter():
 
 
 def test_a_tube_along_x_moves_as_one_along_z():
-    one, other = (run(beam(axis=axis))[0][0][:, :400] for axis in ("x", "z"))
+    one, other = (run(beam(axis=axis))[0][0][:, :200] for axis in ("x", "z"))
     for row in range(6):
         np.testing.assert_allclose(other[row], one[row], atol=1e-6 * np.abs(one[row]).max())
 
