@@ -257,19 +257,20 @@ def apply_instruments(plan, force, response, noise, stream=0, hidden=True):
     return data.force, data.response
 
 
-def highest_level(plan):
-    """Number of the record of the largest load."""
-    return max(range(len(plan.levels)), key=lambda number: plan.levels[number][0])
+def judged_levels(plan):
+    """Numbers of the records that strength is measured on, that of the largest load last: those
+    held out, or that of the largest load where none is.
+    """
+    rising = sorted(range(len(plan.levels)), key=lambda number: plan.levels[number][0])
+    return [number for number in rising if plan.levels[number][2] == "holdout"] or rising[-1:]
 
 
 def strength(plan, force, seen, noise):
-    """strength.excess of the hold-out records over the same records with nothing hidden; of the
-    record of the largest load where none is held out.
+    """strength.excess of the judged records over the same records with nothing hidden.
 
     seen: (record, channel, time) responses.
     """
-    held = [number for number, (*_, split) in enumerate(plan.levels) if split == "holdout"]
-    rows, count = held or [highest_level(plan)], len(plan.channels)
+    rows, count = sorted(judged_levels(plan)), len(plan.channels)
 
     def twins(hidden, first):
         """The records from TWINS other initial states, as measured."""

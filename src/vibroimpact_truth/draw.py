@@ -81,6 +81,7 @@ ROOTS = ("root_stiffness", "hysteretic_root")  # effects that need two clamped e
 KINDS = ("acceleration", "displacement")
 SAMPLING = (1024.0, 1280.0, 2048.0, 2560.0, 4096.0, 5120.0, 8192.0)  # Hz; 81920 is 2 n of each
 STEPS_PER_SECOND = 81920  # four times the model's
+NEAR_M = 2.0e-3  # of a named point: two places so close are one
 LONGEST_S = 160.0  # of all records together
 # RMS motion at the support that moves most, were there no contact, over the gap
 LOWEST, HIGHEST = (0.12, 0.2), (2.5, 8.0)
@@ -113,6 +114,15 @@ def direction_across(rng, beam, s, oblique=True):
     return tuple((along.round(6) + 0.0).tolist())
 
 
+def unnamed_place(rng, beam, low, high):
+    """Arc length [m] between two shares of the beam, nowhere near a point that its model names."""
+    named = [*beam.places.values(), *(holder.arc for holder in beam.holders)]
+    while True:
+        at = round(float(rng.uniform(low, high) * beam.length), 4)
+        if np.abs(np.subtract(named, at)).min() > NEAR_M:
+            return at
+
+
 def drawn_channels(rng, plan):
     """(place, direction, kind) of 2 to 12 channels, none at a named point; the first one moves with
     the force.
@@ -123,7 +133,7 @@ def drawn_channels(rng, plan):
     rows = []
     for number in range(count):
         free = beam.ends[1] == "free"
-        at = round(float(rng.uniform(0.08, 1.0 if free else 0.92) * beam.length), 4)
+        at = unnamed_place(rng, beam, 0.08, 1.0 if free else 0.92)
         along = direction_across(rng, beam, at)
         if number == 0:
             along = plan.drive_direction_at(at)
@@ -203,7 +213,7 @@ def bare_plan(pool, seed, number):
 def scene_of(plan, size, rng):
     """The Scene of a plan: the place of an effect is between its sensors and at no named point."""
     beam = plan.beam
-    place = round(float(rng.uniform(0.12, 0.88) * beam.length), 4)
+    place = unnamed_place(rng, beam, 0.12, 0.88)
     names = [holder.name for holder in beam.holders]
     alone = len(names) > 1 and rng.random() < 0.35
     gaps = [percent for _, percent, _ in plan.levels]

@@ -14,7 +14,8 @@ PASS_HZ, STOP_HZ, STOP_DB = 800.0, 1024.0, 86.0
 
 
 CHUNK_S = 0.25  # of one propagator, where the modes drift
-LEAD_S = 4.0  # before a record that begins in stationary motion
+LEAD_S = (2.0, 10.0)  # before a record that begins in stationary motion: three times what the
+LEAD = 3.0  # slowest mode decays by 1/e in, within these limits
 TAIL_S = 0.05  # after a record, for the filter
 
 
@@ -144,7 +145,9 @@ def run_record(reduced, drive, gap, steps_per_second, rng, start=0.0):
         grow = 0.5 - 0.5 * np.cos(np.pi * np.minimum(np.arange(count) / (0.8 * count), 1.0))
         march.run(np.zeros(count), np.zeros(0), start, ramp=grow)
     samples = len(drive.force)
-    lead = min(round(LEAD_S * drive.sampling), samples) if drive.stationary else 0
+    decay = 2.0 / reduced.rate[reduced.real].min()
+    wanted = round(float(np.clip(LEAD * decay, *LEAD_S)) * drive.sampling)
+    lead = min(wanted, samples) if drive.stationary else 0
     tail = round(TAIL_S * drive.sampling)
     around = np.arange(-lead, samples + tail) % samples
     force, second = (

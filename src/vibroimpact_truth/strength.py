@@ -44,10 +44,11 @@ def distance(one, others, audible, either=False):
 
 def by_channel(one, others, audible):
     """(channel,) RMS in dB over records and bands against the mean of others, NaN where nothing is
-    audible. Arguments as in `distance`.
+    audible. Arguments as in `distance`. A band counts where `one` or the mean is audible: an effect
+    may silence a channel.
     """
     mean = np.mean(others, axis=0)
-    counted = one > audible
+    counted = (one > audible) | (mean > audible)
     squares = np.where(counted, (10.0 * np.log10(one / mean)) ** 2, 0.0).sum(axis=(0, 2))
     number = counted.sum(axis=(0, 2))
     return np.sqrt(np.divide(squares, number, out=np.full(len(number), np.nan), where=number > 0))

@@ -1,7 +1,7 @@
 """Amounts that make an effect strong or medium on its own beam: short records beside the bare rig.
 
 No search for effects takes part: the strength is the excess of band powers over their scatter
-between starts (strength.py), on the record of the largest load. The campaign states its own.
+between starts (strength.py), on the largest record that is held out. The campaign states its own.
 """
 
 from dataclasses import replace
@@ -12,7 +12,7 @@ from vibroimpact_truth.amounts import AMOUNTS
 from vibroimpact_truth.campaign import (
     apply_instruments,
     forces,
-    highest_level,
+    judged_levels,
     noise_rms,
     simulate_records,
 )
@@ -20,15 +20,15 @@ from vibroimpact_truth.draw import POOLS, draw, hide
 from vibroimpact_truth.strength import audible_powers, band_powers, strength_by_channel
 
 TARGETS = {"medium": (1.3, 2.6)}  # floors of excess
-STRONG = (3.8, 11.0)
+STRONG = (4.5, 12.0)
 PROBE_S, TWINS, TRIES = 8.0, 3, 4
 WIDE = 1.4  # a strength within this factor of its target will do
 LEAST, MOST = 0.01, 10.0  # of the amount an effect starts from
 
 
 def probe_of(plan):
-    """The plan with one short record of its largest load, without noise."""
-    load, percent, _ = plan.levels[highest_level(plan)]
+    """The plan with one short record, of those its strength is judged on, without noise."""
+    load, percent, _ = plan.levels[judged_levels(plan)[-1]]
     return replace(
         plan, levels=((load, percent, "holdout"),), duration=min(plan.duration, PROBE_S), noise=0.0
     )

@@ -3,10 +3,12 @@ its plan to the command that a user would give.
 """
 
 import json
+from dataclasses import replace
 
 import pytest
 import yaml
 
+from vibroimpact.acceptance.judging import kind_of, strength_of
 from vibroimpact.acceptance.shards import (
     draw_name,
     draw_of,
@@ -15,9 +17,12 @@ from vibroimpact.acceptance.shards import (
     numbers_judged,
     shard_of,
 )
-from vibroimpact.config.reading import check_config
+from vibroimpact.campaign.file import read_campaign
+from vibroimpact.config.reading import check_config, load_config
+from vibroimpact.discrepancy.comparable import comparison_problems
 from vibroimpact.provenance import package_digest
-from vibroimpact_truth.draw import POOLS, bare_plan
+from vibroimpact_truth.campaign import make_campaign
+from vibroimpact_truth.draw import POOLS, bare_plan, draw
 from vibroimpact_truth.model_file import model_of
 
 
@@ -82,3 +87,21 @@ def test_models_of_drawn_campaigns_are_configurations(pool):
         text = yaml.safe_dump(model_of(plan))
         config = check_config(yaml.safe_load(text), "model.yaml")
         assert len(config.supports) == len(plan.beam.holders)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("pool", "number"), [("development", 1), ("acceptance", 4)])
+def test_a_drawn_campaign_can_be_compared_with_its_model(pool, number, tmp_path):
+    plan, _, names = draw(pool, 2, number)
+    levels = (plan.levels[0], (*plan.levels[-1][:2], "holdout"))
+    plan = replace(plan, duration=4.0, levels=levels)
+    files = [tmp_path / name for name in ("x.nc", "truth.json", "x.yaml")]
+    make_campaign(plan, files[0], files[1], model_path=files[2])
+    campaign = read_campaign(files[0])
+    assert comparison_problems(load_config(files[2]), campaign) == []
+    assert list(campaign["split"].values) == ["fit", "holdout"]
+    truth = json.loads(files[1].read_text())
+    assert [name for name, _ in truth["effects"]] == list(names)
+    assert strength_of(truth) >= 0.0 and kind_of(truth) in (plan.kind, "medium", "weak")
+    lowest, highest = truth["contact_share"]
+    assert max(lowest) == 0.0 < max(highest)

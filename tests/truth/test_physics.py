@@ -91,7 +91,7 @@ def test_an_effect_of_nothing_changes_nothing(effect, neutral):
 @pytest.fixture(scope="module")
 def scene():
     """The scene of a short campaign on the stand-in tube."""
-    plan = Plan(**SHORT)
+    plan = Plan(**SHORT | {"duration": 0.3})
     return scene_of(plan, sizes(plan.beam, BAND, plan.drive_direction), np.random.default_rng(1))
 
 

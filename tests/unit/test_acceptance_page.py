@@ -459,6 +459,9 @@ def test_acceptance_page_names_draw_count_and_missed_rows(figures):
     assert "parameters: median error (27 %, target at most 5 %, campaigns: 2)" in sentence
     assert "nothing: anything named" not in sentence.split("No campaign")[0]
     assert "medium: in the set" in sentence.split("No campaign answers yet:")[1]
+    mixed = [row | {"source": source} for row, source in zip(rows, "aabaaab", strict=True)]
+    said = acceptance_sentence("development_7", mixed, tables["table"])
+    assert "Judged by several sources: a, b." in said and "several" not in sentence
     page = acceptance_page(
         "development_7", rows, tables, [folder / f"{name}.png" for name in sheets]
     )

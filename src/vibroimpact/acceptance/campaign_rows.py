@@ -16,6 +16,7 @@ TEXT = {
     "campaign",
     "kind",
     "drawn_as",
+    "source",
     "hidden",
     "verdict",
     "named",

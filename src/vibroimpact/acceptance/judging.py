@@ -63,8 +63,9 @@ NAN = float("nan")
 
 
 def judged(verdict: dict[str, Any], truth: dict[str, Any]) -> dict[str, Any]:
-    """Return the row of one campaign: its kind and strength, what was hidden and what was said of
-    it, which questions of the acceptance table it answers with yes, cost and first parameter.
+    """Return the row of one campaign: its kind and strength, the digest of the source that judged
+    it, what was hidden and what was said of it, which questions of the acceptance table it answers
+    with yes, cost and first parameter.
 
     verdict, truth: contents of verdict.json and of the truth's file.
     """
@@ -74,6 +75,7 @@ def judged(verdict: dict[str, Any], truth: dict[str, Any]) -> dict[str, Any]:
     return {
         "kind": kind_of(truth),
         "drawn_as": truth["kind"],
+        "source": str(verdict.get("provenance", {}).get("source_digest", "")),
         "strength": strength_of(truth),
         "hidden": "+".join(hidden),
         "verdict": verdict["verdict"],

@@ -41,7 +41,9 @@ def acceptance_page(draw: str, rows: list[dict], tables: dict, figures: list) ->
 
 
 def acceptance_sentence(draw: str, rows: list[dict], table: list[dict]) -> str:
-    """Return how many campaigns were judged, and which rows miss their target or have none."""
+    """Return how many campaigns were judged, by which sources where they are several, and which
+    rows miss their target or have none.
+    """
     of = {
         standing: [row for row in table if row["standing"] == standing]
         for standing in ("met", "missed", "no campaigns")
@@ -51,9 +53,12 @@ def acceptance_sentence(draw: str, rows: list[dict], table: list[dict]) -> str:
         " their target."
     )
     missed = "; ".join(_with_numbers(row) for row in of["missed"])
+    sources = sorted({row["source"] for row in rows})
+    several = f" Judged by several sources: {', '.join(sources)}." if len(sources) > 1 else ""
     absent = "; ".join(f"{row['kind']}: {row['quantity']}" for row in of["no campaigns"])
     return (
         head
+        + several
         + (f" Missed: {missed}." if missed else "")
         + (f" No campaign answers yet: {absent}." if absent else "")
     )
