@@ -261,11 +261,10 @@ def test_effect_is_shown_at_its_best_place():
     ]  # what was looked at closely stays
 
 
-def test_quick_report_states_its_limits():
-    assert "at 16 s of every record" in discrepancy_page(
-        "campaign", made_up_verdict("unknown"), [], quick_s=16.0
-    )
-    assert "quick" not in discrepancy_page("campaign", made_up_verdict("unknown"), [])
+def test_report_states_how_much_was_compared():
+    page = discrepancy_page("campaign", made_up_verdict("unknown"), [], compared_s=16.0)
+    assert "first 16 s of every record" in page
+    assert "effort=" not in discrepancy_page("campaign", made_up_verdict("unknown"), [])
 
 
 def test_a_run_without_map_or_candidates_says_so(tmp_path):
