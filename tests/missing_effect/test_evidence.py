@@ -36,7 +36,7 @@ def normal(covariance):
     return stats.multivariate_normal(np.zeros(VALUES), covariance)
 
 
-def null_with(measured):
+def null_with(measured, alike=None):
     return Null(
         records=np.array([0]),
         layout=None,
@@ -44,6 +44,7 @@ def null_with(measured):
         factor=np.eye(VALUES)[None],
         measured=measured,
         groups=np.repeat([0, 1], VALUES // 2),
+        alike=np.zeros((0, VALUES)) if alike is None else alike,
     )
 
 
@@ -89,15 +90,12 @@ def test_something_else_is_a_normal_law_of_unknown_size():
     measured = 6.0 * random.standard_normal(VALUES)
     changes = 20.0 * AXES[:3]
     else_ = SomethingElse(changes, np.zeros(3), null_with(measured))
-    looks = constants.WHITE * np.eye(VALUES)
-    looks += (1.0 - constants.WHITE) * VALUES / 3.0 * AXES[:3].T @ AXES[:3]
-    rows = [
-        stats.multivariate_normal(np.zeros(VALUES), np.eye(VALUES) + size**2 * looks).logpdf(
-            measured
-        )
-        for size in else_.sizes
-    ]
-    nothing = normal(np.eye(VALUES)).logpdf(measured)
+    else_ = SomethingElse(changes, np.zeros(3), null_with(measured, else_.alike))
+    effects = (1.0 - constants.WHITE) * VALUES / 3.0 * AXES[:3].T @ AXES[:3]
+    looks = constants.WHITE * np.eye(VALUES) + effects
+    alike = np.eye(VALUES) + constants.ALIKE**2 * effects  # what two right codes differ by
+    rows = [normal(alike + size**2 * looks).logpdf(measured) for size in else_.sizes]
+    nothing = normal(alike).logpdf(measured)
     tempered = constants.POWER * (np.array(rows) - nothing)
     wanted = np.logaddexp.reduce(tempered) - np.log(len(rows))
     assert else_.log_evidence(np.zeros(VALUES)) == pytest.approx(wanted, abs=1.0e-8)

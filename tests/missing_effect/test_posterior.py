@@ -30,6 +30,7 @@ def searched(measured):
         factor=np.eye(VALUES)[None],
         measured=measured,
         groups=np.zeros(VALUES, int),
+        alike=np.zeros((0, VALUES)),
     )
     search = Search(None, null, dict.fromkeys(("one", "contact_stiffness"), 1.0))
     for name in (FRICTION, DAMPING, STIFFNESS):

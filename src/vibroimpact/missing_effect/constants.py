@@ -24,7 +24,10 @@ SEEN = 30.0
 # Something else looks like effects do, and in part like none: the share of its variance that is
 # the same in all values; its size, in units of the scatter.
 WHITE = 0.2
-SIZES = (0.3, 30.0)
+SIZES = (0.6, 30.0)
+# What two right codes differ by looks like effects too, in the same units: one code's contact
+# dissipates a little more than another's. Below the least of SIZES, half of it.
+ALIKE = 0.3
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances

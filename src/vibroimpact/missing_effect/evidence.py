@@ -58,9 +58,9 @@ def fit(
     chances = np.append(even.over_laws, about.over_laws)
     unit = samples[np.argmax(chances)]
     weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
-    mean, variance = emulator(unit)
-    change = mean[0] @ emulator.directions
-    rest = null.measured - change
+    change = emulator(unit)[0][0] @ emulator.directions
+    left = float(np.sum((null.measured - change) ** 2))
+    least = float(min(even.may_be_left.min(), about.may_be_left.min()))
     return Fit(
         float(logsumexp(by_law)),
         by_law,
@@ -68,21 +68,22 @@ def fit(
         samples,
         np.exp(weight - logsumexp(weight)),
         change,
-        float(rest @ rest),
-        float(hidden(emulator.directions @ rest, variance[0])),
+        left,
+        max(0.0, min(left, float(null.measured @ null.measured)) - least),
     )
 
 
 @dataclass(frozen=True)
 class Likelihoods:
     """chance (law, point): tempered log likelihoods against nothing, with constants.LAWS' priors;
-    seen (point,): whether the change there is; nearer (point,): whether it brings the model nearer
-    to the measurement.
+    allowed (point,): whether the change is seen and brings the model nearer to the measurement;
+    seen (point,): whether it is; may_be_left (point,): least chi-square that may be left.
     """
 
     chance: np.ndarray
+    allowed: np.ndarray
     seen: np.ndarray
-    nearer: np.ndarray
+    may_be_left: np.ndarray
 
     @classmethod
     def of(cls, emulator: AnyEmulator, units: np.ndarray, null: Null) -> "Likelihoods":
@@ -95,18 +96,17 @@ class Likelihoods:
     @property
     def over_laws(self) -> np.ndarray:
         """Return (point,): whatever the law; far below all others where nothing is explained."""
-        return logsumexp(self.chance, axis=0) - FAR * ~(self.seen & self.nearer)
+        return logsumexp(self.chance, axis=0) - FAR * ~self.allowed
 
     def evidence(self, about: "Likelihoods", density: np.ndarray) -> np.ndarray:
         """Return (law,): log evidence over a prior that is flat where the effect is seen; about:
         Likelihoods of samples of a density (point,) about the best, which find a peak that even
         samples step over.
         """
-        allowed = [row.seen & row.nearer for row in (self, about)]
-        if not (allowed[0].any() or allowed[1].any()):
+        if not (self.allowed.any() or about.allowed.any()):
             return np.full(len(self.chance), -np.inf)
-        even = np.where(allowed[0], self.chance, -np.inf)
-        peak = np.where(allowed[1], about.chance - np.log(np.maximum(density, 1.0)), -np.inf)
+        even = np.where(self.allowed, self.chance, -np.inf)
+        peak = np.where(about.allowed, about.chance - np.log(np.maximum(density, 1.0)), -np.inf)
         share = max(self.seen.mean(), 1.0 / SAMPLES)
         return np.maximum(
             logsumexp(even, axis=1) - np.log(SAMPLES), logsumexp(peak, axis=1) - np.log(NEAR)
@@ -131,18 +131,19 @@ def _proposal(near, best):
 
 def log_likelihoods(
     emulator: AnyEmulator, units: np.ndarray, null: Null, law: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return (log likelihood against nothing, seen, nearer), (point,) each, at units (point,
-    parameter).
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return (log likelihood against nothing, allowed, seen, least chi-square that may be left),
+    (point,) each, at units (point, parameter).
 
     The covariance is that of the null, what the law may differ by, and what the emulator does not
-    know along its directions. A change that does not bring the model nearer to the measurement, as
-    far as the emulator knows, explains nothing, however wide its law is.
+    know along its directions. A change that does not bring the model nearer to the measurement is
+    not allowed: it explains nothing, however wide its law is and however little is known of it.
     """
     mean, variance = emulator(units)
     change = mean @ emulator.directions
     diagonal = 1.0 + (law * change) ** 2
     parts = [np.sqrt(variance)[:, :, None] * emulator.directions]
+    parts.append(np.broadcast_to(null.alike, (len(mean), *null.alike.shape)))
     for group in np.unique(null.groups):
         parts.append((constants.LAW_COMMON * law * change * (null.groups == group))[:, None])
     columns = np.concatenate(parts, axis=1)
@@ -153,10 +154,11 @@ def log_likelihoods(
     solved = np.linalg.solve(inner, along[..., None])[..., 0]
     square = np.sum(rest**2 / diagonal, axis=1) - np.sum(along * solved, axis=1)
     size = np.sum(np.log(diagonal), axis=1) + np.linalg.slogdet(inner)[1]
-    before = null.measured @ null.measured
-    left = np.sum(rest**2, axis=1) - hidden(rest @ emulator.directions.T, variance)
     seen = np.sum(change**2, axis=1) > constants.SEEN
-    return -0.5 * (square + size - before), seen, left < before
+    left = np.sum(rest**2, axis=1)
+    nearer = left < null.measured @ null.measured
+    may_be_left = left - hidden(rest @ emulator.directions.T, variance)
+    return -0.5 * (square + size) - null.chance, seen & nearer, seen, may_be_left
 
 
 class SomethingElse:
@@ -177,6 +179,11 @@ class SomethingElse:
         self.share = (1.0 - constants.WHITE) * null.values * share / max(share.sum(), 1.0e-12)
         self.sizes = np.geomspace(*constants.SIZES, 24)
 
+    @property
+    def alike(self) -> np.ndarray:
+        """Return (direction, value): see Null."""
+        return constants.ALIKE * np.sqrt(self.share)[:, None] * self.directions
+
     def log_evidence(self, mean: np.ndarray) -> float:
         """Return the tempered log evidence against nothing that the measurement is mean (value,)
         and something else.
@@ -185,11 +192,11 @@ class SomethingElse:
         along = self.directions @ rest
         outside = rest @ rest - along @ along
         white = 1.0 + constants.WHITE * self.sizes**2
-        inside = white[:, None] + self.sizes[:, None] ** 2 * self.share
+        inside = white[:, None] + (constants.ALIKE**2 + self.sizes[:, None] ** 2) * self.share
         chance = -0.5 * (
             np.sum(along**2 / inside + np.log(inside), axis=1)
             + outside / white
             + (self.null.values - len(along)) * np.log(white)
-            - self.null.measured @ self.null.measured
         )
+        chance -= self.null.chance
         return float(logsumexp(constants.POWER * chance) - np.log(len(self.sizes)))

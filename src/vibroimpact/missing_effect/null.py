@@ -22,7 +22,8 @@ class Null:
     """records (record,) that are compared; layout: FeatureLayout; features (record, run, feature)
     of the model's runs; factor (record, feature, feature): Cholesky factors of the covariance of a
     record about their mean; measured (value,): the whitened difference of the measurement from it;
-    groups (value,): whether the force drives the channel.
+    groups (value,): whether the force drives the channel; alike (direction, value): what two right
+    codes differ by along the changes of effects, one sigma each, none before screening.
 
     A value is a feature of a record in units of the covariance, all records in a row.
     """
@@ -33,6 +34,7 @@ class Null:
     factor: np.ndarray
     measured: np.ndarray
     groups: np.ndarray
+    alike: np.ndarray
 
     @cached_property
     def mean(self) -> np.ndarray:
@@ -69,6 +71,16 @@ class Null:
                 )
             ]
         )
+
+    @cached_property
+    def chance(self) -> float:
+        """Return the log likelihood of the measurement where nothing is missing, less that of a
+        value in the middle of its law.
+        """
+        inner = np.eye(len(self.alike)) + self.alike @ self.alike.T
+        along = self.alike @ self.measured
+        square = self.measured @ self.measured - along @ np.linalg.solve(inner, along)
+        return float(-0.5 * (square + np.linalg.slogdet(inner)[1]))
 
     def probability(self, rest: np.ndarray | None = None) -> float:
         """Return how probable a measurement as far off a model as rest (value,) is by chance; as
@@ -108,4 +120,5 @@ def _scatter(bench, records, features):
         np.array(factors),
         np.zeros(0),
         groups,
+        np.zeros((0, groups.size)),
     )

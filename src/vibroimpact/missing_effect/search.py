@@ -2,7 +2,7 @@
 or nothing more is to be learned.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -99,6 +99,14 @@ class Search:
             np.concatenate([trial.noise[: trial.screened] for trial in trials]),
             self.null,
         )
+
+    def learn_alike(self) -> None:
+        """Let what two right codes differ by look like the effects that were run, and fit all
+        again.
+        """
+        self.null = replace(self.null, alike=self.something_else().alike)
+        for name in self.trials:
+            self.fit(name)
 
     def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
@@ -209,6 +217,7 @@ def screen(search: Search, names: list[str]) -> None:
     for name in order:
         if explains[name] > MAY * explains[order[0]] or name in order[:LEAST]:
             search.run(name, first_points(candidate_named(name), again=True), first=True)
+    search.learn_alike()
 
 
 def refine(search: Search, names: list[str], points: int) -> None:
@@ -234,13 +243,15 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
     well enough: by turns those that explain most, and those that may explain more than is known.
     """
     known = {
-        name: found.log_evidence for name, found in search.fits.items() if ("+" in name) == pairs
+        name: max(found.log_evidence, 0.0)  # nothing at all explains by 0
+        for name, found in search.fits.items()
+        if ("+" in name) == pairs
     }
     upper = {
         name: chance + 0.5 * constants.POWER * search.fits[name].hidden
         for name, chance in known.items()
     }
-    best = max([0.0, *known.values()])  # nothing at all explains by 0
+    best = max(known.values(), default=0.0)
     left = [
         name
         for name in upper
