@@ -9,6 +9,9 @@ from . import places
 from .effect import Effect, Parameter, Values
 
 
+MOST_DENSE = 3.0e4  # kg/m3 of the wall with its fluid: no configuration takes more
+
+
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the mass as density of the wall and the drag as damping in
     proportion to the mass.
@@ -16,7 +19,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     structure = values["structure"]
     material, settings = structure["material"], StageSettings(structure)
     area = section_properties(settings.section, material["poisson_ratio"]).area
-    density = material["density_kg_per_m3"] + parameters["mass"] / area
+    density = min(material["density_kg_per_m3"] + parameters["mass"] / area, MOST_DENSE)
     mass_per_length = density * area + mean_fluid_mass(settings, build_centreline(settings))
     damping = dict(values["damping"])
     damping["mass_coefficient_per_s"] = (

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from vibroimpact.display_units import display_unit
-from vibroimpact.verdict.content import Verdict
+from vibroimpact.verdict.content import Estimate, Verdict
 
 from .number_text import digits, percent
 
@@ -188,12 +189,12 @@ def _step(words, target="", campaign="", configfile=""):
     return {"words": words, "command": command}
 
 
-def unit_text(unit):
+def unit_text(unit: str | None) -> str:
     """Return a unit after a space, nothing where there is none."""
     return "" if unit in ("1", "", "-", None) else f" {unit}"
 
 
-def for_reading(row):
+def for_reading(row: Estimate) -> dict[str, Any]:
     """Return {value, low, high, unit} of an Estimate in the unit that it is shown in."""
     values = {"value": row.value, "low": row.low, "high": row.high}
     unit, factor = display_unit(row.unit, values.values())
@@ -203,7 +204,7 @@ def for_reading(row):
     }
 
 
-def probability_text(value):
+def probability_text(value: float | None) -> str:
     """Return a p-value as text."""
     if value is None:
         return "not computed"
