@@ -8,7 +8,6 @@ from vibroimpact.structure.fluid import mean_fluid_mass
 from . import places
 from .effect import Effect, Parameter, Values
 
-
 MOST_DENSE = 3.0e4  # kg/m3 of the wall with its fluid: no configuration takes more
 
 
