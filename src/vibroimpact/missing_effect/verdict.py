@@ -201,7 +201,8 @@ def ranking_rows(search: Search, prepared: Prepared, decision: Decision) -> list
             {
                 "ids": "+".join([*([] if candidate.alone else prefix), *candidate.ids]),
                 "location": where(name),
-                "fit_score": found.log_evidence,
+                # none where it brings the model no nearer
+                "fit_score": found.log_evidence if np.isfinite(found.log_evidence) else None,
                 "heldout_score": None,
                 "closed_fraction": (
                     1.0 - beyond(found.left, search.null) / excess if excess > 0.0 else None
