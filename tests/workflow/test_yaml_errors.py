@@ -72,7 +72,7 @@ REQUESTS = {
     "shard=9/3": ("acceptance", "shard = 9/3: give i/n"),
     "add=none.csv": ("acceptance", "add = none.csv is not there"),
     "compared_s=nan": ("discrepancy", "compared_s = 'nan': give a positive number"),
-    "quick=maybe": ("discrepancy", "quick = 'maybe': give yes or no"),
+    "effort=much": ("discrepancy", "effort = 'much': give one of quick, standard, thorough"),
     "bank=none": ("discrepancy", "bank = 'none' is no folder"),
     "campaign=src": ("discrepancy", "campaign = 'src' is no file"),
     "campaign=none.nc": ("discrepancy", "campaign = 'none.nc' is not there"),
