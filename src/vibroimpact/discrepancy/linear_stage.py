@@ -219,21 +219,23 @@ def _fitted(record, found, drive, model, kinds):
 
 def modelled_lines(record, model, found, kind):
     """Return (channel, line): the response of a ModalModel whose fitted modes have the frequencies
-    and damping of a ModalFit, and its own shapes.
+    and damping of a ModalFit, and its own shapes; kind: of all its sensors.
     """
-    kind = "acceleration" if kind == "acceleration" else "displacement"
     own = replace(found, participation=model.sensor_shapes[found.modes].T)
-    return _fitted(record, own, found.drive, model, kind) + _rest(record, model, found.modes, kind)
+    kinds = np.full(model.sensor_shapes.shape[1], kind)
+    return _fitted(record, own, found.drive, model, kinds) + _rest(
+        record, model, found.modes, kinds
+    )
 
 
-def unexplained_lines(record, responses, model, found, kind):
-    """Return (measured, rest), each (channel, line): the lines of responses (channel, sample), and
-    what a ModalFit of them leaves.
+def unexplained_lines(record, responses, model, found, kinds):
+    """Return (measured, rest), each (channel, line): the lines of responses (channel, sample) of
+    kinds (channel,), and what a ModalFit of them leaves; NaN of what measures no motion.
     """
-    kind = "acceleration" if kind == "acceleration" else "displacement"
+    kinds = np.where(moving(kinds), kinds, "displacement")
     measured = _turned_back(record.spectra(np.asarray(responses, float)), record, found.delay)
-    fitted = _fitted(record, found, found.drive, model, kind)
-    return measured, measured - fitted - _rest(record, model, found.modes, kind)
+    fitted = _fitted(record, found, found.drive, model, kinds)
+    return measured, measured - fitted - _rest(record, model, found.modes, kinds)
 
 
 def _implausible(found):

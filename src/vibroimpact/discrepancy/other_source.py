@@ -42,7 +42,7 @@ def other_sources(bench):
     record, signals = bench.linear_record, bench.signals
     responses = bench.valid(signals.response[signals.lowest])
     measured, rest = unexplained_lines(
-        record, responses, bench.bare, bench.measured_fit, signals.kinds[0]
+        record, responses, bench.bare, bench.measured_fit, signals.kinds
     )
     force = record.spectra(bench.valid(signals.force[signals.lowest])[0])
     left = np.sum(np.abs(incoherent(force, rest)) ** 2, axis=-1)
