@@ -42,6 +42,12 @@ def campaign(draw, change=0.0, scatter=0.4):
         signals=signals,
         measured_features=measured,
         bare=SimpleNamespace(
+            modes=3,
+            support_names=(),
+            support_of_point=np.zeros(0, int),
+            sensor_positions=np.eye(CHANNELS, 3),
+            sensor_directions=np.eye(CHANNELS, 3),
+            contact_position=np.zeros((0, 3)),
             sensor_shapes=shapes,
             drive_shapes=np.ones((3, 1)),
             frequencies=np.array([20.0, 60.0, 150.0]),

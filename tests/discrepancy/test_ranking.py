@@ -7,7 +7,7 @@ import pytest
 from vibroimpact.discrepancy import conclusion
 from vibroimpact.discrepancy.candidates import candidate_named
 
-SPRING = SimpleNamespace(candidate=candidate_named("quadratic_stiffness@left_leg"))
+SPRING = SimpleNamespace(candidate=candidate_named("quadratic_stiffness@left_leg"), features=None)
 PREPARED = SimpleNamespace(
     adopted={"name": "added_mass@apex", "unit": [0.5], "gain": 100.0}, linear=[]
 )
@@ -19,19 +19,22 @@ def ranked(monkeypatch):
     """Return the function (gain of a spring beside an adopted mass, verdict, what it chose) ->
     [ids], best first.
     """
-    monkeypatch.setattr(conclusion.verdict, "closure", lambda *_: 0.0)
+    monkeypatch.setattr(conclusion, "closed_by", lambda *_: 0.0)
+    nothing = SimpleNamespace(features=None)
+    signals = SimpleNamespace(holdout=lambda: [])
+    judged = SimpleNamespace(
+        bench=SimpleNamespace(signals=signals), null=nothing, prepared=PREPARED
+    )
 
     def run(gain, verdict, chosen):
         totals = {SPRING.candidate.name: (gain, gain, 0.0)}
         rows = conclusion.ranking_rows(
-            None,
-            None,
-            PREPARED,
+            judged,
             [SPRING],
             totals,
             SCREENING,
-            None,
             SimpleNamespace(verdict=verdict, chosen=chosen),
+            (None, {"fit": {"closed_fraction": 0.0}}),
         )
         return [row["ids"] for row in rows]
 

@@ -42,7 +42,7 @@ def rows(study_config):
 
 
 def test_modes_shift_as_the_trapezoidal_rule_does(study_config):
-    rows = convergence_period.period_rows(study_config, rates=(25600, 51200, 102400))
+    rows = convergence_period.period_rows(study_config, rates=(51200, 102400, 204800))
     assert [
         check.row() for check in convergence_period.period_checks(rows) if not check.passed
     ] == []
