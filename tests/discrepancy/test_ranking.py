@@ -21,7 +21,7 @@ def ranked(monkeypatch):
     """
     monkeypatch.setattr(conclusion, "closed_by", lambda *_: 0.0)
     nothing = SimpleNamespace(features=None)
-    signals = SimpleNamespace(holdout=lambda: [])
+    signals = SimpleNamespace(holdout=list)
     judged = SimpleNamespace(
         bench=SimpleNamespace(signals=signals), null=nothing, prepared=PREPARED
     )

@@ -379,7 +379,7 @@ def test_campaign_channels_that_no_model_gives_are_told(study, tmp_path):
     asked = ("--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc")
     run = study.snakemake(*asked)
     assert run.returncode == 0, run.stdout + run.stderr
-    assert run.stderr.count("bench.nc: tip 0 measures") == 1 and "tip 1" not in run.stderr
+    assert run.stderr.count("bench.nc: tip 0 is of kind generic") == 1 and "tip 1" not in run.stderr
 
 
 def test_campaign_faults_are_reported_before_any_job(study, tmp_path):
