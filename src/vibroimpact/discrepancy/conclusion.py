@@ -39,9 +39,9 @@ FRESH_RUNS, LEAST_FRESH = 32, 4  # runs of whole records in all, seeds of each a
 BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
 
 
-def refused(run, provenance, meter):
-    """Write the verdict of a campaign that can not be tested."""
-    folder, prepared = Path(run.folder), run.prepared
+def refused(folder, prepared, provenance, cost):
+    """Write the verdict of a campaign that can not be tested; cost: of verdict.json."""
+    folder = Path(folder)
     empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
     write_verdict(
         not_testable(
@@ -49,7 +49,7 @@ def refused(run, provenance, meter):
             provenance,
             next_measurement=prepared.refusal,
             misfit=MisfitBySplit(fit=empty, holdout=empty),
-            cost=total_cost([folder / "prepared.json"], meter.read()),
+            cost=cost,
         ),
         folder / "verdict.json",
     )
@@ -86,7 +86,8 @@ def conclude(run, screening, final_files, provenance, meter, quick=False):
     content of its file; meter: the cost.Meter of this job.
     """
     if run.refused:
-        refused(run, provenance, meter)
+        cost = total_cost([Path(run.folder) / "prepared.json"], meter.read())
+        refused(run.folder, run.prepared, provenance, cost)
         return
     folder, prepared, bench, null = run.folder, run.prepared, run.bench, run.null
     found, totals = jobs.ordered(bench, null, jobs.known_finalists(final_files))

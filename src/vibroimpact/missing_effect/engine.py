@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.discrepancy.conclusion import refused
 from vibroimpact.discrepancy.cost import SIMULATED
 from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench
@@ -65,7 +66,8 @@ class Engine:
         with self.stage("linear stage"):
             prepared = prepare(self.config, self.campaign, draw=self.seed)
         if prepared.refusal is not None:
-            verdict.refused(self.folder, prepared, self.spent_so_far, provenance)
+            refused(self.folder, prepared, provenance, self.spent_so_far)
+            so_far.write_refusal(self.folder, prepared)
             return
         search = self.null_stage(prepared)
         so_far.write(self.folder, search, prepared)

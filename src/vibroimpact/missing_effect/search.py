@@ -51,9 +51,10 @@ class Search:
                 trial.add(unit, *self._change(candidate, unit))
             except (IntegrationError, ConfigError) as error:
                 trial.failed.append((unit, str(error)))
-        if first:
+        if first:  # all are fitted once these are run, see learn_alike
             trial.screened = len(trial.noise)
-        self.fit(name)
+        else:
+            self.fit(name)
 
     def fit(self, name: str) -> None:
         """Fit an explanation again, if it has runs."""
@@ -94,9 +95,10 @@ class Search:
     def something_else(self) -> SomethingElse:
         """Return the SomethingElse of all trials."""
         trials = [trial for trial in self.trials.values() if trial.screened]
+        nothing = np.zeros((0, self.null.values))  # where no explanation could be run
         return SomethingElse(
-            np.vstack([trial.change[: trial.screened] for trial in trials]),
-            np.concatenate([trial.noise[: trial.screened] for trial in trials]),
+            np.vstack([nothing, *(trial.change[: trial.screened] for trial in trials)]),
+            np.concatenate([[], *(trial.noise[: trial.screened] for trial in trials)]),
             self.null,
         )
 

@@ -38,6 +38,11 @@ def write(folder: Path, search: Search, prepared: Prepared) -> None:
     write_text(json.dumps(plain_values(content), indent=1), folder / "so_far.json")
 
 
+def write_refusal(folder: Path, prepared: Prepared) -> None:
+    """Write so_far.json of a campaign that can not be tested into the folder: the sentence why."""
+    write_text(json.dumps({"refused": prepared.refusal}, indent=1), folder / "so_far.json")
+
+
 def by_effect(chances: dict[str, float]) -> list[tuple[tuple[str, ...], float]]:
     """Return [(ids, probability)] of {name: log probability}, the most probable first."""
     out: dict[tuple[str, ...], float] = {}

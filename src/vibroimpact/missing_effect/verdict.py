@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from vibroimpact.discrepancy import mapping, misfit, power_balance
 from vibroimpact.discrepancy.completed_model import not_offered, updated_model
@@ -20,10 +19,7 @@ from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,
-    Misfit,
-    MisfitBySplit,
     Verdict,
-    not_testable,
 )
 from vibroimpact.verdict.file import write_verdict
 
@@ -32,30 +28,6 @@ from .decision import Decision, withdrawn_decision
 from .null import Null
 from .search import Search
 from .verification import Closing, without_chosen
-
-EMPTY = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
-
-
-def refused(folder: Path, prepared: Prepared, cost: dict[str, Any], provenance: Values) -> None:
-    """Write the verdict of a campaign that can not be tested."""
-    nothing = Misfit(**EMPTY)
-    write_verdict(
-        not_testable(
-            contract_checks(prepared.checks),
-            provenance,
-            next_measurement=prepared.refusal,
-            misfit=MisfitBySplit(fit=nothing, holdout=nothing),
-            cost=cost,
-        ),
-        folder / "verdict.json",
-    )
-    write_table([], folder / "ranking.csv", columns=COLUMNS)
-    for name in ("map", "map_after"):
-        write_record(
-            xr.Dataset(attrs={"title": "no map: the campaign can not be tested"}),
-            folder / f"{name}.nc",
-        )
-    write_text("# not testable: the model is as it was\n", folder / "model_updated.yaml")
 
 
 def write(
