@@ -63,6 +63,7 @@ COLUMNS = {
     "discrepancy_dB": ("Measured / simulated (dB)", 1.0),
     "z": ("z (standard deviations)", 1.0),
     "heldout_score": ("Score on held-out records (-)", 1.0),
+    "fit_score": ("Score on the fitted records (-)", 1.0),
     "score": ("Score (-)", 1.0),
     "parameter": ("Parameter (in its unit)", 1.0),
     "place_in_list": ("Place in the list (-)", 1.0),

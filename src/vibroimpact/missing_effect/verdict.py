@@ -25,7 +25,6 @@ from vibroimpact.verdict.file import write_verdict
 
 from . import candidate_files
 from .decision import Decision, withdrawn_decision
-from .null import Null
 from .search import Search
 from .verification import Closing, without_chosen
 
@@ -56,7 +55,7 @@ def write(
     if closed.after is not closed.before:
         law = None if decision.chosen is None else closed.after.compared
         after = mapping.z_of(whole, search.null, closed.after.features, law)
-    ranking = ranking_rows(search, prepared, decision)
+    ranking = ranking_rows(search, prepared, decision, closed)
     content = {
         **decision_rows(search, prepared, decision, ranking),
         **evidence_rows(search, prepared, decision, closed, compared),
@@ -161,14 +160,19 @@ def left_out(search: Search) -> list[Values]:
     ]
 
 
-def ranking_rows(search: Search, prepared: Prepared, decision: Decision) -> list[Values]:
-    """Return the rows of ranking.csv, the most probable first."""
+def ranking_rows(
+    search: Search, prepared: Prepared, decision: Decision, closed: Closing
+) -> list[Values]:
+    """Return the rows of ranking.csv, the most probable first. closed_fraction is that of the
+    misfit on the records that took no part, known of what completes the model alone.
+    """
     prefix = [] if prepared.adopted is None else list(decision.linear_ids)
+    split = "holdout" if len(search.bench.signals.holdout()) else "fit"
+    chosen = None if decision.chosen is None else decision.chosen.candidate.name
     rows = []
-    excess = beyond(search.null.measured @ search.null.measured, search.null)
     for name, chance, _ in decision.rows:
-        candidate, found = search.trials[name].candidate, search.fits[name]
-        trial = search.trials[name]
+        trial, found = search.trials[name], search.fits[name]
+        candidate, share = trial.candidate, closed.misfit[split]["closed_fraction"]
         rows.append(
             {
                 "ids": "+".join([*([] if candidate.alone else prefix), *candidate.ids]),
@@ -176,20 +180,13 @@ def ranking_rows(search: Search, prepared: Prepared, decision: Decision) -> list
                 # none where it brings the model no nearer
                 "fit_score": found.log_evidence if np.isfinite(found.log_evidence) else None,
                 "heldout_score": None,
-                "closed_fraction": (
-                    1.0 - beyond(found.left, search.null) / excess if excess > 0.0 else None
-                ),
+                "closed_fraction": share if name == chosen else None,
                 "threshold": None,
-                "tested": len(trial.noise) > trial.screened,
+                "tested": trial.refined > 0,
                 "probability": chance,
             }
         )
     return rows
-
-
-def beyond(chi_square: float, null: Null) -> float:
-    """Return by how many sigmas, RMS over all values, a chi-square is beyond chance."""
-    return float(np.sqrt(max(0.0, chi_square / null.values - 1.0)))
 
 
 def cost_rows(stages: dict[str, float], simulated: dict[str, int]) -> dict[str, Any]:

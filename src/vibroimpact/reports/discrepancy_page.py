@@ -51,6 +51,7 @@ SECTIONS = {
     "discrepancy_ranking": "ruled_out",
 }
 BAR_PX = 240  # of a probability of 1
+LEAST_SHOWN = 0.005  # of the probabilities of explanations
 MOST_ROWS, MOST_MODES = 20, 6
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
@@ -92,7 +93,8 @@ def discrepancy_page(
         sentence=verdict_sentence(verdict),
         withdrawn=withdrawn_sentence(verdict),
         effects=[*_effect_rows(verdict)],
-        families=any(effect.family or effect.law_fits for effect in shown),
+        families=any(effect.family for effect in shown),
+        laws=any(effect.law_fits for effect in shown),
         completed=bool(shown),
         probabilities=_probabilities(verdict),
         misfit=[*_misfit_rows(verdict)],
@@ -141,13 +143,18 @@ def _ranking_rows(verdict):
 
 
 def _probabilities(verdict):
-    """Return [{words, probability, width of its bar in pixels}] of all explanations that have a
-    probability, the most probable first.
+    """Return [{words, probability, width of its bar in pixels}] of nothing, something else and the
+    explanations that have a probability worth a row, at all places together, the most probable
+    first.
     """
-    known = {tuple(sorted(row.ids)): row.probability for row in verdict.ranking}
+    known: dict[tuple[str, ...], float] = {}
+    for row in verdict.ranking:
+        if row.probability is not None:
+            ids = tuple(sorted(row.ids))
+            known[ids] = known.get(ids, 0.0) + row.probability
     sets = zip(verdict.ambiguity_set, verdict.ambiguity_probability, strict=False)
     known |= {tuple(sorted(ids)): probability for ids, probability in sets}
-    rows = [(in_words(ids), probability) for ids, probability in known.items()]
+    rows = [(in_words(ids), chance) for ids, chance in known.items() if chance >= LEAST_SHOWN]
     rows.append(("nothing is missing", verdict.probability_none))
     rows.append(("something that is not in the catalogue", verdict.probability_something_else))
     told = sorted([row for row in rows if row[1] is not None], key=lambda row: -row[1])

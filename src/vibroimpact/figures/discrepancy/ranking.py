@@ -119,7 +119,7 @@ def ranking_figure(ranking, named=()):
         axes.set_xlim(min(2.0 * left, -50.0), max(20.0 * right, 1000.0))
     axes.set_yticks(places, [_label(row, names) for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlabel(label_of("heldout_score"))
+    axes.set_xlabel(label_of("heldout_score" if np.isfinite(held).any() else "fit_score"))
     axes.grid(False, axis="y")
     axes.axvline(0.0, color=BLACK, linewidth=0.8)
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
