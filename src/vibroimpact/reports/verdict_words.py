@@ -139,6 +139,8 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
         return "the same at another place, which explains less"
     if ids in [sorted(row) for row in verdict.ambiguity_set]:
         return "not told apart from it"
+    if row.get("probability") is not None:
+        return "less probable, by the records that were fitted"
     if score is None:
         return "screened only: others came nearer"
     if closed is not None and closed < 0.0:
