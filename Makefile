@@ -30,7 +30,7 @@ $(1)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --r
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study smoke test test-all reliability lint format judges benchmark docs setup clean
+.PHONY: help study smoke test test-slow test-all reliability lint format judges benchmark docs setup clean
 
 help: ## list the targets
 	@$(PYTHON) -c "import re; [print(f'make {name:<10} {text}') for name, text in \
@@ -45,6 +45,9 @@ smoke: $(READY) ## the same study made tiny, in under a minute
 
 test: $(READY) ## the fast tier of every kind of test, in parallel
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow"
+
+test-slow: $(READY) ## the tests that `make test` leaves out
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile thorough -m slow
 
 test-all: $(READY) ## every test, and the coverage of the library
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile thorough \

@@ -198,7 +198,7 @@ class LinearMisfit:
         moving = self._moving(self._stated(channel))[:, modes]
         three = self._shapes(channel, moving * self.bench.bare.drive_shapes[modes, 0])
         size = linalg.svdvals(self._whitened(three))
-        if size[1] < ONE_WAY * size[0]:
+        if size[1] <= ONE_WAY * size[0]:
             return None
         own = self._shapes(channel, self.simulated.participation[[channel]])[:, 0]
         rest = self.white + self._whitened(

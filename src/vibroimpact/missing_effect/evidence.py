@@ -21,20 +21,33 @@ FAR = 1.0e6  # of log likelihood
 
 @dataclass(frozen=True)
 class Fit:
-    """What a Trial says: log_evidence against nothing; by_law (law,): the same by each of
+    """What a Trial says: promised: log evidence against nothing; by_law (law,): the same by each of
     constants.LAWS, with its prior; unit (parameter,) the most probable; samples (sample,
-    parameter) with weight (sample,): the posterior; mean (value,) the change there; left:
-    chi-square that remains; error: standard deviation of that by what the emulator does not know.
+    parameter) with weight (sample,): the posterior; mean (value,) the change of the run nearest to
+    the measurement and left: chi-square that remains there; unseen: by how much less remains at
+    unit, where nothing was run; hidden: by how much less may remain anywhere, by what the emulator
+    does not know.
     """
 
-    log_evidence: float
+    promised: float
     by_law: np.ndarray
     unit: np.ndarray
     samples: np.ndarray
     weight: np.ndarray
     mean: np.ndarray
     left: float
+    unseen: float
     hidden: float
+
+    @property
+    def not_shown(self) -> float:
+        """Return what of the log evidence no run shows."""
+        return 0.5 * constants.POWER * self.unseen
+
+    @property
+    def log_evidence(self) -> float:
+        """Return what runs show of the log evidence: an emulator may promise more than there is."""
+        return self.promised - self.not_shown
 
 
 def fit(
@@ -58,8 +71,9 @@ def fit(
     chances = np.append(even.over_laws, about.over_laws)
     unit = samples[np.argmax(chances)]
     weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
-    change = emulator(unit)[0][0] @ emulator.directions
-    left = float(np.sum((null.measured - change) ** 2))
+    rest = null.measured - emulator(np.vstack([unit, emulator.run]))[0] @ emulator.directions
+    left = np.sum(rest**2, axis=1)
+    nearest = 1 + int(np.argmin(left[1:]))
     least = float(min(even.may_be_left.min(), about.may_be_left.min()))
     return Fit(
         float(logsumexp(by_law)),
@@ -67,9 +81,10 @@ def fit(
         unit,
         samples,
         np.exp(weight - logsumexp(weight)),
-        change,
-        left,
-        max(0.0, min(left, float(null.measured @ null.measured)) - least),
+        null.measured - rest[nearest],
+        float(left[nearest]),
+        max(0.0, float(left[nearest] - left[0])),
+        max(0.0, min(float(left[0]), float(null.measured @ null.measured)) - least),
     )
 
 

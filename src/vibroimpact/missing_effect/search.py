@@ -245,7 +245,7 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
     well enough: by turns those that explain most, and those that may explain more than is known.
     """
     known = {
-        name: max(found.log_evidence, 0.0)  # nothing at all explains by 0
+        name: max(found.promised, 0.0)  # nothing at all explains by 0
         for name, found in search.fits.items()
         if ("+" in name) == pairs
     }
@@ -259,7 +259,10 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
         for name in upper
         if upper[name] > best - DECIDED
         and search.trials[name].refined < RUNS
-        and (upper[name] - known[name] > KNOWN or search.trials[name].refined < LEAST_RUNS)
+        and (
+            max(upper[name] - known[name], search.fits[name].not_shown) > KNOWN
+            or search.trials[name].refined < LEAST_RUNS
+        )
     ]
     rows = [sorted(left, key=lambda name: -of[name]) for of in (known, upper)]
     return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))

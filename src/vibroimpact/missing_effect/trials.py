@@ -54,13 +54,15 @@ class Emulator:
     length that predicts left-out runs best; neutral (parameter,): where nothing changes, None: far
     from all runs the change is their mean then, 0 where it is not centred.
 
-    directions (direction, value) are orthonormal: those that the runs, smoothed, lie along.
+    directions (direction, value) are orthonormal: those that the runs, smoothed, lie along; run
+    (run, parameter): where it was run.
     """
 
     def __init__(
         self, trial: Trial, neutral: np.ndarray | None = None, centred: bool = True
     ) -> None:
         unit, change, noise = trial.unit, trial.change, trial.noise
+        self.run = unit
         self.periodic = list(trial.candidate.periodic)
         centre = np.zeros(change.shape[1])
         if neutral is not None:
@@ -116,7 +118,7 @@ class PairEmulator:
     def __init__(
         self, trial: Trial, first: "AnyEmulator", second: "AnyEmulator", split: int
     ) -> None:
-        self.first, self.second, self.split = first, second, split
+        self.first, self.second, self.split, self.run = first, second, split, trial.unit
         sum_ = np.array([self._sum(unit) for unit in trial.unit])
         self.rest = Emulator(
             Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise), centred=False
