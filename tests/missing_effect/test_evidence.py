@@ -41,6 +41,7 @@ def null_with(measured, alike=None):
     return Null(
         records=np.array([0]),
         layout=None,
+        mean=np.zeros((1, VALUES)),
         features=np.zeros((1, 2, VALUES)),
         factor=np.eye(VALUES)[None],
         measured=measured,

@@ -27,6 +27,7 @@ def searched(measured):
     null = Null(
         records=np.array([0]),
         layout=None,
+        mean=np.zeros((1, VALUES)),
         features=np.zeros((1, 2, VALUES)),
         factor=np.eye(VALUES)[None],
         measured=measured,

@@ -33,4 +33,5 @@ ALIKE = 0.3
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances
+MEAN_RUNS = 12  # of the most probable ones
 LENGTHS = (0.15, 0.3, 0.6, 1.2)  # of the searched range: how far a simulated point tells

@@ -19,9 +19,10 @@ from .nuisances import nuisance_draws
 
 @dataclass(frozen=True)
 class Null:
-    """records (record,) that are compared; layout: FeatureLayout; features (record, run, feature)
-    of the model's runs; factor (record, feature, feature): Cholesky factors of the covariance of a
-    record about their mean; measured (value,): the whitened difference of the measurement from it;
+    """records (record,) that are compared; layout: FeatureLayout; mean (record, feature) of the
+    model with its most probable nuisances; features (record, run, feature) of its runs with
+    nuisances drawn; factor (record, feature, feature): Cholesky factors of their covariance about
+    mean; measured (value,): the whitened difference of the measurement from it;
     groups (value,): whether the force drives the channel; alike (direction, value): what two right
     codes differ by along the changes of effects, one sigma each, none before screening.
 
@@ -30,16 +31,12 @@ class Null:
 
     records: np.ndarray
     layout: FeatureLayout
+    mean: np.ndarray
     features: np.ndarray
     factor: np.ndarray
     measured: np.ndarray
     groups: np.ndarray
     alike: np.ndarray
-
-    @cached_property
-    def mean(self) -> np.ndarray:
-        """Return (record, feature)."""
-        return self.features.mean(axis=1)
 
     @property
     def covariance(self) -> np.ndarray:
@@ -91,32 +88,47 @@ class Null:
 
 
 def null_of(bench: Workbench, records: np.ndarray, seed: int) -> Null:
-    """Return the Null of records of a Workbench."""
+    """Return the Null of records of a Workbench.
+
+    Its mean is that of the most probable nuisances, with which explanations are run too. What
+    drawn nuisances change on average is in the covariance: left in the mean, it is in the change
+    of every explanation and in none of the measurement's.
+    """
+    draws = nuisance_draws(bench, constants.NULL_DRAWS, seed)
     seeds = max(1, LANES // len(records))
     rows = []
-    for number, nuisance in enumerate(nuisance_draws(bench, constants.NULL_DRAWS, seed)):
-        there = bench.corrected_by(nuisance)
+    for number, there in enumerate(
+        [bench] * -(-constants.MEAN_RUNS // seeds)
+        + [bench.corrected_by(nuisance) for nuisance in draws]
+    ):
         runs = bench.runs(records, seeds, seed + seeds * number)
         rows.append(there.features(there.model(), runs).reshape(len(records), seeds, -1))
-    null = _scatter(bench, records, of_survivors(np.concatenate(rows, axis=1)))
+    central, drawn = (
+        of_survivors(np.concatenate(part, axis=1))
+        for part in (rows[: -len(draws)], rows[-len(draws) :])
+    )
+    null = _scatter(bench, records, central, drawn)
     return replace(null, measured=null.change(bench.measured_features[records]))
 
 
-def _scatter(bench, records, features):
-    """Return the Null of features (record, run, feature) without its measurement."""
+def _scatter(bench, records, central, drawn):
+    """Return the Null, without its measurement, of features (record, run, feature): of the most
+    probable nuisances, and of drawn ones.
+    """
     layout, driven = bench.layout, driven_channels(bench)
-    count, common = features.shape[1], free_directions(layout, driven)
+    mean, common = central.mean(axis=1), free_directions(layout, driven)
     factors = []
-    for row, burst in zip(features, bursting(bench, records, driven), strict=True):
-        covariance = shrunk(compressed(row - row.mean(axis=0), layout), count - 1)
-        covariance = covariance * (1.0 + 1.0 / count) + common.T @ common
+    for middle, row, burst in zip(mean, drawn, bursting(bench, records, driven), strict=True):
+        covariance = shrunk(compressed(row - middle, layout), len(row))
+        covariance = covariance * (1.0 + 1.0 / central.shape[1]) + common.T @ common
         covariance += np.diag(feature_sd(layout) ** 2 + (burst * layout.blend) ** 2)
         factors.append(linalg.cholesky(covariance, lower=True))
     groups = np.tile(driven[layout.channel].astype(int), len(records))
     return Null(
         np.asarray(records),
         layout,
-        features,
+        mean,
+        drawn,
         np.array(factors),
         np.zeros(0),
         groups,
