@@ -85,5 +85,3 @@ rule acceptance:
     script:
         "../scripts/acceptance.py"
 
-
-include: "suite_check.smk"
