@@ -6,7 +6,6 @@ DISCREPANCY_FIGURES = (
     "discrepancy_psd",
     "discrepancy_ranking",
     "discrepancy_profiles",
-    "discrepancy_levels",
 )
 
 
