@@ -190,10 +190,7 @@ class PairEffect:
     """
 
     parameters: tuple
-    linear: bool = False
-    below_contact: bool = False
     measured: bool = False
-    aliases: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -231,7 +228,6 @@ class Pair:
         both = self.first.effect, self.second.effect
         return PairEffect(
             both[0].parameters + both[1].parameters,
-            all(effect.linear for effect in both),
             measured=any(effect.measured for effect in both),
         )
 

@@ -1,5 +1,5 @@
 """The discrepancy map: measured against simulated band powers per record, channel and band, with z
-from seeds, clusters of bands, and a global p.
+from seeds, and clusters of bands.
 """
 
 import numpy as np

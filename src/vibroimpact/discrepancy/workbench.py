@@ -1,4 +1,4 @@
-"""All that a campaign and a model give to every job: signals, features of the measurement, the
+"""All that a campaign and a model give to a search: signals, features of the measurement, the
 corrected model, and runs of any variant of it.
 """
 
