@@ -23,6 +23,7 @@ from vibroimpact.verdict.file import write_verdict
 
 from . import candidate_files
 from .decision import Decision, withdrawn_decision
+from .null import Null
 from .rows import COLUMNS, SHOWN, bounds, contract_checks, effects_of, where
 from .search import Search
 from .verification import Closing, without_chosen
@@ -121,9 +122,11 @@ def evidence_rows(
 ) -> Values:
     """Return the part of verdict.json that says how far model and measurement are apart."""
     null, (given, _) = search.null, closed.benches
+    measured = search.bench.measured_features[null.records]
     rest = null.measured
     if decision.chosen is not None:
         rest = rest - search.fits[decision.chosen.candidate.name].mean
+    p_before, p_after = by_chance(null, rest, measured, closed)
     own = rest.reshape(len(null.records), -1)
     count = own.shape[1]
     return {
@@ -136,8 +139,8 @@ def evidence_rows(
             else mapping.regions(given, compared[0], compared[1], misfit.counted(given))
         ),
         "misfit": closed.misfit,
-        "p_global_before": null.probability(),
-        "p_global_after": null.probability(rest),
+        "p_global_before": p_before,
+        "p_global_after": p_after,
         "explained_z": ((count - np.sum(own**2, axis=1)) / np.sqrt(2.0 * count)).tolist(),
         "checks": (
             contract_checks(prepared.checks)
@@ -145,12 +148,25 @@ def evidence_rows(
             + one_sided_rows(
                 search.bench,
                 null,
-                search.bench.measured_features[null.records],
+                measured,
                 closed.after.compared[null.records],
             )
             + left_out(search)
         ),
     }
+
+
+def by_chance(
+    null: Null, rest: np.ndarray, measured: np.ndarray, closed: Closing
+) -> tuple[float, float]:
+    """Return how probable the measurement (record, feature) is by chance with the model as given,
+    and with the completed one, which leaves rest (value,).
+    """
+    given, whole = closed.benches
+    off = measured - closed.before.compared[null.records]
+    # the null holds what was adopted; the model as given does not
+    before = null.probability(None if given is whole else null.change(null.mean + off))
+    return before, before if closed.after is closed.before else null.probability(rest)
 
 
 def left_out(search: Search) -> list[Values]:
