@@ -19,7 +19,16 @@ MASS, FRICTION, DAMPING, CROSSLEY = (
 def fit_at(laws=(0.0, -9.0, -9.0)):
     samples = np.linspace(0.0, 1.0, 101)[:, None]
     return Fit(
-        50.0, np.array(laws), np.array([0.5]), samples, np.full(101, 1 / 101), np.zeros(9), 9.0, 0.0
+        promised=50.0,
+        by_law=np.array(laws),
+        unit=np.array([0.5]),
+        samples=samples,
+        weight=np.full(101, 1 / 101),
+        mean=np.zeros(9),
+        left=9.0,
+        unseen=0.0,
+        hidden=0.0,
+        doubt=0.0,
     )
 
 

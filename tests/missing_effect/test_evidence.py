@@ -23,6 +23,7 @@ class Known:
     """An emulator of a change that is known: size times the parameter along one direction."""
 
     directions = AXES[:1]
+    run = np.linspace(0.0, 1.0, 401)[:, None]
 
     def __init__(self, size, variance=0.0):
         self.size, self.variance = size, variance
@@ -83,6 +84,18 @@ def test_evidence_is_the_integral_over_the_prior(monkeypatch):
     assert found.log_evidence == pytest.approx(wanted, abs=0.15)
     assert found.unit[0] == pytest.approx(along / size, abs=0.02)
     assert found.left == pytest.approx(measured @ measured - along**2, rel=0.05)
+
+
+def test_what_no_run_shows_is_not_evidence():
+    measured = np.random.default_rng(2).standard_normal(VALUES) + 14.0 * AXES[0]
+    emulator = Known(30.0)
+    shown = fit(emulator, 1, null_with(measured))
+    emulator.run = np.array([[0.9]])  # far from the answer, near 0.5
+    promised = fit(emulator, 1, null_with(measured))
+    assert promised.promised == pytest.approx(shown.promised)
+    assert promised.left == pytest.approx(np.sum((measured - 0.9 * 30.0 * AXES[0]) ** 2), rel=0.1)
+    lost = 0.5 * constants.POWER * (promised.left - shown.left)
+    assert promised.log_evidence == pytest.approx(shown.log_evidence - lost, abs=0.1)
 
 
 def test_something_else_is_a_normal_law_of_unknown_size():

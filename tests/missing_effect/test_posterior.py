@@ -5,7 +5,8 @@ import pytest
 
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.missing_effect.null import Null
-from vibroimpact.missing_effect.search import Search, contenders, posterior
+from vibroimpact.missing_effect.probabilities import averaged, posterior
+from vibroimpact.missing_effect.search import Search, contenders
 from vibroimpact.missing_effect.trials import Trial
 
 VALUES = 200
@@ -17,7 +18,7 @@ DIRECTIONS = dict(
         strict=True,
     )
 )
-UNITS = np.array([[0.2], [0.4], [0.6], [0.8]])
+UNITS = np.array([[0.2], [0.4], [0.5], [0.6], [0.8]])
 SIZE = 60.0  # of a change at the end of the range, in units of the scatter
 
 
@@ -35,7 +36,7 @@ def searched(measured):
     search = Search(None, null, dict.fromkeys(("one", "contact_stiffness"), 1.0))
     for name in (FRICTION, DAMPING, STIFFNESS):
         changes = SIZE * UNITS * DIRECTIONS[name]
-        trial = Trial(candidate_named(name), UNITS, changes, np.full(4, 1.0e-3), screened=4)
+        trial = Trial(candidate_named(name), UNITS, changes, np.full(5, 1.0e-3), screened=5)
         search.trials[name] = trial
         search.fit(name)
     return search
@@ -77,3 +78,13 @@ def test_race_leaves_out_what_is_known_to_be_worse():
     search = searched(chance() + 30.0 * DIRECTIONS[FRICTION])
     left = contenders(search)
     assert left == [FRICTION]  # until it has been run a few times more
+
+
+def test_two_that_only_their_scatter_tells_apart_share():
+    evidence = {"one": 10.0, "other": 13.0, "nothing": 0.0}
+    sure = averaged(evidence, {"one": 0.0, "other": 0.0})
+    assert np.exp(sure["other"]) == pytest.approx(1.0 / (1.0 + np.exp(-3.0)), abs=1.0e-3)
+    found = averaged(evidence, {"one": 6.0, "other": 6.0})
+    wanted = 0.5 + 0.5 * np.tanh(3.0 / 2.0 / np.sqrt(1.0 + np.pi * 72.0 / 8.0))  # of a normal shift
+    assert np.exp(found["other"]) == pytest.approx(wanted, abs=0.05)
+    assert found["nothing"] < -2.0

@@ -306,7 +306,7 @@ def elsewhere(candidate, values):
     """Return the candidate at each single support, where it was at all of them."""
     return (
         [
-            Candidate(candidate.effect_id, place)
+            replace(candidate, location=place)
             for place in candidate.effect.locations(values)
             if place != candidate.location
         ]

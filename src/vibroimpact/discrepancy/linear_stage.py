@@ -19,6 +19,9 @@ MODEL_ERROR = (
 )
 # of the typical line: what the ends of a record and modes far above the band leave in every line
 LEAK = 2.0e-3
+# of the largest response of one kind: what a converter of 20 bits makes of a channel that does not
+# move
+RESOLVED = 1.0e-6
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S = 2.0e-5
@@ -53,6 +56,12 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=T
             key=lambda fit: left(fit, model),
         )
     return found if found is None or moves.all() else _among_all(found, moves)
+
+
+def _largest(measured, kinds):
+    """Return (channel,): the largest RMS of measured (channel, line) among channels of its kind."""
+    rms = np.sqrt(np.sum(np.abs(measured) ** 2, axis=-1))
+    return np.array([rms[np.asarray(kinds) == kind].max() for kind in kinds])
 
 
 def with_sensors(model, chosen):
@@ -93,7 +102,7 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     )
     sizes = {kind: np.sqrt(np.sum(np.abs(own) ** 2, axis=-1)) for kind, own in expected.items()}
     size = np.array([sizes[kind] for kind in kinds]).T
-    noise = np.maximum(noise_rms, 1.0e-12)
+    noise = np.maximum(noise_rms, np.maximum(RESOLVED * _largest(measured, kinds), 1.0e-12))
     fixed = visible is not None
     if not fixed:
         chosen = ((np.abs(model.sensor_shapes[near]) * size) > VISIBLE * noise).any(axis=1)

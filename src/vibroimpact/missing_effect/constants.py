@@ -1,5 +1,7 @@
 """Every constant that decides what is named, with its source."""
 
+ELSE = "+?"  # after the name of an explanation beside something else
+
 # Prior probabilities, stated and not tuned.
 NOTHING = 0.3  # that nothing is missing
 SOMETHING_ELSE = 0.1  # that an effect is missing which the catalogue does not hold

@@ -14,8 +14,6 @@ from .evidence import Fit
 Chances = dict[str, float]
 Sets = list[tuple[tuple[str, ...], float]]  # ids and the probability of each set
 
-ELSE = "+?"  # after an explanation beside something else
-
 
 @dataclass(frozen=True)
 class Chosen:
@@ -51,7 +49,7 @@ class Decision:
 def decide(
     chances: Chances, fits: dict[str, Fit], linear: Sets, before: float, values: int
 ) -> Decision:
-    """Return the Decision of {name: log probability} (search.posterior) and {name: Fit}.
+    """Return the Decision of {name: log probability} (probabilities.posterior) and {name: Fit}.
 
     before: chi-square of so many values with nothing added; linear:
     [(ids, probability)] of what the lowest record told, the most probable first, empty
@@ -115,9 +113,9 @@ def explanations(chances: Chances) -> list[tuple[str, float, float]]:
     for name, chance in chances.items():
         if name in ("nothing", "something else"):
             continue
-        plain, beside = both.setdefault(name.removesuffix(ELSE), [0.0, 0.0])
-        both[name.removesuffix(ELSE)] = (
-            [plain, beside + chance] if name.endswith(ELSE) else [plain + chance, beside]
+        plain, beside = both.setdefault(name.removesuffix(constants.ELSE), [0.0, 0.0])
+        both[name.removesuffix(constants.ELSE)] = (
+            [plain, beside + chance] if name.endswith(constants.ELSE) else [plain + chance, beside]
         )
     rows = [
         (name, plain + beside, beside / max(plain + beside, 1.0e-300))

@@ -14,12 +14,13 @@ from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.stopwatch import Stopwatch
 
+from . import constants, so_far, verdict
 from . import search as searching
-from . import so_far, verdict
 from .decision import decide
 from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
+from .probabilities import posterior
 from .refused import write_refused
 from .verification import closing
 
@@ -72,7 +73,8 @@ class Engine:
         search = self.null_stage(prepared)
         so_far.write(self.folder, search, prepared)
         with self.stage("screening"):
-            searching.screen(search, searching.first_explanations(screened(prepared)))
+            names = searching.first_explanations(screened(prepared))
+            searching.screen(search, names, search.bench.values)
         so_far.write(self.folder, search, prepared)
         with self.stage("refinement"):
             self.refine(search)
@@ -80,7 +82,7 @@ class Engine:
             self.seek_pairs(search)
         null = search.null
         decision = decide(
-            searching.posterior(search),
+            posterior(search),
             search.fits,
             linear_sets(prepared),
             float(null.measured @ null.measured),
@@ -113,11 +115,11 @@ class Engine:
 
     def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""
-        chances = searching.posterior(search)
+        chances = posterior(search)
         open_ = sum(
             np.exp(chance)
             for name, chance in chances.items()
-            if name == "something else" or name.endswith("+?")
+            if name == "something else" or name.endswith(constants.ELSE)
         )
         left = min([search.fits[name].left for name in searching.leaders(search, 3)], default=0.0)
         room = 0.25 * (left - LEAST * search.null.values)

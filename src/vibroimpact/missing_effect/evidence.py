@@ -26,7 +26,7 @@ class Fit:
     parameter) with weight (sample,): the posterior; mean (value,) the change of the run nearest to
     the measurement and left: chi-square that remains there; unseen: by how much less remains at
     unit, where nothing was run; hidden: by how much less may remain anywhere, by what the emulator
-    does not know.
+    does not know; doubt: standard deviation of the log evidence by what it does not know at unit.
     """
 
     promised: float
@@ -38,6 +38,7 @@ class Fit:
     left: float
     unseen: float
     hidden: float
+    doubt: float
 
     @property
     def not_shown(self) -> float:
@@ -71,7 +72,8 @@ def fit(
     chances = np.append(even.over_laws, about.over_laws)
     unit = samples[np.argmax(chances)]
     weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
-    rest = null.measured - emulator(np.vstack([unit, emulator.run]))[0] @ emulator.directions
+    mean, variance = emulator(np.vstack([unit, emulator.run]))
+    rest = null.measured - mean @ emulator.directions
     left = np.sum(rest**2, axis=1)
     nearest = 1 + int(np.argmin(left[1:]))
     least = float(min(even.may_be_left.min(), about.may_be_left.min()))
@@ -85,7 +87,16 @@ def fit(
         float(left[nearest]),
         max(0.0, float(left[nearest] - left[0])),
         max(0.0, min(float(left[0]), float(null.measured @ null.measured)) - least),
+        _doubt(emulator.directions @ rest[0], variance[0]),
     )
+
+
+def _doubt(rest, variance):
+    """Return the standard deviation of the log evidence where rest (direction,) is left, of a
+    variance (direction,) that an emulator does not know.
+    """
+    of_square = np.sum(4.0 * rest**2 * variance + 2.0 * variance**2)
+    return 0.5 * constants.POWER * float(np.sqrt(of_square))
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ or nothing more is to be learned.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.discrepancy.candidates import (
@@ -39,11 +38,21 @@ class Search:
     fits: dict = field(default_factory=dict)
     seed: int = 1000
 
-    def run(self, name: str, units: np.ndarray, short: bool = True, first: bool = False) -> None:
-        """Run an explanation at units (point, parameter) and fit it again; what cannot be run is
-        kept as failed. first: they are the first
-        points of it.
+    def run(self, name: str, units: np.ndarray) -> None:
+        """Run an explanation at units (point, parameter) and fit it again."""
+        self._run(name, units)
+        self.fit(name)
+
+    def run_first(self, name: str, points: int) -> None:
+        """Run an explanation until it was run at so many of its first points; all are fitted once
+        these are run, see learn_alike.
         """
+        done = self.trials[name].tried if name in self.trials else 0
+        self._run(name, first_points(candidate_named(name))[done:points])
+        self.trials[name].screened = len(self.trials[name].noise)
+
+    def _run(self, name, units):
+        """Run an explanation at units (point, parameter); what cannot be run is kept as failed."""
         candidate = candidate_named(name)
         trial = self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
         for unit in np.atleast_2d(units):
@@ -51,10 +60,6 @@ class Search:
                 trial.add(unit, *self._change(candidate, unit))
             except (IntegrationError, ConfigError) as error:
                 trial.failed.append((unit, str(error)))
-        if first:  # all are fitted once these are run, see learn_alike
-            trial.screened = len(trial.noise)
-        else:
-            self.fit(name)
 
     def fit(self, name: str) -> None:
         """Fit an explanation again, if it has runs."""
@@ -113,18 +118,22 @@ class Search:
     def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
         runs takes away}, of those screened.
+
+        A run whose change can not be told from its own scatter has no direction.
         """
         out = {}
         for name, trial in self.trials.items():
             if not trial.screened:
                 continue
-            size = np.sum(trial.change**2, axis=1) - trial.noise * self.null.values
-            seen = size > constants.SEEN
+            scatter = trial.noise * self.null.values
+            size = np.sum(trial.change**2, axis=1) - scatter
+            seen = size > constants.SEEN + TOLD * trial.noise * np.sqrt(2.0 * self.null.values)
             along = np.maximum(trial.change @ rest, 0.0)
             out[name] = float(np.max(np.where(seen, along**2 / np.maximum(size, 1.0), 0.0)))
         return out
 
 
+TOLD = 3.0  # standard deviations of the scatter of its own that a change must exceed
 BELOW = -0.2  # of the searched range: where an effect is nothing whose size is searched in its
 # logarithm from little to much
 
@@ -140,60 +149,20 @@ def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray |
     return unit if np.isfinite(unit).all() else None
 
 
-def posterior(search: Search) -> dict[str, float]:
-    """Return {name: log probability}, the most probable first, of nothing, something else, every
-    explanation, and every one of them beside something else (its name with "+?").
-    """
-    else_ = search.something_else()
-    families: dict[str, list[str]] = {}
-    for name in search.fits:
-        families.setdefault(family_of(name), []).append(name)
-    pairs = [family for family in families if "+" in family]
-    rest = 1.0 - constants.NOTHING - constants.SOMETHING_ELSE
-    out = {
-        "nothing": np.log(constants.NOTHING),
-        "something else": np.log(constants.SOMETHING_ELSE)
-        + else_.log_evidence(np.zeros(search.null.values)),
-    }
-    catalogue = {candidate_named(name).effect_id for name in search.fits if "+" not in name}
-    for family, names in families.items():
-        share = (
-            constants.PAIRS / max(len(catalogue) ** 2 / 2.0, 1.0)
-            if family in pairs
-            else (1.0 - constants.PAIRS) / max(len(families) - len(pairs), 1)
-        )
-        for name in names:
-            known = np.log(rest * share / len(names))
-            found = search.fits[name]
-            out[name] = known + found.log_evidence
-            gone = 0.5 * (search.null.measured @ search.null.measured - found.left)
-            occam = found.log_evidence - constants.POWER * gone  # what its parameters cost
-            out[name + "+?"] = (
-                known
-                + np.log(constants.SOMETHING_ELSE)
-                + else_.log_evidence(found.mean)
-                + min(occam, 0.0)
-            )
-    total = logsumexp(list(out.values()))
-    return {name: value - total for name, value in sorted(out.items(), key=lambda row: -row[1])}
+# Points at which an explanation is run first, by the number of its parameters.
+FIRST = {
+    1: ((0.75,), (0.3,), (0.55,), (0.92,)),
+    2: ((0.7, 0.7), (0.3, 0.3), (0.3, 0.7), (0.7, 0.3)),
+    3: ((0.7, 0.7, 0.7), (0.3, 0.3, 0.3), (0.3, 0.7, 0.5), (0.7, 0.3, 0.5)),
+}
+VECTOR = ((0.65, 0.5), (0.5, 0.65), (0.35, 0.5), (0.5, 0.35))
 
 
-def family_of(name: str) -> str:
-    """Return the ids of an explanation's effects."""
-    return "+".join(sorted(candidate_named(name).ids))
-
-
-FIRST = {1: ((0.3,), (0.75,)), 2: ((0.3, 0.3), (0.7, 0.7)), 3: ((0.3, 0.3, 0.3), (0.7, 0.7, 0.7))}
-SECOND = {1: ((0.55,), (0.92,)), 2: ((0.3, 0.7), (0.7, 0.3)), 3: ((0.3, 0.7, 0.5), (0.7, 0.3, 0.5))}
-VECTOR = ((0.65, 0.5), (0.5, 0.65)), ((0.35, 0.5), (0.5, 0.35))
-
-
-def first_points(candidate: Candidate, again: bool = False) -> np.ndarray:
-    """Return (point, parameter): where an explanation is run first; where it is run again."""
+def first_points(candidate: Candidate) -> np.ndarray:
+    """Return (point, parameter): where an explanation is run first."""
     count = len(candidate.effect.parameters)
-    if count == 2 and len(candidate.signed) == 2:
-        return np.array(VECTOR[again])
-    return np.array((SECOND if again else FIRST)[count])
+    vector = count == 2 and len(candidate.signed) == 2
+    return np.array(VECTOR if vector else FIRST[count])
 
 
 def first_explanations(screened: list[str], places: int = 2) -> list[str]:
@@ -204,22 +173,38 @@ def first_explanations(screened: list[str], places: int = 2) -> list[str]:
     return [name for names in by_effect.values() for name in names[:places]]
 
 
+LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter
 MAY = 0.25  # of the chi-square that the best direction takes away
-LEAST = 5
+LEAST = 6
 
 
-def screen(search: Search, names: list[str]) -> None:
-    """Run every explanation at its first points, and those that may explain the measurement at
-    more.
+def screen(search: Search, names: list[str], values: Values) -> None:
+    """Run every explanation once, those that may explain the measurement at more points, and at
+    every single support what may do so at all of them.
     """
     for name in names:
-        search.run(name, first_points(candidate_named(name)), first=True)
+        search.run_first(name, 1)
+    for name in may_explain(search):
+        search.run_first(name, 2)
+        for other in elsewhere(candidate_named(name), values):
+            search.run_first(other.name, 1)
+    for name in may_explain(search):
+        search.run_first(name, 4)
+    search.learn_alike()
+
+
+def may_explain(search: Search) -> list[str]:
+    """Return the names of explanations whose best direction takes much of the chi-square away, the
+    most first; none where little is to be taken away.
+    """
     explains = search.explains(search.null.measured)
     order = sorted(explains, key=lambda name: -explains[name])
-    for name in order:
-        if explains[name] > MAY * explains[order[0]] or name in order[:LEAST]:
-            search.run(name, first_points(candidate_named(name), again=True), first=True)
-    search.learn_alike()
+    return [
+        name
+        for name in order
+        if explains[name] > LITTLE
+        and (explains[name] > MAY * explains[order[0]] or name in order[:LEAST])
+    ]
 
 
 def refine(search: Search, names: list[str], points: int) -> None:
@@ -254,10 +239,12 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
         for name, chance in known.items()
     }
     best = max(known.values(), default=0.0)
+    explains = search.explains(search.null.measured)  # of those screened
     left = [
         name
         for name in upper
-        if upper[name] > best - DECIDED
+        if explains.get(name, np.inf) > LITTLE
+        and upper[name] > best - DECIDED
         and search.trials[name].refined < RUNS
         and (
             max(upper[name] - known[name], search.fits[name].not_shown) > KNOWN

@@ -13,8 +13,10 @@ from vibroimpact.discrepancy.prepared import Prepared
 from vibroimpact.discrepancy.signals import Signals
 from vibroimpact.records import plain_values, write_text
 
+from . import constants
 from .null import Null
-from .search import Search, posterior
+from .probabilities import posterior
+from .search import Search
 
 WORST = 5  # places that are told
 
@@ -48,7 +50,7 @@ def by_effect(chances: dict[str, float]) -> list[tuple[tuple[str, ...], float]]:
     out: dict[tuple[str, ...], float] = {}
     for name, chance in chances.items():
         if name not in ("nothing", "something else"):
-            ids = tuple(sorted(candidate_named(name.removesuffix("+?")).ids))
+            ids = tuple(sorted(candidate_named(name.removesuffix(constants.ELSE)).ids))
             out[ids] = out.get(ids, 0.0) + float(np.exp(chance))
     return sorted(out.items(), key=lambda row: -row[1])
 

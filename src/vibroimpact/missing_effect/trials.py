@@ -28,6 +28,11 @@ class Trial:
     screened: int = 0
 
     @property
+    def tried(self) -> int:
+        """Return the number of points, those that could not be run too."""
+        return len(self.noise) + len(self.failed)
+
+    @property
     def refined(self) -> int:
         """Return the number of runs beside the first."""
         return len(self.noise) - self.screened
