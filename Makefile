@@ -30,7 +30,8 @@ $(1)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --r
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study smoke test test-slow test-all reliability lint format judges benchmark docs setup clean
+.PHONY: help study smoke test test-slow test-all reliability lint format judges benchmark docs \
+	setup clean
 
 help: ## list the targets
 	@$(PYTHON) -c "import re; [print(f'make {name:<10} {text}') for name, text in \

@@ -99,6 +99,10 @@ def made_up_map(strength, seed=1):
     )
 
 
+HELD_OUT = [84.0, 82.0, 61.0, 35.0, 29.0, 24.0, 8.0, 3.0, -6.0, -14.0]
+CLOSED = [0.87, 0.86, 0.64, 0.38, 0.33, 0.27, 0.09, 0.05, -0.03, -0.1]
+
+
 def made_up_ranking():
     """Rows of ranking.csv."""
     ids = [
@@ -113,35 +117,22 @@ def made_up_ranking():
         "modal_damping",
         "preload",
     ]
-    fit = [212.0, 221.0, 180.0, 122.0, 96.0, 88.0, 31.0, 25.0, 18.0, 11.0]
-    held = [84.0, 82.0, 61.0, 35.0, 29.0, 24.0, 8.0, 3.0, -6.0, -14.0]
-    closed = [0.87, 0.86, 0.64, 0.38, 0.33, 0.27, 0.09, 0.05, -0.03, -0.1]
+    fit = [212.0, 208.0, 180.0, 122.0, 96.0, 88.0, 31.0, 25.0, 18.0, 11.0]
     return [
         {
             "ids": name,
             "fit_score": one,
-            "heldout_score": two,
-            "closed_fraction": three,
-            "threshold": 18.5,
+            "closed_fraction": None if index else 0.87,
             "tested": index < 5,
+            "probability": None if index > 1 else (0.95, 0.04)[index],
         }
-        for index, (name, one, two, three) in enumerate(zip(ids, fit, held, closed, strict=True))
+        for index, (name, one) in enumerate(zip(ids, fit, strict=True))
     ]
 
 
 def made_up_candidates():
     """Contents of candidates/*.json, best first."""
     mu = np.geomspace(0.02, 0.6, 13)
-    loads, value = [3.0, 10.0, 10.0], [0.142, 0.149, 0.158]
-    by_level = {
-        "parameter": "mu",
-        "unit": "1",
-        "load_rms_N": loads,
-        "gap_m": [2.48e-4, 2.48e-4, 1.71e-4],
-        "value": value,
-        "low": [0.11, 0.131, 0.139],
-        "high": [0.18, 0.168, 0.178],
-    }
     gap = np.linspace(1.5e-4, 4e-4, 9)
     return [
         {
@@ -155,7 +146,6 @@ def made_up_candidates():
                     "simulated": [0.1, 0.15, 0.3],
                 }
             ],
-            "by_level": [by_level],
         },
         {
             "ids": ["gap"],
@@ -224,10 +214,10 @@ def made_up_verdict(kind="named", **changes):
             [
                 {
                     "ids": row["ids"].split("+"),
-                    "heldout_score": row["heldout_score"],
-                    "closed_fraction": row["closed_fraction"],
+                    "heldout_score": held,
+                    "closed_fraction": closed,
                 }
-                for row in made_up_ranking()
+                for row, held, closed in zip(made_up_ranking(), HELD_OUT, CLOSED, strict=True)
             ]
             if tested
             else []

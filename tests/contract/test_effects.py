@@ -70,7 +70,6 @@ def test_catalogue_entries_are_described(effect):
     for parameter in effect.parameters:
         assert parameter.unit and parameter.low < parameter.high and parameter.per in SCALES
         assert not parameter.log or parameter.low > 0.0
-        assert all(0.0 <= place <= 1.0 for place in parameter.design)
 
 
 @pytest.mark.parametrize("name", OF_THE_MODEL)
@@ -146,47 +145,3 @@ def test_normalised_parameters_come_back(name):
     np.testing.assert_allclose(
         candidate.normalised(candidate.physical(unit, SCALES), SCALES), unit, atol=1e-12
     )
-
-
-@pytest.mark.parametrize("name", [name for name in OF_THE_MODEL if EFFECTS[name].other_laws])
-def test_other_laws_are_valid_and_leave_the_original(study_config, name):
-    values = study_config.model_dump(mode="json")
-    before, candidate = repr(values), Candidate(name, EFFECTS[name].locations(values)[0])
-    parameters = candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES)
-    own = candidate.variant(values, parameters)
-    for varied in candidate.other_laws(values, parameters):
-        assert varied not in (values, own)
-        check_config(varied, name)
-    assert repr(values) == before
-
-
-@pytest.mark.parametrize(
-    ("name", "stiffness", "limit", "parameters"),
-    [
-        ("coulomb_friction", "stick_stiffness_N_per_m", "slip_limit_N", {"force": 4.0}),
-        (
-            "saturation_stiffness",
-            "saturation_stiffness_N_per_m",
-            "saturation_limit_N",
-            {"stiffness": 6.0e4, "limit": 20.0},
-        ),
-    ],
-)
-def test_gradual_law_keeps_initial_stiffness_and_limit_force(
-    study_config, name, stiffness, limit, parameters
-):
-    """And it gives way earlier: a quarter of it at a quarter of the displacement at which the other
-    does as a whole.
-    """
-    values, effect = study_config.model_dump(mode="json"), EFFECTS[name]
-    place = effect.locations(values)[0]
-    whole, parts = (
-        law(values, parameters, place)["elements"] for law in (effect.apply, effect.other_laws[-1])
-    )
-    assert len(parts) == 4 and len({part["name"] for part in parts}) == 4
-    for key in (stiffness, limit):
-        assert sum(part[key] for part in parts) == pytest.approx(whole[0][key])
-    yields = np.array([part[limit] / part[stiffness] for part in parts]) / (
-        whole[0][limit] / whole[0][stiffness]
-    )
-    np.testing.assert_allclose(yields, [0.25, 0.75, 1.25, 1.75])

@@ -16,18 +16,18 @@ def burn(seconds):
 
 
 def test_cost_is_summed_over_jobs_and_stages(tmp_path):
-    for name, stage, records in (("a", "null", 4), ("b", "null", 5), ("c", "finalists", 7)):
+    for name, stage, records in (("a", "null", 4), ("b", "null", 5), ("c", "additions", 7)):
         with job_cost(tmp_path / f"{name}.npz", stage):
             count_simulated(records)
             burn(0.03)
     meter = Meter("verdict")
     count_simulated(2)
     burn(0.01)
-    made = [tmp_path / f"{name}.npz" for name in "abcd"]  # d is of a bank: nothing is beside it
+    made = [tmp_path / f"{name}.npz" for name in "abcd"]  # nothing is beside d
     cost = Cost.from_values(total_cost(made, meter.read()))
     assert {stage: row.simulations for stage, row in cost.by_stage.items()} == {
         "null": 9,
-        "finalists": 7,
+        "additions": 7,
         "verdict": 2,
     }
     assert cost.simulations == 18 and 0.1 <= cost.cpu_seconds < 1.0

@@ -9,7 +9,6 @@ SHOWN = [0, 2, 4]
 
 def test_linear_record_determines_effects_by_its_modes():
     assert telling_modes(LINEAR, SHOWN) == SHOWN
-    assert telling_modes(LINEAR, SHOWN, for_all=True) is None  # a bank is for other campaigns
 
 
 def test_nonlinear_record_defers_linear_effects():
@@ -17,9 +16,6 @@ def test_nonlinear_record_defers_linear_effects():
     square-law drag} was told.
     """
     assert telling_modes(BENT, SHOWN) is None
-    assert (
-        telling_modes(BENT, SHOWN, quick=True) == SHOWN
-    )  # where it must be quick, the three that come nearest are simulated
 
 
 def test_record_without_modes_determines_no_effect():

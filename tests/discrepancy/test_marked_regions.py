@@ -6,11 +6,25 @@ import numpy as np
 import pytest
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.features import feature_layout
+from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
+from vibroimpact.discrepancy.driven import driven_channels
+from vibroimpact.discrepancy.features import compressed, feature_layout
 from vibroimpact.discrepancy.mapping import regions, significant, z_of
-from vibroimpact.discrepancy.null import null_of
 
 RECORDS, CHANNELS, BANDS, SEEDS = 4, 5, 24, 16
+
+
+def null_of(bench, features):
+    """The mean of features (record, seed, feature), and their covariance with what two codes differ
+    by.
+    """
+    layout, rows = bench.layout, features - features.mean(axis=1, keepdims=True)
+    common = free_directions(layout, driven_channels(bench))
+    own = np.diag(feature_sd(layout) ** 2) + common.T @ common
+    scatter = [shrunk(compressed(row, layout), SEEDS - 1) * (1.0 + 1.0 / SEEDS) for row in rows]
+    return SimpleNamespace(
+        records=np.arange(RECORDS), mean=features.mean(axis=1), covariance=np.array(scatter) + own
+    )
 
 
 def campaign(draw, change=0.0, scatter=0.4):
@@ -54,7 +68,7 @@ def campaign(draw, change=0.0, scatter=0.4):
         ),
     )
     features = sd * draw.standard_normal((RECORDS, SEEDS, size))
-    null = null_of(bench, np.arange(RECORDS), features)
+    null = null_of(bench, features)
     return bench, null, sd * draw.standard_normal((RECORDS, 4, size))
 
 

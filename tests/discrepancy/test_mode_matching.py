@@ -1,6 +1,4 @@
-"""Corrections and free damping find the tube's modes among those of a plate."""
-
-from types import SimpleNamespace
+"""Corrections find the tube's modes among those of a plate."""
 
 import numpy as np
 import pytest
@@ -8,7 +6,6 @@ import pytest
 from vibroimpact.config.reading import check_config
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.linearised import same_modes
-from vibroimpact.discrepancy.null import unseen_damping
 from vibroimpact.reduction.reduced_model import build_model
 
 PLATE = {
@@ -44,17 +41,3 @@ def test_correction_follows_the_mode_not_its_number(study_model, with_plates):
     moved = linear.corrected(with_plates, nuisance, study_model)
     assert np.flatnonzero(moved.damping != with_plates.damping).tolist() == [8]
     assert moved.omega[8] == pytest.approx(1.01 * study_model.omega[4])
-
-
-def test_free_damping_affects_only_unobserved_tube_modes(values, study_model, with_plates):
-    bench = SimpleNamespace(
-        model=lambda variant: with_plates,
-        bare=study_model,
-        linear_stage=True,
-        modes_told=True,
-        measured_fit=SimpleNamespace(modes=SEEN),
-    )
-    damped = unseen_damping(bench, values, 0.6)
-    changed = np.flatnonzero(damped.damping != with_plates.damping)
-    assert not set(changed) & {0, 2, 8, 9} and not set(changed) & {3, 4, 5, 6}
-    assert {1, 7} <= set(changed)

@@ -9,8 +9,8 @@ from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.signals import excited_band
 from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy.attach import attach
+from vibroimpact.discrepancy.driven import driven_channels
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.null import driven_channels
 from vibroimpact.discrepancy.prepared import mixed_up
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.excitation.random_force import band_limited_noise

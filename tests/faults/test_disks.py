@@ -13,7 +13,6 @@ import xarray as xr
 
 from tests.faults.runs import Runs, bits
 from tests.tiny_study import ROOT, TinyStudy, tiny_values
-from vibroimpact.discrepancy import store
 from vibroimpact.records import RecordError, RecordFile, write_cells, write_record, write_text
 from vibroimpact.study.run_owner import take_folder
 from vibroimpact.whole_file import problem_of, whole_file
@@ -44,7 +43,6 @@ WRITERS = {
     "record in pieces": write_series_in_pieces,
     "table": lambda path: write_cells(("a",), [["x" * 100]] * 10**5, path),
     "text": lambda path: write_text("x" * 10**7, path),
-    "arrays": lambda path: store.save(path, force=MILLION),
     "picture": write_picture,
 }
 

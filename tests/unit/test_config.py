@@ -585,7 +585,7 @@ def test_a_study_can_not_have_the_folder_of_a_target(study):
     # Every folder in results/ that a rule names; {study}, {drawn} and the like are wildcards.
     rules = [*(ROOT / "workflow" / "rules").glob("*.smk"), *(ROOT / "examples").glob("*/*.smk")]
     found = {name for file in rules for name in FOLDERS_OF_TARGETS.findall(file.read_text())}
-    assert reserved_names() == found >= {"validation", "suite_check"}
+    assert reserved_names() == found >= {"validation"}
     for name in (*found, "Validation", "acceptance_7", "development_12"):
         (line,) = problems({**study, "study": name})
         assert line.startswith(

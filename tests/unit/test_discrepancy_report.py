@@ -133,19 +133,17 @@ def test_spectra_of_most_discrepant_records_are_shown(folder, figures):
     )
 
 
-def test_the_ranking_shows_scores_and_the_null_line(folder, figures):
+def test_the_ranking_shows_evidence_and_probability(folder, figures):
     rows = rows_of(folder, "discrepancy_ranking")
     assert [row["curve"] for row in rows][:2] == ["dry_friction", "dry_friction+gap"]
-    held = [float(row["heldout_score"]) for row in rows]
-    assert held == sorted(held, reverse=True)
-    bars = figures["discrepancy_ranking"].axes["main"].patches
-    assert [bar.get_width() for bar in bars[:3]] == [84.0, 82.0, 61.0]
-    assert (
-        bars[0].get_facecolor() != bars[1].get_facecolor() != bars[6].get_facecolor()
-    )  # named; simulated; emulated
-    assert "best by chance (98 %)" in [
-        line.get_label() for line in figures["discrepancy_ranking"].axes["main"].lines
-    ]
+    score = [float(row["fit_score"]) for row in rows]
+    assert score == sorted(score, reverse=True)
+    axes = figures["discrepancy_ranking"].axes["main"]
+    bars, words = axes.patches, [text.get_text() for text in axes.texts]
+    assert [bar.get_width() for bar in bars[:3]] == [212.0, 208.0, 180.0]
+    named, refined, screened = (bars[place].get_facecolor() for place in (0, 1, 6))
+    assert len({named, refined, screened}) == 3
+    assert words[:3] == ["95 %, closes 87 %", "4 %", ""]
 
 
 def test_estimates_of_the_named_law_and_of_pairs_are_shown():
@@ -270,7 +268,7 @@ def test_report_states_how_much_was_compared():
 def test_a_run_without_map_or_candidates_says_so(tmp_path):
     write_verdict(made_up_verdict("not_testable"), tmp_path / "verdict.json")
     sheets = discrepancy_figures(read_results(tmp_path))
-    assert len(sheets) == 6 and all(sheet.tables == [] for sheet in sheets)
+    assert len(sheets) == 5 and all(sheet.tables == [] for sheet in sheets)
     for sheet in sheets:
         sheet.save(tmp_path)
         assert [text.get_text() for axes in sheet.axes.values() for text in axes.texts]

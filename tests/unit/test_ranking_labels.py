@@ -11,10 +11,10 @@ def rows(*pairs):
         {
             "ids": ids,
             "location": place,
-            "fit_score": 10.0,
-            "heldout_score": 20.0 - number,
-            "closed_fraction": 0.5,
-            "threshold": 15.0,
+            "fit_score": 20.0 - number,
+            "closed_fraction": None,
+            "probability": 0.5,
+            "tested": True,
         }
         for number, (ids, place) in enumerate(pairs)
     ]

@@ -419,7 +419,7 @@ def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
         assert run.returncode == 0, run.stdout + run.stderr
         planned = set(jobs_of(run))
         assert {"completion_prepare", "completion_outcome", "completion_report"} <= planned
-        assert "discrepancy_prepare" not in planned
+        assert "missing_effect" not in planned
 
 
 def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
@@ -438,12 +438,14 @@ def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
     )
 
 
-def test_search_with_an_effort_is_one_job(study, tmp_path):
+def test_search_is_one_job_of_standard_effort(study, tmp_path):
     write_campaign(sound_campaign(), tmp_path / "bench.nc")
     asked = ["--dry-run", "discrepancy", "--config", f"campaign={tmp_path}/bench.nc"]
-    one, many = (jobs_of(study.snakemake(*asked, *more)) for more in (["effort=quick"], []))
-    assert one["missing_effect"] == 1 and "discrepancy_null" not in one
-    assert many["discrepancy_null"] > 1 and "missing_effect" not in many
+    for more, effort in (([], "standard"), (["effort=quick"], "quick")):
+        run = study.snakemake(*asked, *more)
+        planned = set(jobs_of(run)) - {"total"}
+        assert planned == {"missing_effect", "discrepancy_report", "discrepancy"}
+        assert f"effort {effort}" in run.stdout + run.stderr
     for more, told in (
         (["effort=much"], "effort = 'much': give one of quick, standard, thorough"),
         (["effort=quick", "model=identified"], "effort = 'quick'"),

@@ -84,6 +84,3 @@ rule acceptance:
         f"The acceptance table: {DRAWN}/report.html"
     script:
         "../scripts/acceptance.py"
-
-
-include: "suite_check.smk"

@@ -4,11 +4,7 @@
 # identified and has no modes.
 
 
-if not EFFORT:
-
-    ruleorder: _completion_outcome > _discrepancy_verdict
-
-
+ruleorder: _completion_outcome > _missing_effect
 ruleorder: _completion_report > _discrepancy_report
 
 

@@ -57,12 +57,10 @@ REQUEST = {
         "campaign",
         "model",
         "effort",
-        "bank",
         "draw_seed",
         "count",
         "shard",
         "add",
-        "compared_s",
         "draw",
         *(f"{folder.name}_data" for folder in sorted(Path(EXAMPLES).glob("*/"))),
     )
@@ -73,11 +71,6 @@ REQUEST = {
 for name, value in REQUEST.items():
     if not value.strip():
         sys.exit(f"{name} = '': give a value, or leave it out")
-if "bank" in REQUEST and not os.path.isdir(REQUEST["bank"]):
-    sys.exit(
-        f"bank = '{REQUEST['bank']}' is no folder: give that of another campaign's results, as in"
-        " --config bank=results/<campaign>"
-    )
 
 
 def number_asked(name, example, whole=False):
@@ -92,19 +85,18 @@ def number_asked(name, example, whole=False):
 
 
 def asked_effort():
-    """The value of --config effort=NAME, None where it is not given.
+    """The value of --config effort=NAME, "standard" where it is not given.
 
     Exits with a sentence where it is none that there is.
     """
-    value = REQUEST.get("effort")
-    if value is not None and value not in EFFORTS:
+    value = REQUEST.get("effort", "standard")
+    if value not in EFFORTS:
         sys.exit(f"effort = '{value}': give one of {', '.join(EFFORTS)}, or leave it out")
     return value
 
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
-COMPARED_S = number_asked("compared_s", example="49")
 DRAW = int(number_asked("draw", example="1", whole=True) or 0)
 EFFORT = asked_effort()
 
@@ -165,7 +157,7 @@ def own_structure():
 STUDY = checked_config()
 STUDY_FILES = " + ".join(os.path.relpath(file) for file in workflow.configfiles)
 OWN = own_structure()
-if OWN is not None and EFFORT:
+if OWN is not None and "effort" in REQUEST:
     sys.exit(
         f"effort = '{EFFORT}': a structure that is identified from its campaign has another search:"
         " leave it out, or narrow band_Hz and candidates"

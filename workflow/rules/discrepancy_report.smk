@@ -6,29 +6,7 @@ DISCREPANCY_FIGURES = (
     "discrepancy_psd",
     "discrepancy_ranking",
     "discrepancy_profiles",
-    "discrepancy_levels",
 )
-
-
-# The mode is a parameter: one search does not take the products of another for its own.
-rule _discrepancy_mode:
-    output:
-        mode=f"{DISCREPANCY}/mode.txt",
-    log:
-        f"{DISCREPANCY}/logs/mode.log",
-    benchmark:
-        f"{DISCREPANCY}/benchmarks/mode.tsv"
-    threads: 1
-    resources:
-        mem_mb=memory(1000),
-        runtime=minutes(10),
-    params:
-        library=library("discrepancy_mode"),
-        mode=EFFORT or "full",
-    message:
-        "Mode of the discrepancy run: {params.mode}"
-    script:
-        "../scripts/discrepancy_mode.py"
 
 
 rule _discrepancy_report:
@@ -57,7 +35,7 @@ rule _discrepancy_report:
         library=library("discrepancy_report"),
         config=MODEL.model_dump(mode="json"),
         name=LOOKED_AT,
-        compared_s=EFFORTS[EFFORT].compared_s if EFFORT else None,
+        compared_s=EFFORTS[EFFORT].compared_s,
     message:
         f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"
     script:

@@ -1,11 +1,12 @@
-# One job from the campaign to the verdict:
-# `snakemake -j2 discrepancy --config campaign=FILE effort=quick|standard|thorough`.
+# A measured campaign against a model, one job from the campaign to the verdict:
+# `snakemake discrepancy --config campaign=FILE [model=config/x.yaml]`.
+# effort=quick or thorough spends less or more than the standard; draw=1, 2, ... simulates with
+# other seeds.
 
 
 rule _missing_effect:
     input:
         campaign=after_model_checks(MODEL, MODEL_FILES, compared_campaign),
-        mode=f"{DISCREPANCY}/mode.txt",
     output:
         verdict=f"{DISCREPANCY}/verdict.json",
         map=f"{DISCREPANCY}/map.nc",

@@ -3,17 +3,16 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from vibroimpact.config.yaml_file import read_yaml
-from vibroimpact.discrepancy.whole import run_campaign
+from vibroimpact.config.reading import load_config
+from vibroimpact.missing_effect.engine import Engine
 from vibroimpact.provenance import package_digest
 
 
 def run_sealed(campaign, model, verdict):
-    """Judge a campaign file against the model file of its user; the verdict is all that is kept.
-
-    No simulations of other campaigns are at hand, as a user has none.
-    """
+    """Judge a campaign file against the model file of its user; the verdict is all that is kept."""
     verdict = Path(verdict)
     with TemporaryDirectory(dir=verdict.parent) as work:
-        run_campaign(read_yaml(model), campaign, work, {"source_digest": package_digest()})
+        Engine(load_config(model), str(campaign), Path(work)).run(
+            {"source_digest": package_digest()}
+        )
         Path(work, "verdict.json").rename(verdict)

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
-TARGETS = ("validation", "suite_check")
+TARGETS = ("validation",)
 # How snakemake marks a wildcard, and what names no folder inside results/.
 UNUSABLE = r"[{}/\\*?\x00-\x1f]|^\.*$"
 DRAW_NAME = r"(acceptance|development)_([0-9]+)"  # of every draw of campaigns

@@ -1,3 +1,1 @@
-"""Where simulation and measurement disagree, which effect is missing, and how much of the
-misfit adding it closes.
-"""
+"""Where simulation and measurement disagree, and what the lowest record tells of it."""

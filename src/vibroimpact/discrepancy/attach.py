@@ -14,7 +14,6 @@ from vibroimpact.reduction.reduced_model import build_model
 
 from .sensed import moving
 
-NEAR_M = 5.0e-3  # farther from the structure is no place on it
 SAME_POINT_M = 1.0e-3
 
 
@@ -37,7 +36,7 @@ def attach(config, campaign):
     ]
     _require_directions(directions, names)
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
-    sensors = config.record.model_copy(update={"sensors": config_sensors(config, tuple(points))})
+    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
     try:
         model = build_model(
             config.model_copy(update={"points": {**config.points, **points}, "record": sensors}),
@@ -102,7 +101,7 @@ def _ratio_of_points(campaign, model):
     return ratios[model.support_of_point]
 
 
-def config_sensors(config, points):
+def config_sensors(points):
     """Return the section record.sensors with all three directions of some points."""
     return Sensors(points=points, directions=("x", "y", "z"))
 

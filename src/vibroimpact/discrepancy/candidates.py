@@ -12,18 +12,17 @@ from . import priors
 from .measuring import measuring_of, places
 
 ALONE = "@alone"
-QUICK_PLACES = {
-    "added_mass": 4,
-    "cubic_stiffness": 2,
-    "quadratic_stiffness": 2,
-    "saturation_stiffness": 1,
-    "coulomb_friction": 2,
-    "clearance": 2,
-}
+AT_A_POINT = frozenset(
+    {
+        "added_mass",
+        "cubic_stiffness",
+        "quadratic_stiffness",
+        "saturation_stiffness",
+        "coulomb_friction",
+        "clearance",
+    }
+)
 PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
-ALONG = (0.1, 0.2)  # of a searched range
-
-QUICK_DESIGN = {1: (0.2, 0.5, 0.8), 2: (0.25, 0.75), 3: (0.5,)}  # by the number of parameters
 
 
 @dataclass(frozen=True)
@@ -130,24 +129,6 @@ class Candidate:
             )
             return np.where((unit >= 0.0) & (unit <= 1.0), unit, np.nan)
 
-    def design(self, quick=False):
-        """Return (point, parameter): the parameters to try first, all combinations of the effect's
-        own design, of a vector also along its axes; fewer if quick.
-        """
-        chosen = QUICK_DESIGN[len(self.effect.parameters)] if quick else None
-        axes = np.meshgrid(
-            *[chosen or parameter.design for parameter in self.effect.parameters], indexing="ij"
-        )
-        points = np.stack([axis.ravel() for axis in axes], axis=-1)
-        if len(axes) > 1 and len(self.signed) == len(axes):
-            # components of a vector: along one axis alone the structure may keep its symmetry,
-            # which no point beside it tells of
-            along = np.vstack(
-                [0.5 + side * step * np.eye(len(axes)) for step in ALONG for side in (-1.0, 1.0)]
-            )
-            points = along if quick else np.vstack([points, along])
-        return points
-
     @property
     def signed(self):
         """Return the numbers of the parameters that are as strong with the other sign."""
@@ -191,10 +172,6 @@ class Candidate:
             values if self.effect.measured else self.effect.apply(values, parameters, self.location)
         )
 
-    def other_laws(self, values, parameters):
-        """Return [configuration] with the effect by each of its other laws."""
-        return [law(values, parameters, self.location) for law in self.effect.other_laws]
-
     def measuring(self, parameters, names):
         """Return the Measuring of a fault of the measuring chain, None for an effect of the
         model.
@@ -213,11 +190,7 @@ class PairEffect:
     """
 
     parameters: tuple
-    linear: bool = False
-    below_contact: bool = False
     measured: bool = False
-    aliases: tuple = ()
-    quantity: str = ""
 
 
 @dataclass(frozen=True)
@@ -255,7 +228,6 @@ class Pair:
         both = self.first.effect, self.second.effect
         return PairEffect(
             both[0].parameters + both[1].parameters,
-            all(effect.linear for effect in both),
             measured=any(effect.measured for effect in both),
         )
 
@@ -293,16 +265,6 @@ class Pair:
     def variant(self, values, parameters):
         """Return the configuration in plain values with both effects."""
         return self.second.variant(self.first.variant(values, parameters[0]), parameters[1])
-
-    def other_laws(self, values, parameters):
-        """Return [configuration] with both effects, one of them by each of its other laws."""
-        firsts = [
-            self.second.variant(other, parameters[1])
-            for other in self.first.other_laws(values, parameters[0])
-        ]
-        return firsts + self.second.other_laws(
-            self.first.variant(values, parameters[0]), parameters[1]
-        )
 
     def measuring(self, parameters, names):
         """Return the Measuring of the one of the two that is a fault of the measuring chain, None
@@ -362,7 +324,7 @@ def other_places(candidate, values):
     locations = candidate.effect.locations(values)
     return (
         [replace(candidate, location=place) for place in locations if place != candidate.location]
-        if candidate.effect_id in QUICK_PLACES
+        if candidate.effect_id in AT_A_POINT
         else []
     )
 
@@ -383,9 +345,9 @@ def linear_candidates(values, names, held, modes):
     return found
 
 
-def local_candidates(values, held, modes=None, quick=False):
+def local_candidates(values, held, modes=None):
     """Return the candidates that only simulation tells of, those to screen first: all supports
-    together, points up to PLACES, fewer where it must be quick.
+    together, points up to PLACES.
 
     modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear
     structure, and linear effects are tried as the others are.
@@ -398,8 +360,8 @@ def local_candidates(values, held, modes=None, quick=False):
                 locations = locations[:1]
             if effect.id == "mode_frequency_error":
                 locations = locations[:UNSEEN_MODES]
-            if effect.id in QUICK_PLACES:
-                locations = locations[: QUICK_PLACES[effect.id]] if quick else spread(locations)
+            if effect.id in AT_A_POINT:
+                locations = spread(locations)
             found += [Candidate(effect.id, location) for location in locations]
     return [candidate for candidate in found if modes is None or not _told(candidate, modes)]
 

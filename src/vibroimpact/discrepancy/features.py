@@ -147,11 +147,6 @@ def compressed(difference, layout):
     return layout.blend * np.arcsinh(difference / layout.blend)
 
 
-def uncompressed(values, layout):
-    """The inverse of compressed."""
-    return layout.blend * np.sinh(np.clip(values / layout.blend, -20.0, 20.0))
-
-
 def _sums(frequency, edges):
     """Return (line, band) 0 or 1: the lines of each band; a band that no line falls into takes the
     nearest.

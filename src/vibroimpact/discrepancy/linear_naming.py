@@ -12,7 +12,6 @@ from scipy.interpolate import RegularGridInterpolator
 from . import nuisance as linear
 from .candidates import unit_grid
 from .linear_fit import LinearResult
-from .screening import NINETY
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
 NUISANCES = (
@@ -20,6 +19,7 @@ NUISANCES = (
     "modal_damping",
 )  # logarithms of readings are straight in their normalised parameters
 STRAIGHT = 3
+NINETY = 1.353  # of log likelihood below the best: the interval of 90 % of a normal law
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from .linear_pairs import best_pairs
 FITTED = 3
 
 
-def linear_rows(bench, sizes, tables, without, begun=()):
+def linear_rows(bench, sizes, tables, begun=()):
     """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a
     Workbench, best first; before them two of them at once where one does not suffice. tables are
     extended; begun: see best_pairs.
@@ -24,7 +24,7 @@ def linear_rows(bench, sizes, tables, without, begun=()):
     for candidate in linear_candidates(
         bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes
     ):
-        if candidate.effect_id == "sensor_delay" or candidate.effect_id in without:
+        if candidate.effect_id == "sensor_delay":
             continue
         known = tables.get(candidate.name)
         if not candidate.effect.measured and not (known and known.serves(bench)):

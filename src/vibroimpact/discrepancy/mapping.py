@@ -1,20 +1,21 @@
 """The discrepancy map: measured against simulated band powers per record, channel and band, with z
-from seeds, clusters of bands, and a global p.
+from seeds, and clusters of bands.
 """
 
 import numpy as np
 import xarray as xr
 from scipy import stats
 
-from . import naming, priors
+from . import priors
+from .covariance import feature_sd, free_directions
+from .driven import driven_channels
 from .features import BLEND, compressed
-from .likelihood import feature_sd, free_directions
 from .misfit import counted
-from .null import driven_channels
 
 SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
 SHOWN_SEEDS = 4
+FREEDOM = 15  # of the t law of z, whose variance is of some 16 runs
 PEAK = 0.5  # of the largest difference in dB: bands beside it that differ by as much belong to it
 
 
@@ -61,26 +62,11 @@ def smoothed(variance, layout):
     return out
 
 
-def global_p(bench, null, measured, mean=None, law=True):
-    """Return p: how probable records as far off as the measured ones are, from seeds and what two
-    codes differ by.
-
-    mean (record, feature) of a model, the null's where None; law: whether what it changes counts as
-    uncertain as its law. The sum of the records' chi-squares is compared with a gamma law of its
-    expectation and of the bare model's scatter, see naming.bare_spread.
-    """
-    total = naming.chi_squares(
-        bench, null, null.mean if mean is None else mean, measured, law and mean is not None
-    ).sum()
-    expected, variance = measured.size, np.sum(naming.bare_spread(null) ** 2)
-    return float(stats.gamma.sf(total, expected**2 / variance, scale=variance / expected))
-
-
 def significant(z, chosen):
     """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate, the error
     rate of the verdict (Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995).
     """
-    p = 2.0 * stats.t.sf(np.abs(z), priors.NULL_SEEDS - 1)
+    p = 2.0 * stats.t.sf(np.abs(z), FREEDOM)
     inside = np.sort(p[chosen])
     passed = np.flatnonzero(
         inside <= priors.SIGNIFICANT * (1 + np.arange(inside.size)) / max(inside.size, 1)

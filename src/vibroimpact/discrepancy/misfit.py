@@ -48,12 +48,6 @@ def makes_worse(row):
     return row["after_dB"] > row["before_dB"] and left > priors.NO_EXCESS * row["floor_dB"]
 
 
-def judged(signals):
-    """Return (record,): the records that took no part in the fit, the fitted ones where all did."""
-    held_out = signals.holdout()
-    return held_out if len(held_out) else signals.fit()
-
-
 def floor_of(power, chosen):
     """Return the distance in dB between two seeds of a model, RMS over all pairs: power (record,
     seed, channel, band).

@@ -26,15 +26,14 @@ GRID = (
 BEGUN = 3  # models that the fit is begun from
 
 
-def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
+def fit_from_nearest(bench, changes, scales, held):
     """Return (ModalFit, [(Pair, unit (parameter,))]) of the lowest record of a Workbench, relative
     to its bare model, begun from the linear effects whose spectra come nearest, and those pairs
     among them.
 
     One effect, then two where one does not lead to a fit. changes: LinearChanges of the Workbench;
     scales: see Candidate.physical; held: names of what the campaign holds beyond force and
-    response; without: ids of effects that are left out. The Workbench's own fit where nothing leads
-    to a better one.
+    response. The Workbench's own fit where nothing leads to a better one.
     """
     spectra = BandSpectra(bench)
     singles = [
@@ -42,7 +41,7 @@ def fit_from_nearest(bench, changes, scales, held, without=frozenset()):
         for candidate in linear_candidates(
             bench.values, bench.signals.names, held, bench.measured_fit.modes
         )
-        if not candidate.effect.measured and candidate.effect_id not in without
+        if not candidate.effect.measured
     ]
     pairs = []
     least, best, known = left(bench.measured_fit, bench.bare), bench.measured_fit, []

@@ -177,43 +177,11 @@ def neutral(modes, channels):
     return Nuisance(np.asarray(modes), np.ones(len(modes)), np.ones(len(modes)), np.ones(channels))
 
 
-def cost(nuisance):
-    """Return what a Nuisance costs in log likelihood: half the squares of its corrections in sigma
-    of their priors.
-    """
-    pulls = np.concatenate(
-        [
-            np.log(nuisance.frequency) / priors.FREQUENCY_SD,
-            np.log(nuisance.damping) / priors.DAMPING_SD,
-            (nuisance.gain - 1.0) / priors.GAIN_SD,
-        ]
-    )
-    return 0.5 * float(pulls @ pulls)
-
-
 def plausible(pulls):
     """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the
     limit of a correction, as a faulty channel's gain may be.
     """
     return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= priors.FEW_PULLED
-
-
-def credible(measured, simulated, error, times=1.0):
-    """Return whether a Reading is so near to another that nuisances may be what they differ by, or
-    within so many times that; error: see difference.
-    """
-    return likelihood(measured, simulated, error)[1] < times * priors.CREDIBLE * len(
-        difference(measured, simulated, error)[0]
-    )
-
-
-def without(reading, nuisance):
-    """Return the Reading of a corrected model as that of the model without the corrections."""
-    return replace(
-        reading,
-        log_frequency=reading.log_frequency - np.log(nuisance.frequency),
-        log_damping=reading.log_damping - np.log(nuisance.damping),
-    )
 
 
 def corrected(model, nuisance, bare=None):

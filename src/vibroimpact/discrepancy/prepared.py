@@ -1,10 +1,10 @@
-"""The first job of a discrepancy run: checks, the linear stage, the linear effects that are adopted
-before contact is looked at.
+"""The linear stage: checks, what the lowest record tells by itself, the linear effects that are
+adopted before contact is looked at.
 """
 
-import json
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
+from math import ceil
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
-from vibroimpact.records import read_json, write_text
+from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
@@ -27,6 +27,7 @@ from .comparable import (
     contact_force_rows,
     left_out,
 )
+from .driven import driven_channels
 from .in_place import in_place
 from .linear_findings import linear_findings
 from .linear_fit import LinearChanges
@@ -36,16 +37,14 @@ from .measuring import Measuring
 from .modal_fit import ModalFit
 from .nearest_model import fit_from_nearest, translated
 from .nuisance import neutral, plausible
-from .null import driven_channels
 from .scales import scales
 from .sensed import differentiated, kind_groups
-from .windows import compared_s, screened_s
 from .workbench import Workbench, corrected_nuisance
 
 
 @dataclass
 class Prepared:
-    """What the first job hands on, in plain values.
+    """What the linear stage hands on, in plain values.
 
     checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can
     be tested; scales {name: value}; adopted: None or {name, unit, gain, interval} of the linear
@@ -54,10 +53,8 @@ class Prepared:
     in_place: those that may be what the lowest record took for what is adopted; linear_stage:
     whether the lowest record tells of the linear structure; still_linear: whether it does with what
     is adopted, or touches then; nonlinear_low: the lowest record is not that of a linear structure;
-    chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; longest_s:
-    records are cut to it, None for whole ones; compared_s, screened_s: what is looked at of them,
-    see windows; fit: the ModalFit of the lowest record on the model with what was adopted; for_all,
-    draw: see prepare.
+    chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; fit: the
+    ModalFit of the lowest record on the model with what was adopted; draw: see prepare.
     """
 
     checks: list
@@ -74,23 +71,19 @@ class Prepared:
     residual: list = field(default_factory=list)
     delays: dict = field(default_factory=dict)
     not_testable: list = field(default_factory=list)
-    longest_s: float | None = None
-    compared_s: float | None = None
-    screened_s: float | None = None
     fit: dict | None = None
-    for_all: bool = False
     draw: int = 0
 
-    def room(self, candidate, more=0):
-        """Return whether a Candidate or Pair, with so many more effects, may be missing beside what
-        was adopted, or in its place: no more than priors.MOST_EFFECTS are named.
+    def room(self, candidate):
+        """Return whether a Candidate or Pair may be missing beside what was adopted, or in its
+        place: no more than priors.MOST_EFFECTS are named.
         """
         adopted = (
             []
             if self.adopted is None or candidate.alone
             else candidate_named(self.adopted["name"]).ids
         )
-        return len(adopted) + len(candidate.ids) + more <= priors.MOST_EFFECTS
+        return len(adopted) + len(candidate.ids) <= priors.MOST_EFFECTS
 
     def beside_or_in_place(self, candidate):
         """Return the Candidates that one is simulated as: beside what was adopted where there is
@@ -99,15 +92,6 @@ class Prepared:
         return [candidate] * self.room(candidate) + [replace(candidate, alone=True)] * (
             candidate.name in self.in_place
         )
-
-    def write(self, path):
-        """Write as JSON."""
-        write_text(json.dumps(asdict(self), indent=1), path)
-
-    @classmethod
-    def read(cls, path):
-        """Return the Prepared of a file."""
-        return cls(**read_json(path))
 
 
 def usable_campaign(path, checks):
@@ -154,9 +138,9 @@ def usable_campaign(path, checks):
     return campaign.isel(record=records, channel=channels), None
 
 
-def workbench(config, campaign_path, prepared, seconds):
-    """Return the Workbench of a campaign, each record cut to so many seconds, as the first job left
-    it: nuisances corrected, the linear effects adopted.
+def workbench(config, campaign_path, prepared, seconds=None):
+    """Return the Workbench of a campaign, each record cut to so many seconds (None: whole), as the
+    linear stage left it: nuisances corrected, the linear effects adopted.
     """
     campaign, refusal = usable_campaign(campaign_path, prepared.checks)
     if refusal:
@@ -205,24 +189,9 @@ def adopt(bench, prepared, linear_stage=None):
     bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
-def prepare(
-    config,
-    campaign_path,
-    longest_s=None,
-    tables=None,
-    without=frozenset(),
-    asked_s=None,
-    for_all=False,
-    draw=0,
-    quick=False,
-):
-    """Return the Prepared of a campaign file and a checked Config.
-
-    tables {candidate name: LinearTable}: known from another campaign of the same model, extended;
-    without: ids of effects that are not in the catalogue this time; asked_s: compare so many
-    seconds of each record; for_all: look at every candidate and record, for campaigns of the same
-    model that need them; draw: number of the draw of seeds, of which verdicts shall not depend;
-    quick: look for effects at fewer places.
+def prepare(config, campaign_path, draw=0):
+    """Return the Prepared of a campaign file and a checked Config; draw: number of the draw of
+    seeds, of which verdicts shall not depend.
     """
     whole, checks = check_file(campaign_path)
     if whole is not None and not refused(checks):
@@ -235,9 +204,7 @@ def prepare(
     if refusal is None:
         try:
             whole_s = campaign.sizes["time"] / float(campaign.attrs["sampling_frequency"])
-            seconds = compared_s(
-                campaign.sizes["record"], min(whole_s, longest_s or whole_s), asked_s
-            )
+            seconds = read_s(campaign.sizes["record"], whole_s)
             bench = Workbench(config, campaign, seconds)
             mixed = [*mixed_up(bench), *contact_force_rows(bench.bare, bench.signals)]
             if mixed:
@@ -261,11 +228,7 @@ def prepare(
         return Prepared(checks, refusal)
     out = Prepared(
         checks,
-        longest_s=longest_s,
-        compared_s=seconds,
-        screened_s=screened_s(seconds),
         not_testable=not_testable(held(campaign)),
-        for_all=for_all,
         draw=draw,
     )
     gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
@@ -280,13 +243,10 @@ def prepare(
     out.linear_stage = bool(bench.linear_stage)
     fresh = partial(Workbench, config, campaign, seconds)
     if out.linear_stage:
-        bench = read_lowest(bench, fresh, out, {} if tables is None else tables, without)
+        bench = read_lowest(bench, fresh, out)
     shown = out.fit["modes"] if out.fit else bench.measured_fit.modes if out.linear_stage else None
-    candidates = local_candidates(
-        bench.given, held(campaign), telling_modes(out, shown, for_all, quick), quick
-    )
+    candidates = local_candidates(bench.given, held(campaign), telling_modes(out, shown))
     out.still_linear = bool(bench.linear_stage)
-    candidates = [candidate for candidate in candidates if not without & set(candidate.ids)]
     out.in_place = taken_for_linear(bench, fresh, out, candidates)
     out.screened = [candidate.name for candidate in candidates if out.beside_or_in_place(candidate)]
     # a linear effect may be what makes it touch: those that come nearest are simulated where they
@@ -294,6 +254,13 @@ def prepare(
     if out.linear_stage and out.nonlinear_low:
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
+
+
+def read_s(records, duration_s):
+    """Return the seconds that are read of each of so many records: less where they fill more than
+    one batch.
+    """
+    return min(max(priors.READ_S / ceil(records / LANES), priors.LEAST_READ_S), duration_s)
 
 
 def largest_motion(signals):
@@ -328,35 +295,28 @@ def taken_for_linear(bench, fresh, prepared, candidates):
     return in_place(bare, candidates, prepared.adopted["gain"], prepared.scales["tube_translation"])
 
 
-def telling_modes(prepared, shown, for_all=False, quick=False):
+def telling_modes(prepared, shown):
     """Return those of the modes that the lowest record shows by which it tells of linear effects,
     None where these are candidates as the others are.
 
     A record that something bends shows modes, yet tells wrong which linear effect there is beside
     it: a press that holds the tube hid nine times its damping.
     """
-    return (
-        shown
-        if prepared.linear_stage and not for_all and (quick or not prepared.nonlinear_low)
-        else None
-    )
+    return shown if prepared.linear_stage and not prepared.nonlinear_low else None
 
 
-def read_lowest(bench, fresh, out, tables, without):
+def read_lowest(bench, fresh, out):
     """Return the Workbench with what the lowest record tells: linear stage, delays, linear effects,
-    what is adopted; Prepared out and tables are changed.
+    what is adopted; Prepared out is changed.
 
-    bench: Workbench; fresh() gives another one; tables, without: see prepare.
+    bench: Workbench; fresh() gives another one.
     """
-    driven, begun = driven_channels(bench), ()
+    driven, begun, tables = driven_channels(bench), (), {}
     if (
         left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL
     ):  # modes that moved too far to be followed: begin from the effects that come nearest
-        (bench.measured_fit, begun), tables = (
-            fit_from_nearest(
-                bench, LinearChanges(bench), out.scales, held(bench.campaign), without
-            ),
-            {},
+        bench.measured_fit, begun = fit_from_nearest(
+            bench, LinearChanges(bench), out.scales, held(bench.campaign)
         )
         bench.__dict__.pop("measured_reading", None)
     fit = bench.measured_fit
@@ -380,7 +340,7 @@ def read_lowest(bench, fresh, out, tables, without):
         for name, lag in zip(bench.signals.names, fit.delay, strict=True)
         if lag != 0.0
     }
-    out.linear = linear_rows(bench, out.scales, tables, without, begun)
+    out.linear = linear_rows(bench, out.scales, tables, begun)
     for name, lag in out.delays.items():
         out.checks.append(
             {
@@ -408,7 +368,7 @@ def read_lowest(bench, fresh, out, tables, without):
             and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL
         ):
             out.nonlinear_low = False
-            bench = read_again(bench, fresh, out, tables, without, begun)
+            bench = read_again(bench, fresh, out, tables, begun)
             break
     if out.nonlinear_low:
         out.adopted, bench = None, fresh()
@@ -429,7 +389,7 @@ UNREAD_MESSAGE = (
 )
 
 
-def read_again(moved, fresh, out, tables, without, begun):
+def read_again(moved, fresh, out, tables, begun):
     """Return the Workbench with what the lowest record tells once its modes are fitted from the
     model that moved them; Prepared out is changed.
 
@@ -444,7 +404,7 @@ def read_again(moved, fresh, out, tables, without, begun):
             return moved
         bare, before = fresh(), out.adopted["name"]
         bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
-        rows = linear_rows(bare, out.scales, tables, without, begun)
+        rows = linear_rows(bare, out.scales, tables, begun)
         if not nameable(rows[0], out.scales):
             return moved
         out.linear, out.adopted = rows, rows[0]

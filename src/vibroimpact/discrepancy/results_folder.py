@@ -55,7 +55,8 @@ def best_places(rows):
     shown, kept = set(), []
     for row in rows:
         ids = row["ids"] if isinstance(row["ids"], str) else "+".join(row["ids"])
-        if str(row["heldout_score"]) not in NO_VALUE or ids not in shown:
+        closely = str(row.get("heldout_score")) not in NO_VALUE or str(row.get("tested")) == "True"
+        if closely or ids not in shown:
             kept.append(row)
         shown.add(ids)
     return kept

@@ -1,4 +1,4 @@
-"""All that a campaign and a model give to every job: signals, features of the measurement, the
+"""All that a campaign and a model give to a search: signals, features of the measurement, the
 corrected model, and runs of any variant of it.
 """
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
-from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
 
 from . import nuisance as linear
@@ -21,7 +20,6 @@ from .forward import Forces, schedule_of, simulate_records
 from .linear_record import LinearRecord
 from .linear_stage import fit_modes
 from .linearised import linearised
-from .sensed import kind_groups
 from .signals import signals_of
 
 FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
@@ -30,7 +28,6 @@ TOUCHES = (
 )
 SETTLING_S = 4.0  # until a run from rest has forgotten it
 DRAW = 1000000  # seeds from the first of a draw to that of the next
-SAME = 1.0e-5  # relative difference of two responses without contact
 
 
 class Workbench:
@@ -76,7 +73,6 @@ class Workbench:
             return self
         out = copy(self)
         out.nuisance, out.modes_told = nuisance, True
-        out.__dict__.pop("low_response", None)
         return out
 
     def rebase(self, values):
@@ -85,7 +81,7 @@ class Workbench:
         """
         self.values, self.followed = values, True
         self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
-        for name in ("measured_fit", "measured_reading", "low_response", "linear_stage"):
+        for name in ("measured_fit", "measured_reading", "linear_stage"):
             self.__dict__.pop(name, None)
 
     def variant(self, candidate, physical):
@@ -93,12 +89,6 @@ class Workbench:
         place.
         """
         return candidate.variant(self._without(candidate), physical)
-
-    def other_laws(self, candidate, physical):
-        """Return [configuration in plain values] of a candidate by other laws than its own, see
-        effects.effect.Effect.
-        """
-        return candidate.other_laws(self._without(candidate), physical)
 
     def _without(self, candidate):
         """Return the configuration that a candidate changes: with what was adopted, or in its
@@ -202,9 +192,8 @@ class Workbench:
             self.bare,
         )
 
-    def touches(self, model=None):
-        """Return True where the lowest record already brings the bare model into contact."""
-        model = linear.corrected(self.bare, self.nuisance) if model is None else model
+    def touches(self, model):
+        """Return True where the lowest record already brings a model into contact."""
         points = model.contact_shapes.reshape(model.modes, -1)
         if not points.size:
             return False
@@ -302,60 +291,20 @@ class Workbench:
         """
         return self.noisy_features(runs, self.respond(model, runs, measuring))
 
-    @cached_property
-    def low_response(self):
-        """Return (channel, sample): the simulated lowest record of the corrected bare model,
-        without the gains of the nuisance.
-        """
-        return (
-            self.respond(self.model(), self.runs([self.signals.lowest], 1))[0] / self.gains[:, None]
-        )
-
-    def low_reading(self, response):
-        """Return the Reading, nuisances taken out, of a variant's lowest record (channel, sample),
-        None where it answers as the bare model does.
-        """
-        changed = [
-            np.mean((response[own] - self.low_response[own]) ** 2)
-            > SAME**2 * np.mean(self.low_response[own] ** 2)
-            for own in kind_groups(self.signals.kinds).values()  # each in its own unit
-        ]
-        if not any(changed):
-            return None
-        if self.late is not None:  # the fit of the measured record took the delays out
-            response = replace(self.late, delay=-self.late.delay).delayed(
-                response, self.signals.rate
-            )
-        keep = np.isfinite(self.signals.force[self.signals.lowest][0])
-        start = linear.corrected(self.bare, self.nuisance)
-        fit = fit_modes(
-            self.linear_record,
-            response[:, keep],
-            start,
-            self.signals.kinds,
-            self.signals.noise_in_band,
-            self.measured_fit.modes,
-        )
-        return linear.without(linear.reading_of_fit(fit, start), self.nuisance)
-
-    def seeds_of_a_batch(self, records):
-        """Return how many seeds of every record fill the lanes of a batch, at least 1."""
-        return max(1, LANES // max(1, len(records)))
-
     @staticmethod
     def valid(values):
         """Return the samples of (..., sample) at which all are finite."""
         return values[..., np.isfinite(values).all(axis=tuple(range(values.ndim - 1)))]
 
 
-def corrected_nuisance(bench, reading=None):
-    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record under a
-    Reading; that of the bare model where None.
+def corrected_nuisance(bench):
+    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record under the
+    Reading of the bare model.
     """
     fit = bench.measured_fit
     if fit is None:
         return None, 0.0, 0.0, np.zeros(0)
     score, chi_square, pulls = linear.likelihood(
-        bench.measured_reading, bench.bare_reading if reading is None else reading, fit.covariance
+        bench.measured_reading, bench.bare_reading, fit.covariance
     )
     return linear.nuisance_of(pulls, fit.modes, len(bench.signals.names)), score, chi_square, pulls

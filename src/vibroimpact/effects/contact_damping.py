@@ -30,6 +30,5 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("hunt_crossley",),
-    quantity="contact damping",
     broken=("T5",),
 )

@@ -30,5 +30,4 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("hertz", "plate_flexibility"),
-    quantity="contact stiffness",
 )

@@ -17,34 +17,6 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     )
 
 
-def stiff(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a slider whose stick spring is twice as stiff: the stiffness
-    before slip belongs to the joint and is not known.
-    """
-    laws = {
-        "slip_limit_N": parameters["force"],
-        "stick_stiffness_N_per_m": 2.0 * STICK_PER_FORCE * parameters["force"],
-    }
-    return places.with_element(
-        values, "coulomb_friction", location, places.across(values, location), **laws
-    )
-
-
-def gradual(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with parallel sliders that slip one after another, of the same total
-    stiffness and limit: a joint loses energy before it slips as a whole.
-
-    Source: W.D. Iwan, J. Appl. Mech. 33 (1966) 893-900.
-    """
-    laws = {
-        "slip_limit_N": parameters["force"],
-        "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"],
-    }
-    return places.side_by_side(
-        values, "coulomb_friction", location, places.across(values, location), **laws
-    )
-
-
 EFFECT = Effect(
     id="coulomb_friction",
     explanation="something rubs with a constant force",
@@ -67,5 +39,4 @@ EFFECT = Effect(
     broken=("T1", "T2", "T5"),
     aliases=("saturation_stiffness", "dry_friction"),
     locations=places.masses_and_springs,
-    other_laws=(stiff, gradual),
 )

@@ -49,7 +49,6 @@ class Parameter:
     low, high: bounds, as multiples of the size that `per` names in SCALES.
     neutral: value in SI at which the effect vanishes, None where there is no such value.
     log: whether it is searched in its logarithm.
-    design: values to try first, as fractions of the searched range.
     over: another parameter of the effect; this one is searched as a multiple of it, where their
         ratio sets what is seen.
     gain_power: a gain common to force and responses scales lengths; the value that explains the
@@ -63,7 +62,6 @@ class Parameter:
     neutral: float | None
     per: str = "one"
     log: bool = True
-    design: tuple[float, ...] = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
     over: str | None = None
     gain_power: float = 0.0
     meaning: str = ""
@@ -86,10 +84,6 @@ class Effect:
     measured: it changes the measurement, not the model.
     needs: variables that the campaign must hold.
     law_of: id of the effect under which this one is reported, where it is another law of it.
-    other_laws: alternatives to apply that a measurement in service can not distinguish from it.
-    quantity: name of what several effects of the catalogue are laws of.
-    unlimited(values, location): (id, location) of the effect that this one equals where its limit
-        is never reached, None where the catalogue has none.
     """
 
     id: str
@@ -106,11 +100,6 @@ class Effect:
     measured: bool = False
     needs: tuple[str, ...] = ()
     law_of: str = ""
-    other_laws: tuple[Apply, ...] = ()
-    quantity: str = ""
-    unlimited: Callable[[Values, str], tuple[str, str] | None] = field(
-        default=lambda values, location: None
-    )
 
     @property
     def family(self) -> str:

@@ -53,7 +53,6 @@ EFFECT = Effect(
             0.0,
             per="damping_per_length",
             log=False,
-            design=(0.1,),
             meaning="damping per length of tube",
         ),
     ),

@@ -34,7 +34,6 @@ EFFECT = Effect(
             1.5707963267948966,
             None,
             log=False,
-            design=(0.0, 0.25, 0.5, 0.75),
             meaning="direction of the first land",
         ),
     ),

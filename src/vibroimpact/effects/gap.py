@@ -34,7 +34,6 @@ EFFECT = Effect(
             0.4,
             2.5,
             1.0,
-            design=(0.1, 0.3, 0.42, 0.58, 0.7, 0.9),
             gain_power=1.0,
             meaning="clearance over its nominal value",
         ),

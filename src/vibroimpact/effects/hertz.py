@@ -33,6 +33,5 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("contact_stiffness",),
-    quantity="contact stiffness",
     broken=("T2",),
 )

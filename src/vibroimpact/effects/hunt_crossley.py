@@ -30,6 +30,5 @@ EFFECT = Effect(
     apply=apply,
     locations=places.supports,
     aliases=("contact_damping",),
-    quantity="contact damping",
     broken=("T2", "T5"),
 )

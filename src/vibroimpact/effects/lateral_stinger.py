@@ -1,7 +1,5 @@
 """The shaker's rod holds the structure across the force."""
 
-import numpy as np
-
 from . import places
 from .effect import Effect, Parameter, Values
 
@@ -20,18 +18,6 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     return places.with_element(
         values, "lateral_stinger", values["excitation"]["point"], DIRECTIONS[location], **laws
     )
-
-
-def along_the_force(values: Values, point: str) -> tuple[str, str] | None:
-    """Return (id, axis) of the stinger that equals a spring along the force at a point.
-
-    None where the point is not the drive point, or the force is along no axis.
-    """
-    force = np.array(values["excitation"]["direction"]) / np.linalg.norm(
-        values["excitation"]["direction"]
-    )
-    axes = [name for name, axis in DIRECTIONS.items() if abs(force @ axis) > ALONG]
-    return ("lateral_stinger", axes[0]) if axes and [point] == places.driven(values) else None
 
 
 EFFECT = Effect(
@@ -57,7 +43,6 @@ EFFECT = Effect(
             0.0,
             per="tube_damping",
             log=False,
-            design=(0.1,),
             meaning="damping of the rod",
         ),
     ),

@@ -112,24 +112,6 @@ def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
     return values | {key: [*values[key], {"name": free, **entry}]}
 
 
-def side_by_side(
-    values: Values, name: str, point: str, direction: Sequence[float], **laws: float
-) -> Values:
-    """Return the configuration with a local element split into parallel ones, equally stiff, with
-    SHARES of its limit: the corner of its law becomes gradual.
-
-    laws: keys of an element, its limit in N and its stiffness.
-    """
-    limits = {key for key in laws if key.endswith("limit_N")}
-    for number, share in enumerate(SHARES):
-        parts = {
-            key: value * share if key in limits else value / len(SHARES)
-            for key, value in laws.items()
-        }
-        values = with_element(values, f"{name}_{number + 1}", point, direction, **parts)
-    return values
-
-
 def across(values: Values, point: str) -> Sequence[float]:
     """Return the direction of an element at a point: that of the force."""
     return values["excitation"]["direction"]

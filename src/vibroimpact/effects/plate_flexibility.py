@@ -30,7 +30,6 @@ EFFECT = Effect(
             8.0,
             None,
             per="contact_stiffness",
-            design=(0.15, 0.4, 0.65, 0.8),
             over="mass",
             meaning="stiffness of the plate",
         ),  # the plate's own frequency
@@ -41,7 +40,6 @@ EFFECT = Effect(
             3.0,
             None,
             per="mass",
-            design=(0.2, 0.6, 1.0),
             meaning="mass of the plate",
         ),
     ),

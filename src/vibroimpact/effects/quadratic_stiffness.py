@@ -31,7 +31,6 @@ EFFECT = Effect(
             0.0,
             per="quadratic",
             log=False,
-            design=(0.0, 0.2, 0.4, 0.6, 0.8, 1.0),
             gain_power=-1.0,
             meaning="coefficient of the square",
         ),

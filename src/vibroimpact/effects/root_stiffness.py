@@ -28,7 +28,6 @@ EFFECT = Effect(
             3.0e5,
             None,
             per="tube_translation",
-            design=(0.3, 0.6, 1.0),
             meaning="stiffness against translation",
         ),
         Parameter(
@@ -38,7 +37,6 @@ EFFECT = Effect(
             1.0e3,
             None,
             per="tube_rotation",
-            design=(0.2, 0.5, 0.8),
             meaning="stiffness against rotation",
         ),
     ),

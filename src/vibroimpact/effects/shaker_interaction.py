@@ -40,7 +40,6 @@ EFFECT = Effect(
             0.0,
             per="tube_damping",
             log=False,
-            design=(0.1,),
             meaning="damping of its suspension",
         ),
     ),

@@ -30,7 +30,6 @@ def write(search: Search, decision: Decision, folder: Path) -> None:
                 "gain": search.fits[name].log_evidence,
                 "probability": chance,
                 **parameters_of(search, name),
-                "by_level": [],
             }
             file = f"{name.replace('@', '_at_').replace('+', '_and_')}.json"
             write_text(json.dumps(plain_values(content), indent=1), folder / file)

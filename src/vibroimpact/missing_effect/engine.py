@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.conclusion import refused
 from vibroimpact.discrepancy.cost import SIMULATED
 from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench
@@ -22,6 +21,7 @@ from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
 from .probabilities import posterior
+from .refused import write_refused
 from .verification import closing
 
 OPEN = 0.3  # probability of something else, beside an explanation or alone, from which two effects
@@ -67,7 +67,7 @@ class Engine:
         with self.stage("linear stage"):
             prepared = prepare(self.config, self.campaign, draw=self.seed)
         if prepared.refusal is not None:
-            refused(self.folder, prepared, provenance, self.spent_so_far)
+            write_refused(self.folder, prepared, provenance, self.spent_so_far)
             so_far.write_refusal(self.folder, prepared)
             return
         search = self.null_stage(prepared)
@@ -131,11 +131,11 @@ class Engine:
         """Return (Workbench of the model as given, Workbench with what was adopted), of whole
         records.
         """
-        whole = workbench(self.config, self.campaign, prepared, prepared.longest_s)
+        whole = workbench(self.config, self.campaign, prepared)
         if prepared.adopted is None:
             return whole, whole
         bare = replace(prepared, adopted=None, fit=None)
-        return workbench(self.config, self.campaign, bare, prepared.longest_s), whole
+        return workbench(self.config, self.campaign, bare), whole
 
 
 def screened(prepared: Prepared) -> list[str]:

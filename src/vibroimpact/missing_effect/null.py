@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from scipy import linalg, stats
 
+from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
+from vibroimpact.discrepancy.driven import bursting, driven_channels
 from vibroimpact.discrepancy.features import FeatureLayout, compressed
-from vibroimpact.discrepancy.likelihood import feature_sd, free_directions, shrunk
-from vibroimpact.discrepancy.null import bursting, driven_channels
 from vibroimpact.discrepancy.survivors import of_survivors
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.kernels.lanes import LANES

@@ -9,11 +9,9 @@ import numpy as np
 
 from vibroimpact.discrepancy import mapping, misfit, power_balance
 from vibroimpact.discrepancy.completed_model import not_offered, updated_model
-from vibroimpact.discrepancy.conclusion import COLUMNS, SHOWN, bounds, contract_checks, where
-from vibroimpact.discrepancy.invariances import broken_invariances
+from vibroimpact.discrepancy.invariances import broken_invariances, one_sided_rows
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.discrepancy.prepared import Prepared
-from vibroimpact.discrepancy.verdict import effects_of
 from vibroimpact.effects.effect import Values
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import (
@@ -25,6 +23,8 @@ from vibroimpact.verdict.file import write_verdict
 
 from . import candidate_files
 from .decision import Decision, withdrawn_decision
+from .null import Null
+from .rows import COLUMNS, SHOWN, bounds, contract_checks, effects_of, where
 from .search import Search
 from .verification import Closing, without_chosen
 
@@ -66,7 +66,7 @@ def write(
         "provenance": provenance,
     }
     write_verdict(Verdict.from_values(content), folder / "verdict.json")
-    write_table(ranking, folder / "ranking.csv", columns=(*COLUMNS, "probability"))
+    write_table(ranking, folder / "ranking.csv", columns=COLUMNS)
     for name, of, runs, told in (
         ("map", given, closed.before, compared),
         ("map_after", whole, closed.after, after),
@@ -103,7 +103,7 @@ def decision_rows(
         "ranking": [
             {
                 "ids": row["ids"].split("+"),
-                "heldout_score": row["heldout_score"],
+                "heldout_score": None,
                 "closed_fraction": row["closed_fraction"],
                 "location": row["location"],
                 "probability": row["probability"],
@@ -122,9 +122,11 @@ def evidence_rows(
 ) -> Values:
     """Return the part of verdict.json that says how far model and measurement are apart."""
     null, (given, _) = search.null, closed.benches
+    measured = search.bench.measured_features[null.records]
     rest = null.measured
     if decision.chosen is not None:
         rest = rest - search.fits[decision.chosen.candidate.name].mean
+    p_before, p_after = by_chance(null, rest, measured, closed)
     own = rest.reshape(len(null.records), -1)
     count = own.shape[1]
     return {
@@ -137,11 +139,34 @@ def evidence_rows(
             else mapping.regions(given, compared[0], compared[1], misfit.counted(given))
         ),
         "misfit": closed.misfit,
-        "p_global_before": null.probability(),
-        "p_global_after": null.probability(rest),
+        "p_global_before": p_before,
+        "p_global_after": p_after,
         "explained_z": ((count - np.sum(own**2, axis=1)) / np.sqrt(2.0 * count)).tolist(),
-        "checks": contract_checks(prepared.checks) + bounds(decision, prepared) + left_out(search),
+        "checks": (
+            contract_checks(prepared.checks)
+            + bounds(decision)
+            + one_sided_rows(
+                search.bench,
+                null,
+                measured,
+                closed.after.compared[null.records],
+            )
+            + left_out(search)
+        ),
     }
+
+
+def by_chance(
+    null: Null, rest: np.ndarray, measured: np.ndarray, closed: Closing
+) -> tuple[float, float]:
+    """Return how probable the measurement (record, feature) is by chance with the model as given,
+    and with the completed one, which leaves rest (value,).
+    """
+    given, whole = closed.benches
+    off = measured - closed.before.compared[null.records]
+    # the null holds what was adopted; the model as given does not
+    before = null.probability(None if given is whole else null.change(null.mean + off))
+    return before, before if closed.after is closed.before else null.probability(rest)
 
 
 def left_out(search: Search) -> list[Values]:
@@ -179,9 +204,7 @@ def ranking_rows(
                 "location": where(name),
                 # none where it brings the model no nearer
                 "fit_score": found.log_evidence if np.isfinite(found.log_evidence) else None,
-                "heldout_score": None,
                 "closed_fraction": share if name == chosen else None,
-                "threshold": None,
                 "tested": trial.refined > 0,
                 "probability": chance,
             }

@@ -3,15 +3,82 @@ given, beside the measurement.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
-from vibroimpact.discrepancy.conclusion import Verified, misfits, verified
-from vibroimpact.discrepancy.misfit import makes_worse
+import numpy as np
+
+from vibroimpact.discrepancy import mapping, misfit
+from vibroimpact.discrepancy.survivors import survivors
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.contact_convergence import IntegrationError
 
 from .decision import Chosen
 
+FRESH = 20000  # first seed of the verification: none of the search's
 RUNS = 32  # of whole records in all
+
+
+@dataclass(frozen=True)
+class Verified:
+    """Fresh seeds of a model on whole records: features (record, seed, feature); compared (record,
+    feature): their mean over what candidates were calibrated on; shown (record, shown seed,
+    channel, sample): responses with noise.
+    """
+
+    features: np.ndarray
+    compared: np.ndarray
+    shown: np.ndarray
+
+
+def verified(whole: Workbench, model: Any, seeds: int, bench: Workbench) -> Verified:
+    """Return the Verified of a model on the Workbench of whole records; bench: that of what was
+    compared.
+    """
+    records = len(whole.signals.load)
+    runs = whole.runs(range(records), seeds, FRESH)
+    responses = whole.respond(model, runs)
+    features, compared = (
+        window.noisy_features(runs, responses).reshape(records, seeds, -1)
+        for window in (whole, bench)
+    )
+    stayed = survivors(features)
+    features, compared = (
+        np.take_along_axis(rows, stayed[..., None], axis=1) for rows in (features, compared)
+    )
+    responses = responses.reshape(records, seeds, *responses.shape[1:])[
+        np.arange(records)[:, None], stayed[:, : mapping.SHOWN_SEEDS]
+    ]
+    noise = np.random.default_rng(11).standard_normal(
+        responses.shape, dtype=np.float32
+    ) * whole.signals.noise[:, None].astype(np.float32)
+    shown = np.where(np.isfinite(whole.signals.force[:, :1])[:, None], responses + noise, np.nan)
+    return Verified(features, compared.mean(axis=1), shown)
+
+
+def misfits(whole: Workbench, before: Verified, after: Verified) -> dict[str, Any]:
+    """Return {split: misfit.misfit_of} of what two Verified leave, nothing known where a split has
+    no records.
+    """
+    cells = misfit.counted(whole)
+    splits = {
+        "fit": whole.signals.fit(),
+        "holdout": whole.signals.holdout(),
+    }
+    return {
+        name: (
+            misfit.misfit_of(
+                whole,
+                records,
+                cells,
+                before.features.mean(axis=1),
+                after.features.mean(axis=1),
+                after.features,
+            )
+            if len(records)
+            else {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
+        )
+        for name, records in splits.items()
+    }
 
 
 @dataclass(frozen=True)
@@ -58,7 +125,7 @@ def _judged(benches, before, after):
     """Return the Closing of two Verified."""
     rows = misfits(benches[1], before, after)
     split = "holdout" if rows["holdout"]["before_dB"] is not None else "fit"
-    return Closing(benches, before, after, rows, makes_worse(rows[split]))
+    return Closing(benches, before, after, rows, misfit.makes_worse(rows[split]))
 
 
 def without_chosen(closed: Closing, window: Workbench) -> Closing:

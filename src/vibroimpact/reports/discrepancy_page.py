@@ -45,7 +45,6 @@ SECTIONS = {
     "mounting": "what",
     "restoring_force": "what",
     "discrepancy_profiles": "sure",
-    "discrepancy_levels": "sure",
     "discrepancy_map": "where",
     "where": "where",
     "discrepancy_ranking": "ruled_out",
@@ -74,7 +73,7 @@ def discrepancy_page(
     verdict: its Verdict.
     figures: PNG files in their order, each with its caption in a .txt file of the same name.
     floor: meaning of the floor of the misfit, SEEDS or NOISE.
-    compared_s: s of each record that a search by evidence compared, None for another search.
+    compared_s: s of each record that the search compared, None where the structure was identified.
     model: path of the completed model, model_updated.yaml beside the page where None.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
@@ -105,6 +104,7 @@ def discrepancy_page(
         broken="; ".join(tests),
         figures=_by_section(figures),
         ranking=_ranking_rows(verdict),
+        scored=any(row.heldout_score is not None for row in verdict.ranking),
         untestable=", ".join(in_words([name]) for name in verdict.not_testable),
         steps=next_steps(verdict, model or "model_updated.yaml"),
         checks=sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level]),

@@ -1,6 +1,5 @@
-"""Scores of the candidates on held-out records, and the parameters of the named effects.
-
-Parameters are shown as profiles of the score, and level by level.
+"""The evidence of the explanations, and the parameters of the named effects as profiles of their
+score.
 """
 
 from __future__ import annotations
@@ -13,11 +12,7 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
     BLUE,
-    GAP_COLOURS,
-    GAP_MARKERS,
-    GREY,
     ORANGE,
-    RED,
     SKY,
     label_of,
     number,
@@ -25,30 +20,27 @@ from vibroimpact.figures.style import (
 
 MOST_BARS = 16
 MOST_PROFILES = 6
-# Log likelihood beyond which scores are drawn on a logarithmic scale; a linear one would hide the
-# range near zero, which decides.
+# Log evidence beyond which it is drawn on a logarithmic scale; a linear one would hide the range
+# near zero, which decides.
 WIDE = 3000.0
 NO_UNIT = ("", "1", "-")
 
 
 def ranking_figure(ranking, named=()):
-    """Return [Sheet] of the ranking.
+    """Return [Sheet] of the ranking: bars are the log evidence, beside them the probability.
 
-    Bars are the held-out score, rings the fitted score, a line the null threshold.
-
-    ranking: rows {ids, fit_score, heldout_score, closed_fraction, threshold, tested}, ids joined by
-    +.
+    ranking: rows {ids, location, fit_score, closed_fraction, tested, probability}, the most
+    probable first, ids joined by +.
     named: ids of the verdict.
     """
-    rows = best_places(sorted(ranking, key=lambda row: -_value(row["heldout_score"])))[:MOST_BARS]
+    rows = best_places(ranking)[:MOST_BARS]
     caption = (
-        "Candidates by how much better they explain the records that they were not fitted on (bars)"
-        " and those that they were (rings), against the model as given or, where the lowest record"
-        " shows a linear effect, the model with it. Red line: the best that chance does on"
-        " campaigns with nothing hidden (98 % of them lie below). Text: share of the excess misfit"
-        " that the candidate closes on the records that took no part. Pale bars were judged by the"
-        " emulator alone, dark ones by direct simulation; the named effect, or the most probable of"
-        " several, is orange."
+        "Explanations, the most probable first, by the logarithm of how much more probable each"
+        " makes the fitted records than nothing at all does, against the model as given or, where"
+        " the lowest record shows a linear effect, the model with it. Where there is no bar, the"
+        " effect brings the model no nearer. Text: probability, and the share of the excess misfit"
+        " that it closes on the records that took no part. Pale bars are of the first runs alone,"
+        " dark ones of more; the named effect, or the most probable of several, is orange."
     )
     sheet = Sheet(
         "discrepancy_ranking",
@@ -58,72 +50,46 @@ def ranking_figure(ranking, named=()):
     )
     axes = sheet.axes["main"]
     if not rows:
-        sheet.note(axes, "no candidate was scored", "heldout_score", "place_in_list")
+        sheet.note(axes, "no explanation was run", "fit_score", "place_in_list")
         axes.set_yticks([])
         return [sheet]
     names = ["+".join(sorted(str(row["ids"]).split("+"))) for row in rows]
     wanted = "+".join(sorted(named))
-    held, fit = (
-        np.array([_value(row[key]) for row in rows]) for key in ("heldout_score", "fit_score")
-    )
+    score = np.array([_value(row["fit_score"]) for row in rows])
     places = np.arange(len(rows))
     colours = [
         ORANGE if name == wanted else BLUE if _true(row.get("tested", True)) else SKY
         for name, row in zip(names, rows, strict=True)
     ]
-    axes.barh(places, held, color=colours, height=0.62, zorder=2)
-    axes.plot(
-        fit,
-        places,
-        "o",
-        markerfacecolor="none",
-        color=BLACK,
-        markersize=5,
-        label="score on the fitted records",
-        zorder=3,
-    )
+    axes.barh(places, score, color=colours, height=0.62, zorder=2)
     for place, (row, name) in enumerate(zip(rows, names, strict=True)):
         sheet.record(
             axes,
             name,
-            heldout_score=held[place],
-            fit_score=fit[place],
+            fit_score=score[place],
             closed_fraction=_value(row.get("closed_fraction")),
-            threshold=_value(row.get("threshold")),
+            probability=_value(row.get("probability")),
         )
-    _thresholds(axes, rows, places)
-    closed = [_value(row.get("closed_fraction")) for row in rows]
-    right = max(
-        np.nanmax([*held, *fit, 0.0]),
-        *(
-            _value(row.get("threshold"))
-            for row in rows
-            if np.isfinite(_value(row.get("threshold")))
-        ),
-        0.0,
-    )
-    left = np.nanmin([*held, *fit, 0.0])
-    for place, fraction in enumerate(closed):
-        if np.isfinite(fraction):
-            axes.text(
-                right + 0.02 * (right - left),
-                place,
-                f"closes {100 * fraction:.0f} %",
-                va="center",
-                fontsize=8,
-                color=GREY if fraction <= 0 else BLACK,
-            )
-    axes.set_xlim(left - 0.02 * (right - left), right + 0.2 * (right - left))
-    if np.nanmax(np.abs([*held, *fit])) > WIDE:
+    right, left = np.nanmax([*score, 0.0]), np.nanmin([*score, 0.0])
+    right = max(right, left + 1.0)
+    for place, row in enumerate(rows):
+        axes.text(right + 0.02 * (right - left), place, _told(row), va="center", fontsize=8)
+    axes.set_xlim(left - 0.02 * (right - left), right + 0.3 * (right - left))
+    if max(right, -left) > WIDE:
         axes.set_xscale("symlog", linthresh=100.0)
         axes.set_xlim(min(2.0 * left, -50.0), max(20.0 * right, 1000.0))
     axes.set_yticks(places, [_label(row, names) for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlabel(label_of("heldout_score" if np.isfinite(held).any() else "fit_score"))
+    axes.set_xlabel(label_of("fit_score"))
     axes.grid(False, axis="y")
     axes.axvline(0.0, color=BLACK, linewidth=0.8)
-    sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return [sheet]
+
+
+def _told(row):
+    """Return the probability of a row and what it closes, in words."""
+    told = ("", _value(row.get("probability"))), ("closes ", _value(row.get("closed_fraction")))
+    return ", ".join(f"{word}{100 * share:.0f} %" for word, share in told if np.isfinite(share))
 
 
 def _label(row, names):
@@ -132,34 +98,6 @@ def _label(row, names):
     told_by_place = names.count("+".join(sorted(ids))) > 1 or len(set(ids)) < len(ids)
     place = f" ({row['location']})" if told_by_place and row.get("location") else ""
     return f"{row['ids']}{place}".replace("_", " ").replace("+", " + ")
-
-
-def _thresholds(axes, rows, places):
-    """Draw the null threshold: one line where all candidates share it, else a mark per bar."""
-    values = np.array([_value(row.get("threshold")) for row in rows])
-    known = np.isfinite(values)
-    if not known.any():
-        return
-    if np.ptp(values[known]) <= 1e-6 * max(np.abs(values[known]).max(), 1e-12):
-        axes.axvline(
-            values[known][0],
-            color=RED,
-            linestyle="--",
-            linewidth=1.4,
-            label="best by chance (98 %)",
-            zorder=4,
-        )
-        return
-    axes.vlines(
-        values[known],
-        places[known] - 0.42,
-        places[known] + 0.42,
-        color=RED,
-        linestyle="-",
-        linewidth=1.6,
-        label="best by chance (98 %)",
-        zorder=4,
-    )
 
 
 def _value(value):
@@ -294,87 +232,6 @@ def _profile(sheet, axes, curve, effects):
         axes.set_xscale("log")
     axes.set_xlabel(axis_label(curve["parameter"], unit))
     axes.set_ylabel(label_of("score"))
-
-
-def levels_figure(candidates, effects):
-    """Return [Sheet] of each named parameter fitted level by level; a correct law is constant.
-
-    candidates: as in profiles_figure, with by_level: [{parameter, unit, load_rms_N, gap_m, value,
-    low, high}], lists of equal length.
-    """
-    curves = next(
-        (
-            candidate["by_level"]
-            for candidate in named_of(candidates, effects)
-            if candidate.get("by_level")
-        ),
-        [],
-    )[:MOST_PROFILES]
-    caption = (
-        "Parameters of the named effect, fitted to each record alone, with 90 % intervals, against"
-        " load; the band is the interval of the fit to all records. A law that is right gives the"
-        " same value at every level and gap; a trend says that another law hides behind the name."
-    )
-    if not curves:
-        sheet = Sheet("discrepancy_levels", "Is the parameter the same at every level?", caption)
-        sheet.note(
-            sheet.axes["main"], "no parameter was fitted level by level", "load_rms_N", "parameter"
-        )
-        return [sheet]
-    keys = [f"{index} {curve['parameter']}" for index, curve in enumerate(curves)]
-    sheet = Sheet(
-        "discrepancy_levels",
-        "Is the parameter the same at every level?",
-        caption,
-        [keys],
-        size=(1.0 + 3.4 * len(keys), 3.6),
-    )
-    for key, curve in zip(keys, curves, strict=True):
-        axes = sheet.axes[key]
-        unit, factor = display_unit(curve["unit"], curve["value"])
-        load, value, low, high = (
-            np.asarray(curve[part], float) for part in ("load_rms_N", "value", "low", "high")
-        )
-        sheet.record(
-            axes,
-            curve["parameter"],
-            load_rms_N=load,
-            gap_m=np.asarray(curve["gap_m"], float),
-            parameter=value,
-            parameter_low=low,
-            parameter_high=high,
-        )
-        gaps = np.asarray(curve["gap_m"], float)
-        for index, gap in enumerate(sorted(set(gaps.tolist()), reverse=True)):
-            here = (
-                np.flatnonzero(gaps == gap)
-                if np.isfinite(gap)
-                else np.flatnonzero(~np.isfinite(gaps))
-            )
-            spread = (
-                factor
-                * np.array([np.maximum(value - low, 0.0), np.maximum(high - value, 0.0)])[:, here]
-            )
-            axes.errorbar(
-                load[here] * 1.04**index,
-                factor * value[here],
-                spread,
-                fmt=GAP_MARKERS[index % len(GAP_MARKERS)],
-                color=GAP_COLOURS[index % len(GAP_COLOURS)],
-                capsize=3,
-                label=f"gap {gap * 1e3:.3g} mm" if np.isfinite(gap) else None,
-            )
-        found = found_of(effects, curve["parameter"])
-        if found is not None:
-            axes.axhspan(
-                factor * found.low, factor * found.high, color=BLACK, alpha=0.1, linewidth=0
-            )
-        axes.set_xscale("log")
-        axes.margins(x=0.15, y=0.12)
-        axes.set_xlabel(label_of("load_rms_N"))
-        axes.set_ylabel(axis_label(curve["parameter"], unit))
-        sheet.legend(axes)
-    return [sheet]
 
 
 def axis_label(parameter, unit):

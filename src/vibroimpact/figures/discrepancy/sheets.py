@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .map import map_figure
 from .place import place_figure
-from .ranking import levels_figure, profiles_figure, ranking_figure
+from .ranking import profiles_figure, ranking_figure
 from .spectra import spectra_figure
 
 
@@ -23,5 +23,4 @@ def discrepancy_figures(results, config=None):
         *spectra_figure(results.before, results.after, results.verdict.regions),
         *ranking_figure(results.ranking, named),
         *profiles_figure(results.candidates, effects),
-        *levels_figure(results.candidates, effects),
     ]
