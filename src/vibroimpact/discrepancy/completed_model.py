@@ -43,15 +43,17 @@ def updated_model(bench, decision, prepared):
 
 
 def not_offered(withdrawn):
-    """Return the text in the place of a completed configuration that makes records worse that took
-    no part; withdrawn: content.Withdrawn in plain values.
+    """Return the text in the place of a completed configuration that makes records worse: those
+    that took no part where there are some; withdrawn: content.Withdrawn in plain values.
     """
     effects = " and ".join(row["id"].replace("_", " ") for row in withdrawn["effects"])
-    held_out = withdrawn["misfit"]["holdout"]
+    records, misfit = "the records that took no part", withdrawn["misfit"]["holdout"]
+    if misfit["before_dB"] is None:
+        records, misfit = "whole records, run anew,", withdrawn["misfit"]["fit"]
     return (
-        f"# No model is offered: {effects} was added, and the records that took no part are\n"
-        f"# farther off with it, {held_out['before_dB']:.2f} dB before and"
-        f" {held_out['after_dB']:.2f} dB after.\n"
+        f"# No model is offered: {effects} was added, and {records} are\n"
+        f"# farther off with it, {misfit['before_dB']:.2f} dB before and"
+        f" {misfit['after_dB']:.2f} dB after.\n"
     )
 
 

@@ -26,10 +26,11 @@ SEEN = 30.0
 # Something else looks like effects do, and in part like none: the share of its variance that is
 # the same in all values; its size, in units of the scatter.
 WHITE = 0.2
-SIZES = (0.6, 30.0)
+SIZES = (1.0, 30.0)
 # What two right codes differ by looks like effects too, in the same units: one code's contact
-# dissipates a little more than another's. Below the least of SIZES, half of it.
-ALIKE = 0.3
+# dissipates a little more than another's. Most likely of three structures in which nothing is hidden:
+# 0.1, 0.45 and 0.8, together 0.5.
+ALIKE = 0.5
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances

@@ -26,7 +26,8 @@ class Fit:
     parameter) with weight (sample,): the posterior; mean (value,) the change of the run nearest to
     the measurement and left: chi-square that remains there; unseen: by how much less remains at
     unit, where nothing was run; hidden: by how much less may remain anywhere, by what the emulator
-    does not know; doubt: standard deviation of the log evidence by what it does not know at unit.
+    does not know; doubt: standard deviation of the log evidence by the scatter of the runs
+    near the nearest.
     """
 
     promised: float
@@ -87,15 +88,15 @@ def fit(
         float(left[nearest]),
         max(0.0, float(left[nearest] - left[0])),
         max(0.0, min(float(left[0]), float(null.measured @ null.measured)) - least),
-        _doubt(emulator.directions @ rest[0], variance[0]),
+        _doubt(rest[nearest], variance[nearest].sum() / null.values),
     )
 
 
 def _doubt(rest, variance):
-    """Return the standard deviation of the log evidence where rest (direction,) is left, of a
-    variance (direction,) that an emulator does not know.
+    """Return the standard deviation of the log evidence where rest (value,) is left by runs whose
+    scatter has a variance in every value: that of the square of rest.
     """
-    of_square = np.sum(4.0 * rest**2 * variance + 2.0 * variance**2)
+    of_square = 4.0 * variance * (rest @ rest) + 2.0 * rest.size * variance**2
     return 0.5 * constants.POWER * float(np.sqrt(of_square))
 
 

@@ -36,6 +36,8 @@ def posterior(search: Search) -> dict[str, float]:
             found = search.fits[name]
             out[name] = known + found.log_evidence
             gone = 0.5 * (search.null.measured @ search.null.measured - found.left)
+            if gone <= 0.0:  # all of its runs are farther from the measurement than nothing is
+                continue
             occam = found.log_evidence - constants.POWER * gone  # what its parameters cost
             out[name + constants.ELSE] = (
                 known
@@ -61,10 +63,7 @@ def averaged(evidence: dict[str, float], doubt: dict[str, float]) -> dict[str, f
     names = list(evidence)
     shifts = np.random.default_rng(1).standard_normal((DRAWS, len(doubt)))
     column = {name: shifts[:, number] * doubt[name] for number, name in enumerate(doubt)}
-    nothing = np.zeros(DRAWS)
-    drawn = np.array(
-        [evidence[name] + column.get(name.removesuffix(constants.ELSE), nothing) for name in names]
-    )
+    drawn = np.array([evidence[name] + column.get(name, np.zeros(DRAWS)) for name in names])
     chance = np.exp(drawn - logsumexp(drawn, axis=0)).mean(axis=1)
     rows = zip(names, np.log(np.maximum(chance, LEAST_CHANCE)).tolist(), strict=True)
     return dict(sorted(rows, key=lambda row: -row[1]))
