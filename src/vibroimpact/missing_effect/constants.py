@@ -28,8 +28,8 @@ SEEN = 30.0
 WHITE = 0.2
 SIZES = (1.0, 30.0)
 # What two right codes differ by looks like effects too, in the same units: one code's contact
-# dissipates a little more than another's. Most likely of three structures in which nothing is hidden:
-# 0.1, 0.45 and 0.8, together 0.5.
+# dissipates a little more than another's. Most likely of three structures in which nothing is
+# hidden: 0.1, 0.45 and 0.8, together 0.5.
 ALIKE = 0.5
 
 # Runs.
