@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vibroimpact.missing_effect.decision import decide, smallest, weighted_interval
+from vibroimpact.missing_effect.decision import decide, partly_decision, smallest, weighted_interval
 from vibroimpact.missing_effect.evidence import Fit
+from vibroimpact.missing_effect.verification import Closing
 
 MASS, FRICTION, DAMPING, CROSSLEY = (
     "added_mass@apex",
@@ -106,3 +107,17 @@ def test_interval_holds_nine_tenths_of_a_normal_law():
     weight = np.exp(-0.5 * ((samples[:, 0] - 0.5) / 0.05) ** 2)
     low, high = weighted_interval(samples, weight)
     assert [low[0], high[0]] == pytest.approx([0.5 - 1.645 * 0.05, 0.5 + 1.645 * 0.05], abs=0.005)
+
+
+@pytest.mark.parametrize(("share", "partial"), [(0.3, True), (0.6, False), (None, False)])
+def test_a_name_closes_half_of_what_other_records_miss(share, partial):
+    rows = {"fit": {"closed_fraction": 0.9}, "holdout": {"closed_fraction": share}}
+    assert Closing((), None, None, rows, "holdout").partial is partial
+
+
+def test_a_name_that_leaves_most_is_a_part():
+    found = partly_decision(decided(nothing=0.01, something_else=0.02, friction=0.95, damping=0.02))
+    assert found.verdict == "partly_explained" and found.chosen is not None
+    assert (
+        partly_decision(decided(nothing=0.94, something_else=0.01, friction=0.05)).verdict == "none"
+    )

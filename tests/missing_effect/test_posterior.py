@@ -89,3 +89,8 @@ def test_two_that_only_their_scatter_tells_apart_share():
     wanted = 0.5 + 0.5 * np.tanh(3.0 / 2.0 / np.sqrt(1.0 + np.pi * 72.0 / 8.0))  # of a normal shift
     assert np.exp(found["other"]) == pytest.approx(wanted, abs=0.05)
     assert found["nothing"] < -2.0
+
+
+def test_a_measurement_within_chance_needs_no_explanation():
+    assert not searched(chance()).null.differs
+    assert searched(chance() + 15.0 * DIRECTIONS[FRICTION]).null.differs

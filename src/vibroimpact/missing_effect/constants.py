@@ -7,9 +7,14 @@ NOTHING = 0.3  # that nothing is missing
 SOMETHING_ELSE = 0.1  # that an effect is missing which the catalogue does not hold
 PAIRS = 0.1  # of all that is left: two effects of the catalogue
 NAMED = 0.9  # probability from which an explanation is named, or a set of them given
+# Probability by chance of all that is measured, from which on nothing is looked for.
+CHANCE = 0.05
 # Share of the chi-square beyond chance that an explanation must take away; with less it is a part
 # of one.
 EXPLAINED = 0.75
+# Share of the excess of the misfit that a completed model must close on the records that took no
+# part; with less it is a part of what is missing.
+CLOSED = 0.5
 # Power of the likelihood: values of one record are less independent than their covariance, of few
 # runs, says.
 POWER = 0.5

@@ -98,6 +98,14 @@ def withdrawn_decision(decision: Decision) -> Decision:
     return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
 
 
+def partly_decision(decision: Decision) -> Decision:
+    """Return the Decision where what was chosen, or adopted, leaves most of what is missing on
+    records that took no part.
+    """
+    sure = decision.verdict in ("named", "ambiguous")
+    return replace(decision, verdict="partly_explained") if sure else decision
+
+
 def share_explained(left: float, before: float, values: int) -> float:
     """Return the share of a chi-square beyond chance that an explanation takes away; 1 where there
     was none.

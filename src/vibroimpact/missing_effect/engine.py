@@ -72,14 +72,8 @@ class Engine:
             return
         search = self.null_stage(prepared)
         so_far.write(self.folder, search, prepared)
-        with self.stage("screening"):
-            names = searching.first_explanations(screened(prepared))
-            searching.screen(search, names, search.bench.values)
-        so_far.write(self.folder, search, prepared)
-        with self.stage("refinement"):
-            self.refine(search)
-        with self.stage("two effects"):
-            self.seek_pairs(search)
+        if search.null.differs:
+            self.search(search, prepared)
         null = search.null
         decision = decide(
             posterior(search),
@@ -94,6 +88,17 @@ class Engine:
         verdict.write(
             self.folder, prepared, search, (decision, closed), self.spent_so_far, provenance
         )
+
+    def search(self, search: searching.Search, prepared: Prepared) -> None:
+        """Run explanations until what is missing is known, or nothing more is to be learned."""
+        with self.stage("screening"):
+            names = searching.first_explanations(screened(prepared))
+            searching.screen(search, names, search.bench.values)
+        so_far.write(self.folder, search, prepared)
+        with self.stage("refinement"):
+            self.refine(search)
+        with self.stage("two effects"):
+            self.seek_pairs(search)
 
     def null_stage(self, prepared: Prepared) -> searching.Search:
         """Return the Search with its Null."""

@@ -79,6 +79,14 @@ class Null:
         square = self.measured @ self.measured - along @ np.linalg.solve(inner, along)
         return float(-0.5 * (square + np.linalg.slogdet(inner)[1]))
 
+    @property
+    def differs(self) -> bool:
+        """Return whether the measurement is farther off than chance allows: where it is not, no
+        explanation is looked for. Covariances of few runs are too small along some directions,
+        and there is always an effect that changes one of them.
+        """
+        return self.probability() < constants.CHANCE
+
     def probability(self, rest: np.ndarray | None = None) -> float:
         """Return how probable a measurement as far off a model as rest (value,) is by chance; as
         far off the null as it is where None.

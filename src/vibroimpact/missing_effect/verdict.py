@@ -22,7 +22,7 @@ from vibroimpact.verdict.content import (
 from vibroimpact.verdict.file import write_verdict
 
 from . import candidate_files
-from .decision import Decision, withdrawn_decision
+from .decision import Decision, partly_decision, withdrawn_decision
 from .null import Null
 from .rows import COLUMNS, SHOWN, bounds, contract_checks, effects_of, where
 from .search import Search
@@ -49,6 +49,8 @@ def write(
         }
         decision = withdrawn_decision(decision)
         closed = without_chosen(closed, bench)
+    elif closed.partial:
+        decision = partly_decision(decision)
     given, whole = closed.benches
     compared = mapping.z_of(given, search.null, closed.before.features)
     after = compared

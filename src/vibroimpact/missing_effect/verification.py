@@ -12,6 +12,7 @@ from vibroimpact.discrepancy.survivors import survivors
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.contact_convergence import IntegrationError
 
+from . import constants
 from .decision import Chosen
 
 FRESH = 20000  # first seed of the verification: none of the search's
@@ -85,15 +86,22 @@ def misfits(whole: Workbench, before: Verified, after: Verified) -> dict[str, An
 class Closing:
     """benches: Workbenches of the model as given and of that with what was adopted; before, after:
     Verified of the model as given and of the completed one; misfit {split: row of
-    verdict.json}; worse: whether it grows on
-    the records that took no part.
+    verdict.json}; judged: the split of the records that took no part, "fit" where there are none;
+    worse: whether the misfit grows on them.
     """
 
     benches: tuple
     before: Verified
     after: Verified
     misfit: dict
+    judged: str
     worse: bool = False
+
+    @property
+    def partial(self) -> bool:
+        """Return whether the completed model leaves most of the excess on the judged records."""
+        share = self.misfit[self.judged]["closed_fraction"]
+        return share is not None and share < constants.CLOSED
 
 
 def closing(
@@ -117,15 +125,21 @@ def closing(
         model = whole.model(whole.variant(chosen.candidate, physical))
         after = verified(whole, model, seeds, window)
     except IntegrationError:
-        return Closing(benches, before, before, misfits(whole, before, before), True)
+        rows = misfits(whole, before, before)
+        return Closing(benches, before, before, rows, judged_split(rows), True)
     return _judged(benches, before, after)
 
 
 def _judged(benches, before, after):
     """Return the Closing of two Verified."""
     rows = misfits(benches[1], before, after)
-    split = "holdout" if rows["holdout"]["before_dB"] is not None else "fit"
-    return Closing(benches, before, after, rows, misfit.makes_worse(rows[split]))
+    split = judged_split(rows)
+    return Closing(benches, before, after, rows, split, misfit.makes_worse(rows[split]))
+
+
+def judged_split(rows: dict) -> str:
+    """Return the split of {split: misfit} that took no part, "fit" where it has no records."""
+    return "fit" if rows["holdout"]["before_dB"] is None else "holdout"
 
 
 def without_chosen(closed: Closing, window: Workbench) -> Closing:
@@ -139,4 +153,5 @@ def without_chosen(closed: Closing, window: Workbench) -> Closing:
         found = _judged(closed.benches, before, verified(whole, whole.model(), seeds, window))
         if not found.worse:
             return found
-    return Closing(closed.benches, before, before, misfits(given, before, before))
+    rows = misfits(given, before, before)
+    return Closing(closed.benches, before, before, rows, judged_split(rows))
