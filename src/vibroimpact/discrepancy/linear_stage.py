@@ -12,15 +12,15 @@ import numpy as np
 from .lags import driven_modes, from_phases, lags
 from .modal_fit import LARGEST_LOG_DAMPING, ModalLines, combined, responses_of
 from .pursuit import assigned, pursued
-from .sensed import differentiated, kind_groups, moving
+from .sensed import differentiated, kind_groups, moving, orders
 
 MODEL_ERROR = (
     3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
 )
 # of the typical line: what the ends of a record and modes far above the band leave in every line
 LEAK = 2.0e-3
-# of the largest response of one kind: what a converter of 20 bits makes of a channel that does not
-# move
+# of the largest response, read as the same kind of motion: what a converter of 20 bits makes of a
+# channel that does not move
 RESOLVED = 1.0e-6
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
@@ -58,10 +58,17 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=T
     return found if found is None or moves.all() else _among_all(found, moves)
 
 
-def _largest(measured, kinds):
-    """Return (channel,): the largest RMS of measured (channel, line) among channels of its kind."""
-    rms = np.sqrt(np.sum(np.abs(measured) ** 2, axis=-1))
-    return np.array([rms[np.asarray(kinds) == kind].max() for kind in kinds])
+def _largest(record, measured, kinds):
+    """Return (channel,): the largest RMS of measured (channel, line) among all channels, read as
+    motion of its kind.
+    """
+    order = orders(kinds)
+    omega = 2.0 * np.pi * np.maximum(record.frequency, record.frequency[record.frequency > 0].min())
+    power = [
+        np.sum(np.abs(measured) ** 2 * omega ** (2.0 * (own - order[:, None])), axis=-1)
+        for own in order
+    ]
+    return np.sqrt(np.max(power, axis=-1))
 
 
 def with_sensors(model, chosen):
@@ -102,7 +109,7 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     )
     sizes = {kind: np.sqrt(np.sum(np.abs(own) ** 2, axis=-1)) for kind, own in expected.items()}
     size = np.array([sizes[kind] for kind in kinds]).T
-    noise = np.maximum(noise_rms, np.maximum(RESOLVED * _largest(measured, kinds), 1.0e-12))
+    noise = np.maximum(noise_rms, np.maximum(RESOLVED * _largest(record, measured, kinds), 1.0e-12))
     fixed = visible is not None
     if not fixed:
         chosen = ((np.abs(model.sensor_shapes[near]) * size) > VISIBLE * noise).any(axis=1)

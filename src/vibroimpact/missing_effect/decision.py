@@ -151,11 +151,14 @@ def ambiguity_sets(rows: list[tuple[str, float, float]], nothing: float, linear:
 
 
 def smallest(sets: Sets) -> tuple[float, Sets]:
-    """Return (probability, sets): the fewest that reach constants.NAMED, all where none do."""
-    reached = 0.0
+    """Return (probability, sets): the fewest that reach constants.NAMED, or that share of what all
+    have together where they do not.
+    """
+    reached, whole = 0.0, sum(chance for _, chance in sets)
+    wanted = constants.NAMED * (1.0 if whole >= constants.NAMED else whole)
     out: Sets = []
     for ids, chance in sets:
-        if reached >= constants.NAMED:
+        if reached >= wanted:
             break
         reached, out = reached + chance, [*out, (ids, chance)]
     return reached, out

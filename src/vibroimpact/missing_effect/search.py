@@ -179,15 +179,15 @@ LEAST = 6
 
 
 def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation once, those that may explain the measurement at more points, and at
-    every single support what may do so at all of them.
+    """Run every explanation once, at all supports and at each alone, and those that may explain the
+    measurement at more points.
     """
     for name in names:
         search.run_first(name, 1)
-    for name in may_explain(search):
-        search.run_first(name, 2)
         for other in elsewhere(candidate_named(name), values):
             search.run_first(other.name, 1)
+    for name in may_explain(search):
+        search.run_first(name, 2)
     for name in may_explain(search):
         search.run_first(name, 4)
     search.learn_alike()
