@@ -8,8 +8,8 @@ from scipy.signal import firwin, kaiser_beta, upfirdn
 from vibroimpact_truth import kernel
 
 FAST_HZ = 40960  # sampled before decimation: the modes end at 15000 Hz
-# Of the gap: no tube lies nearer to the axis of its holes. One that does stays in the plane in which
-# it is driven.
+# Of the gap: no tube lies nearer to the axis of its holes. One that does stays in the plane that it
+# is driven in.
 OFF_CENTRE = 1.0e-3
 SETTLE_S = 2.5  # duration of the ramp of dead loads and offsets, before the record
 # "fir80" of the contract at 2048 Hz, with a margin of 6 dB
