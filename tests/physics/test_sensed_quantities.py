@@ -9,6 +9,7 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
+from vibroimpact.discrepancy import forward
 from vibroimpact.discrepancy.attach import attach
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.excitation.random_force import band_limited_noise
@@ -103,10 +104,11 @@ def test_a_channel_is_its_own_whatever_is_beside_it(study_config):
         np.testing.assert_array_equal(one[0], together[number])
 
 
-def test_contact_force_at_rest_is_stiffness_times_penetration(study_config):
+def test_contact_force_at_rest_is_stiffness_times_penetration(study_config, monkeypatch):
     """Plates moved beyond their clearance push the tube: the load cells read the force on the tube,
     along and against their directions, and in proportion to its cosine.
     """
+    monkeypatch.setattr(forward, "IMPERFECTION", 0.0)
     slanted = (np.sqrt(0.5), np.sqrt(0.5), 0.0)
     channels = [
         Channel("tube", PLATE, Y, "m", "displacement"),

@@ -70,8 +70,9 @@ def archives(tmp_path_factory, build_tools):
     ignore = shutil.ignore_patterns(*NOT_COPIED)
     shutil.copytree(ROOT, tree, symlinks=True, ignore=ignore)
     source = build("sdist", tree, folder / "source", build_tools)
+    safe = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}  # 3.11.4 and newer
     with tarfile.open(source) as archive:
-        archive.extractall(folder / "unpacked", filter="data")
+        archive.extractall(folder / "unpacked", **safe)
     (unpacked,) = (folder / "unpacked").iterdir()
     wheel = build("wheel", tree, folder / "wheel", build_tools)
     return wheel, source, build("wheel", unpacked, folder / "wheel_of_source", build_tools)
