@@ -179,15 +179,13 @@ LEAST = 6
 
 
 def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation once, at all supports and at each alone, and those that may explain the
-    measurement at more points.
+    """Run every explanation at two points, at single supports at one, and those that may explain the
+    measurement at more.
     """
     for name in names:
-        search.run_first(name, 1)
+        search.run_first(name, 2)
         for other in elsewhere(candidate_named(name), values):
             search.run_first(other.name, 1)
-    for name in may_explain(search):
-        search.run_first(name, 2)
     for name in may_explain(search):
         search.run_first(name, 4)
     search.learn_alike()
