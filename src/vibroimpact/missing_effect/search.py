@@ -179,8 +179,8 @@ LEAST = 6
 
 
 def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation at two points, at single supports at one, and those that may explain the
-    measurement at more.
+    """Run every explanation at two points, at single supports at one, and those that may explain
+    the measurement at more.
     """
     for name in names:
         search.run_first(name, 2)
