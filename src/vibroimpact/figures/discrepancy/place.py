@@ -91,10 +91,12 @@ def place_figure(config, data, effects):
     """
     caption = (
         "The structure, seen on the plane of its largest extents, to scale: supports (grey bars),"
-        " channels (blue) and forces (black) with their directions in this plane, and in orange"
-        " where the effect acts. What acts on the whole structure marks all of it."
+        " channels (blue) and forces (black) with their directions in this plane"
     )
-    sheet = Sheet("discrepancy_place", "Where it acts", caption, size=(7.6, 4.4))
+    if effects:
+        caption += ", in orange where the effect acts. What acts on the whole structure marks all of it"
+    title = "Where it acts" if effects else "The structure as it was measured"
+    sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(7.6, 4.4))
     axes = sheet.axes["main"]
     places = None if data is None or "channel_point" not in data else places_of(config, data)
     known = [] if places is None else [*places.named().values(), *_line(places)]
