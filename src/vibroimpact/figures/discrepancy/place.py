@@ -94,7 +94,7 @@ def place_figure(config, data, effects):
         " channels (blue) and forces (black) with their directions in this plane"
     )
     if effects:
-        caption += ", in orange where the effect acts. What acts on the whole structure marks all of it"
+        caption += ", in orange where the effect acts. What acts everywhere marks all of it"
     title = "Where it acts" if effects else "The structure as it was measured"
     sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(7.6, 4.4))
     axes = sheet.axes["main"]
