@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
+from tests.white_null import white_null
 from vibroimpact.missing_effect import constants, evidence
+from vibroimpact.missing_effect.effect_directions import EffectDirections
 from vibroimpact.missing_effect.evidence import SomethingElse, fit, log_likelihoods
-from vibroimpact.missing_effect.null import Null
 from vibroimpact.missing_effect.trials import Emulator, PairEmulator, Trial
 
 VALUES = 40
@@ -37,17 +38,8 @@ def normal(covariance):
     return stats.multivariate_normal(np.zeros(VALUES), covariance)
 
 
-def null_with(measured, alike=None):
-    return Null(
-        records=np.array([0]),
-        layout=None,
-        mean=np.zeros((1, VALUES)),
-        features=np.zeros((1, 2, VALUES)),
-        factor=np.eye(VALUES)[None],
-        measured=measured,
-        groups=np.repeat([0, 1], VALUES // 2),
-        alike=np.zeros((0, VALUES)) if alike is None else alike,
-    )
+def null_with(measured):
+    return white_null(measured, groups=np.repeat([0, 1], VALUES // 2))
 
 
 def trial_of(units, changes, noise):
@@ -78,7 +70,7 @@ def test_evidence_is_the_integral_over_the_prior(monkeypatch):
 
     def chance(unit):
         gain = along * size * unit - 0.5 * (size * unit) ** 2
-        return np.exp(constants.POWER * gain) / (1.0 - seen)
+        return np.exp(gain) / (1.0 - seen)
 
     wanted = np.log(integrate.quad(chance, seen, 1.0, points=[along / size])[0])
     found = fit(Known(size), 1, null)
@@ -95,23 +87,20 @@ def test_what_no_run_shows_is_not_evidence():
     promised = fit(emulator, 1, null_with(measured))
     assert promised.promised == pytest.approx(shown.promised)
     assert promised.left == pytest.approx(np.sum((measured - 0.9 * 30.0 * AXES[0]) ** 2), rel=0.1)
-    lost = 0.5 * constants.POWER * (promised.left - shown.left)
+    lost = 0.5 * (promised.left - shown.left)
     assert promised.log_evidence == pytest.approx(shown.log_evidence - lost, abs=0.1)
 
 
 def test_something_else_is_a_normal_law_of_unknown_size():
     random = np.random.default_rng(3)
     measured = 6.0 * random.standard_normal(VALUES)
-    changes = 20.0 * AXES[:3]
-    else_ = SomethingElse(changes, np.zeros(3), null_with(measured))
-    else_ = SomethingElse(changes, np.zeros(3), null_with(measured, else_.alike))
-    effects = (1.0 - constants.WHITE) * VALUES / 3.0 * AXES[:3].T @ AXES[:3]
-    looks = constants.WHITE * np.eye(VALUES) + effects
-    alike = np.eye(VALUES) + constants.ALIKE**2 * effects  # what two right codes differ by
-    rows = [normal(alike + size**2 * looks).logpdf(measured) for size in else_.sizes]
-    nothing = normal(alike).logpdf(measured)
-    tempered = constants.POWER * (np.array(rows) - nothing)
-    wanted = np.logaddexp.reduce(tempered) - np.log(len(rows))
+    effects = EffectDirections(AXES[:3], np.full(3, 1.0 / 3.0))
+    else_ = SomethingElse(effects, null_with(measured))
+    alike = (1.0 - constants.WHITE) * VALUES / 3.0 * AXES[:3].T @ AXES[:3]
+    looks = constants.WHITE * np.eye(VALUES) + alike
+    rows = [normal(np.eye(VALUES) + size**2 * looks).logpdf(measured) for size in else_.sizes]
+    nothing = normal(np.eye(VALUES)).logpdf(measured)
+    wanted = np.logaddexp.reduce(np.array(rows) - nothing) - np.log(len(rows))
     assert else_.log_evidence(np.zeros(VALUES)) == pytest.approx(wanted, abs=1.0e-8)
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from tests.white_null import white_null
 from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.missing_effect.null import Null
 from vibroimpact.missing_effect.probabilities import averaged, posterior
 from vibroimpact.missing_effect.search import Search, contenders
 from vibroimpact.missing_effect.trials import Trial
@@ -24,17 +24,7 @@ SIZE = 60.0  # of a change at the end of the range, in units of the scatter
 
 def searched(measured):
     """Return a Search in which three effects were run, each changing one direction evenly."""
-    null = Null(
-        records=np.array([0]),
-        layout=None,
-        mean=np.zeros((1, VALUES)),
-        features=np.zeros((1, 2, VALUES)),
-        factor=np.eye(VALUES)[None],
-        measured=measured,
-        groups=np.zeros(VALUES, int),
-        alike=np.zeros((0, VALUES)),
-    )
-    search = Search(None, null, dict.fromkeys(("one", "contact_stiffness"), 1.0))
+    search = Search(None, white_null(measured), dict.fromkeys(("one", "contact_stiffness"), 1.0))
     for name in (FRICTION, DAMPING, STIFFNESS):
         changes = SIZE * UNITS * DIRECTIONS[name]
         trial = Trial(candidate_named(name), UNITS, changes, np.full(5, 1.0e-3), screened=5)

@@ -11,6 +11,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="added_mass",
+    family="mass",
     explanation="the structure carries a mass that the model lacks",
     law="inertia force = mass times the acceleration of the point, in all directions",
     source="rigid point mass",

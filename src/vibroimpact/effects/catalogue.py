@@ -1,15 +1,15 @@
 """The catalogue of effects as a page of the documentation."""
 
-from .effect import FAMILIES, SCALES, TESTS, Effect, Parameter
+from .effect import SCALES, TESTS, WHERE, Effect, Parameter
 from .registry import EFFECTS
 
 
 def markdown() -> str:
     """Return the catalogue as Markdown, generated from the registry: a section per effect."""
     parts = ["# Catalogue of effects", INTRODUCTION]
-    for family in FAMILIES:
-        members = [effect for effect in EFFECTS.values() if effect.family == family]
-        parts.append(f"## {family.capitalize()}")
+    for group in WHERE:
+        members = [effect for effect in EFFECTS.values() if effect.acts_on == group]
+        parts.append(f"## {group.capitalize()}")
         parts += [_section(effect) for effect in members]
     return "\n\n".join(parts) + "\n"
 
@@ -29,6 +29,7 @@ def _section(effect: Effect) -> str:
     ]
     broken = ", ".join(f"{test} ({TESTS[test]})" for test in effect.broken)
     facts = {
+        "Family": effect.family,
         "Law": effect.law,
         "Reported as": f"`{effect.law_of}`" if effect.law_of else "",
         "Breaks": broken or "none of the invariances",

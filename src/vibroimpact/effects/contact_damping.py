@@ -13,6 +13,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="contact_damping",
+    family="contact damping",
     explanation="the contact dissipates with the speed of the indentation",
     law="force = max(0, k p + damping dp/dt); it never pulls",
     source="Kelvin-Voigt",

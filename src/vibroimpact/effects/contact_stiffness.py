@@ -13,6 +13,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="contact_stiffness",
+    family="contact stiffness",
     explanation="the contact is softer or stiffer than assumed",
     law="force = stiffness p",
     source="linear contact spring",

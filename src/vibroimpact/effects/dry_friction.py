@@ -11,6 +11,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="dry_friction",
+    family="friction",
     explanation="the contact rubs",
     law="tangential stick spring of the contact stiffness that slips at mu times the normal force",
     source="Coulomb friction",

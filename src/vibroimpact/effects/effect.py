@@ -38,7 +38,21 @@ SCALES = {
     "quadratic": "the static stiffness over the RMS displacement",
     "drag": "the damping constant over length and RMS velocity of the drive point",
 }
-FAMILIES = ("contact", "nonlinear structure", "linear structure", "measurement")
+WHERE = ("contact", "nonlinear structure", "linear structure", "measurement")
+# What laws have in common that do the same to a structure.
+FAMILIES = (
+    "friction",
+    "contact stiffness",
+    "contact damping",
+    "clearance and position",
+    "shape of the hole",
+    "spring",
+    "mass",
+    "damping",
+    "drag",
+    "force",
+    "sensor",
+)
 
 
 @dataclass(frozen=True)
@@ -71,6 +85,7 @@ class Parameter:
 class Effect:
     """An entry of the catalogue.
 
+    family: one of FAMILIES.
     explanation: what it is, in a clause.
     law: its equation, or the equation in words; p: indentation of a contact, u: displacement.
     source: where the law comes from.
@@ -87,6 +102,7 @@ class Effect:
     """
 
     id: str
+    family: str
     explanation: str
     source: str
     parameters: tuple[Parameter, ...]
@@ -102,8 +118,8 @@ class Effect:
     law_of: str = ""
 
     @property
-    def family(self) -> str:
-        """Return the one of FAMILIES that says where the effect acts."""
+    def acts_on(self) -> str:
+        """Return the one of WHERE that says what the effect acts on."""
         if self.measured:
             return "measurement"
         if self.linear:

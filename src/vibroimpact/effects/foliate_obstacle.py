@@ -22,6 +22,7 @@ LOBES = 4
 
 EFFECT = Effect(
     id="foliate_obstacle",
+    family="shape of the hole",
     explanation="the hole is not circular: lobes, or flat lands as their limit",
     law=(
         "r(theta) = gap + depth (1 - cos(4 (theta - angle))) / 2; force along the normal of the"

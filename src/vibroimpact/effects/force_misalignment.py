@@ -24,6 +24,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="force_misalignment",
+    family="force",
     explanation="the force is not along its stated direction",
     law="the direction of the force is turned by angle, about z or about the tube",
     source="geometry",

@@ -24,6 +24,7 @@ def _times(given: float | list[float], factor: float) -> float | list[float]:
 
 EFFECT = Effect(
     id="gap",
+    family="clearance and position",
     explanation="the radial clearance differs from the nominal one",
     law="clearance = gap_factor times the nominal clearance",
     source="scaling: q / gap depends on force / gap alone",

@@ -22,6 +22,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="lateral_stinger",
+    family="spring",
     explanation="the rod of the shaker holds the structure sideways or along the force",
     law="force = stiffness u + damping du/dt at the drive point, along a global axis",
     source="spring and damper",

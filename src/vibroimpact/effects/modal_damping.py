@@ -18,6 +18,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="modal_damping",
+    family="damping",
     explanation="the modes are damped otherwise than assumed",
     law="damping ratio of every mode = factor times the assumed one",
     source="viscous modal damping",

@@ -19,6 +19,7 @@ DAMPING_RATIO = 0.02
 
 EFFECT = Effect(
     id="plate_flexibility",
+    family="contact stiffness",
     explanation="the support plate moves",
     law="the support sits on a mass on a spring, in both transverse directions; damping ratio 0.02",
     source="single-degree-of-freedom plate",

@@ -39,6 +39,7 @@ def locations(values: Values) -> list[str]:
 
 EFFECT = Effect(
     id="preload",
+    family="clearance and position",
     explanation="a constant force presses the tube to one side",
     law="constant force on the tube at the middle of the support",
     source="statics",

@@ -30,6 +30,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="quadratic_drag",
+    family="drag",
     explanation="a fluid at rest brakes the tube with the square of its speed",
     law="force per length = coefficient |v| v, v the velocity vector across z",
     source="J.R. Morison et al. (1950), drag term",

@@ -17,6 +17,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="root_stiffness",
+    family="spring",
     explanation="the roots are not clamped",
     law="force = translation u and moment = rotation times the slope, at both ends",
     source="springs in place of clamps",

@@ -4,6 +4,7 @@ from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="sensor_delay",
+    family="sensor",
     explanation="a sensor reads late",
     law="reading(t) = signal(t - delay)",
     source="filters, wireless links, separate recorders",

@@ -4,6 +4,7 @@ from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="sensor_gain",
+    family="sensor",
     explanation="a sensor reads by a factor too much or too little",
     law="reading = factor times the signal",
     source="calibration",

@@ -18,6 +18,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="shaker_interaction",
+    family="force",
     explanation="the moving parts of the shaker are carried by the structure",
     law="force = mass d2u/dt2 + damping du/dt + stiffness u at the drive point, along the force",
     source="G.R. Tomlinson, JSV 63 (1979)",

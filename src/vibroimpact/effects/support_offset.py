@@ -17,6 +17,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="support_offset",
+    family="clearance and position",
     explanation="the support is not centred on the tube",
     law="the centre of the support lies at (offset_x, offset_y) in its plane",
     source="geometry",

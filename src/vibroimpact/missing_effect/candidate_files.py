@@ -50,7 +50,7 @@ def parameters_of(search: Search, name: str) -> dict[str, Any]:
         for number, parameter in enumerate(candidate.effect.parameters):
             units = np.repeat(found.unit[None], POINTS, axis=0)
             units[:, first + number] = np.linspace(0.0, 1.0, POINTS)
-            chance = constants.POWER * log_likelihoods(emulator, units, search.null, law)[0]
+            chance = log_likelihoods(emulator, units, search.null, law)[0]
             prefix = "" if len(parts) == 1 else f"{candidate.effect.reported}."
             profile.append(
                 {

@@ -5,11 +5,11 @@ something that no explanation holds.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
 from scipy.special import logsumexp
 from scipy.stats import qmc
 
 from . import constants
+from .effect_directions import EffectDirections
 from .null import Null
 from .trials import AnyEmulator
 
@@ -44,7 +44,7 @@ class Fit:
     @property
     def not_shown(self) -> float:
         """Return what of the log evidence no run shows."""
-        return 0.5 * constants.POWER * self.unseen
+        return 0.5 * self.unseen
 
     @property
     def log_evidence(self) -> float:
@@ -97,12 +97,12 @@ def _doubt(rest, variance):
     scatter has a variance in every value: that of the square of rest.
     """
     of_square = 4.0 * variance * (rest @ rest) + 2.0 * rest.size * variance**2
-    return 0.5 * constants.POWER * float(np.sqrt(of_square))
+    return 0.5 * float(np.sqrt(of_square))
 
 
 @dataclass(frozen=True)
 class Likelihoods:
-    """chance (law, point): tempered log likelihoods against nothing, with constants.LAWS' priors;
+    """chance (law, point): log likelihoods against nothing, with constants.LAWS' priors;
     allowed (point,): whether the change is seen and brings the model nearer to the measurement;
     seen (point,): whether it is; may_be_left (point,): least chi-square that may be left.
     """
@@ -117,7 +117,7 @@ class Likelihoods:
         """Return the Likelihoods at units (point, parameter)."""
         rows = [log_likelihoods(emulator, units, null, law) for law, _ in constants.LAWS]
         prior = np.log([prior for _, prior in constants.LAWS])
-        chance = constants.POWER * np.array([row[0] for row in rows]) + prior[:, None]
+        chance = np.array([row[0] for row in rows]) + prior[:, None]
         return cls(chance, *rows[0][1:])
 
     @property
@@ -170,7 +170,6 @@ def log_likelihoods(
     change = mean @ emulator.directions
     diagonal = 1.0 + (law * change) ** 2
     parts = [np.sqrt(variance)[:, :, None] * emulator.directions]
-    parts.append(np.broadcast_to(null.alike, (len(mean), *null.alike.shape)))
     for group in np.unique(null.groups):
         parts.append((constants.LAW_COMMON * law * change * (null.groups == group))[:, None])
     columns = np.concatenate(parts, axis=1)
@@ -189,41 +188,25 @@ def log_likelihoods(
 
 
 class SomethingElse:
-    """The likelihood of what looks like effects but is none that was tried: changes (run, value) of
-    all trials.
-    """
+    """The likelihood of what looks like effects but is none that was tried."""
 
-    def __init__(self, changes: np.ndarray, noise: np.ndarray, null: Null) -> None:
-        self.null = null
-        whole = np.sum(changes**2, axis=1)
-        told = whole - noise * null.values > constants.SEEN
-        unit = changes[told] / np.sqrt(whole[told])[:, None]
-        count = max(len(unit), 1)
-        scattered = np.sum(noise[told] * null.values / whole[told]) / count**2
-        _, singular, directions = linalg.svd(unit, full_matrices=False)
-        share = singular**2 / count - scattered
-        self.directions, share = directions[share > 0.0], share[share > 0.0]
-        self.share = (1.0 - constants.WHITE) * null.values * share / max(share.sum(), 1.0e-12)
+    def __init__(self, effects: EffectDirections, null: Null) -> None:
+        self.null, self.along = null, effects.along
+        self.share = (1.0 - constants.WHITE) * null.values * effects.share
         self.sizes = np.geomspace(*constants.SIZES, 24)
 
-    @property
-    def alike(self) -> np.ndarray:
-        """Return (direction, value): see Null."""
-        return constants.ALIKE * np.sqrt(self.share)[:, None] * self.directions
-
     def log_evidence(self, mean: np.ndarray) -> float:
-        """Return the tempered log evidence against nothing that the measurement is mean (value,)
-        and something else.
+        """Return the log evidence against nothing that the measurement is mean (value,) and
+        something else.
         """
         rest = self.null.measured - mean
-        along = self.directions @ rest
+        along = self.along @ rest
         outside = rest @ rest - along @ along
         white = 1.0 + constants.WHITE * self.sizes**2
-        inside = white[:, None] + (constants.ALIKE**2 + self.sizes[:, None] ** 2) * self.share
+        inside = white[:, None] + self.sizes[:, None] ** 2 * self.share
         chance = -0.5 * (
             np.sum(along**2 / inside + np.log(inside), axis=1)
             + outside / white
             + (self.null.values - len(along)) * np.log(white)
         )
-        chance -= self.null.chance
-        return float(logsumexp(constants.POWER * chance) - np.log(len(self.sizes)))
+        return float(logsumexp(chance - self.null.chance) - np.log(len(self.sizes)))

@@ -21,10 +21,11 @@ from .nuisances import nuisance_draws
 class Null:
     """records (record,) that are compared; layout: FeatureLayout; mean (record, feature) of the
     model with its most probable nuisances; features (record, run, feature) of its runs with
-    nuisances drawn; factor (record, feature, feature): Cholesky factors of their covariance about
-    mean; measured (value,): the whitened difference of the measurement from it;
-    groups (value,): whether the force drives the channel; alike (direction, value): what two right
-    codes differ by along the changes of effects, one sigma each, none before screening.
+    nuisances drawn, seeds_per_draw of each draw; free (record, feature, feature): covariance of
+    what two right codes differ by; factor (record, feature, feature): Cholesky factors of the
+    covariance of both about mean; measured (value,): the whitened difference of the measurement;
+    groups (value,): whether the force drives the channel; along (direction, value) and rescaled
+    (direction, direction): see effect_directions.told_of, none before effects are run.
 
     A value is a feature of a record in units of the covariance, all records in a row.
     """
@@ -33,10 +34,13 @@ class Null:
     layout: FeatureLayout
     mean: np.ndarray
     features: np.ndarray
+    seeds_per_draw: int
+    free: np.ndarray
     factor: np.ndarray
     measured: np.ndarray
     groups: np.ndarray
-    alike: np.ndarray
+    along: np.ndarray
+    rescaled: np.ndarray
 
     @property
     def covariance(self) -> np.ndarray:
@@ -58,26 +62,32 @@ class Null:
         """Return the number of values."""
         return self.measured.size
 
+    @cached_property
+    def deviations(self) -> np.ndarray:
+        """Return (record, run, feature): what its own runs differ by from the mean, compressed."""
+        return compressed(self.features - self.mean[:, None], self.layout)
+
     def change(self, features: np.ndarray) -> np.ndarray:
         """Return (value,): what features (record, feature) differ by from the mean."""
-        return np.concatenate(
-            [
-                linalg.solve_triangular(factor, row, lower=True)
-                for factor, row in zip(
-                    self.factor, compressed(features - self.mean, self.layout), strict=True
-                )
-            ]
-        )
+        whitened = [
+            linalg.solve_triangular(factor, row, lower=True)
+            for factor, row in zip(
+                self.factor, compressed(features - self.mean, self.layout), strict=True
+            )
+        ]
+        return self.in_units(np.concatenate(whitened))
 
-    @cached_property
+    def in_units(self, change: np.ndarray) -> np.ndarray:
+        """Return whitened changes (..., value) in units of what is known along effects."""
+        inside = change @ self.along.T
+        return change + (inside @ self.rescaled - inside) @ self.along
+
+    @property
     def chance(self) -> float:
         """Return the log likelihood of the measurement where nothing is missing, less that of a
         value in the middle of its law.
         """
-        inner = np.eye(len(self.alike)) + self.alike @ self.alike.T
-        along = self.alike @ self.measured
-        square = self.measured @ self.measured - along @ np.linalg.solve(inner, along)
-        return float(-0.5 * (square + np.linalg.slogdet(inner)[1]))
+        return float(-0.5 * self.measured @ self.measured)
 
     @property
     def differs(self) -> bool:
@@ -115,30 +125,39 @@ def null_of(bench: Workbench, records: np.ndarray, seed: int) -> Null:
         of_survivors(np.concatenate(part, axis=1))
         for part in (rows[: -len(draws)], rows[-len(draws) :])
     )
-    null = _scatter(bench, records, central, drawn)
+    null = _of_runs(bench, records, central, drawn)
     return replace(null, measured=null.change(bench.measured_features[records]))
 
 
-def _scatter(bench, records, central, drawn):
+def scatter(rows: np.ndarray) -> np.ndarray:
+    """Return the covariance (feature, feature) of deviations (run, feature) from the mean."""
+    return shrunk(rows, len(rows))
+
+
+def _of_runs(bench, records, central, drawn):
     """Return the Null, without its measurement, of features (record, run, feature): of the most
     probable nuisances, and of drawn ones.
     """
     layout, driven = bench.layout, driven_channels(bench)
     mean, common = central.mean(axis=1), free_directions(layout, driven)
-    factors = []
+    free, factors = [], []
     for middle, row, burst in zip(mean, drawn, bursting(bench, records, driven), strict=True):
-        covariance = shrunk(compressed(row - middle, layout), len(row))
-        covariance = covariance * (1.0 + 1.0 / central.shape[1]) + common.T @ common
-        covariance += np.diag(feature_sd(layout) ** 2 + (burst * layout.blend) ** 2)
-        factors.append(linalg.cholesky(covariance, lower=True))
+        covariance = scatter(compressed(row - middle, layout))
+        known = covariance / central.shape[1] + common.T @ common
+        known += np.diag(feature_sd(layout) ** 2 + (burst * layout.blend) ** 2)
+        free.append(known)
+        factors.append(linalg.cholesky(covariance + known, lower=True))
     groups = np.tile(driven[layout.channel].astype(int), len(records))
     return Null(
         np.asarray(records),
         layout,
         mean,
         drawn,
+        -(-drawn.shape[1] // constants.NULL_DRAWS),
+        np.array(free),
         np.array(factors),
         np.zeros(0),
         groups,
         np.zeros((0, groups.size)),
+        np.zeros((0, 0)),
     )

@@ -38,7 +38,7 @@ def posterior(search: Search) -> dict[str, float]:
             gone = 0.5 * (search.null.measured @ search.null.measured - found.left)
             if gone <= 0.0:  # all of its runs are farther from the measurement than nothing is
                 continue
-            occam = found.log_evidence - constants.POWER * gone  # what its parameters cost
+            occam = found.log_evidence - gone  # what its parameters cost
             out[name + constants.ELSE] = (
                 known
                 + np.log(constants.SOMETHING_ELSE)

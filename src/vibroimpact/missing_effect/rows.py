@@ -111,6 +111,7 @@ def _effect(candidate, unit, interval, sizes, model):
         }
     return {
         "id": candidate.effect.reported,
+        "family": candidate.effect.family,
         "location": candidate.location,
         "parameters": parameters,
     }

@@ -2,7 +2,7 @@
 or nothing more is to be learned.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 
 from . import constants
+from .effect_directions import EffectDirections, told_of
 from .evidence import SomethingElse, fit
 from .null import Null
 from .trials import AnyEmulator, Emulator, PairEmulator, Trial
@@ -44,9 +45,7 @@ class Search:
         self.fit(name)
 
     def run_first(self, name: str, points: int) -> None:
-        """Run an explanation until it was run at so many of its first points; all are fitted once
-        these are run, see learn_alike.
-        """
+        """Run an explanation until it was run at so many of its first points."""
         done = self.trials[name].tried if name in self.trials else 0
         self._run(name, first_points(candidate_named(name))[done:points])
         self.trials[name].screened = len(self.trials[name].noise)
@@ -97,23 +96,26 @@ class Search:
         noise = each.var(axis=0, ddof=1).mean() if seeds > 1 else 1.0
         return self.null.change(features.mean(axis=1)), noise / seeds
 
-    def something_else(self) -> SomethingElse:
-        """Return the SomethingElse of all trials."""
+    @property
+    def effects(self) -> EffectDirections:
+        """Return the EffectDirections of all runs of screening."""
         trials = [trial for trial in self.trials.values() if trial.screened]
         nothing = np.zeros((0, self.null.values))  # where no explanation could be run
-        return SomethingElse(
+        return EffectDirections.of(
             np.vstack([nothing, *(trial.change[: trial.screened] for trial in trials)]),
             np.concatenate([[], *(trial.noise[: trial.screened] for trial in trials)]),
-            self.null,
+            self.null.values,
         )
 
-    def learn_alike(self) -> None:
-        """Let what two right codes differ by look like the effects that were run, and fit all
-        again.
-        """
-        self.null = replace(self.null, alike=self.something_else().alike)
-        for name in self.trials:
-            self.fit(name)
+    def something_else(self) -> SomethingElse:
+        """Return the SomethingElse of all trials."""
+        return SomethingElse(self.effects, self.null)
+
+    def learn(self) -> None:
+        """Take what is known of chance along the directions of effects into all that was run."""
+        self.null = told_of(self.null, self.effects)
+        for trial in self.trials.values():
+            trial.change = self.null.in_units(trial.change)
 
     def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
@@ -186,9 +188,11 @@ def screen(search: Search, names: list[str], values: Values) -> None:
         search.run_first(name, 2)
         for other in elsewhere(candidate_named(name), values):
             search.run_first(other.name, 1)
+    search.learn()
     for name in may_explain(search):
         search.run_first(name, 4)
-    search.learn_alike()
+    for name in search.trials:
+        search.fit(name)
 
 
 def may_explain(search: Search) -> list[str]:
@@ -232,10 +236,7 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
         for name, found in search.fits.items()
         if ("+" in name) == pairs
     }
-    upper = {
-        name: chance + 0.5 * constants.POWER * search.fits[name].hidden
-        for name, chance in known.items()
-    }
+    upper = {name: chance + 0.5 * search.fits[name].hidden for name, chance in known.items()}
     best = max(known.values(), default=0.0)
     explains = search.explains(search.null.measured)  # of those screened
     left = [

@@ -47,7 +47,7 @@ class Places:
         if location in named:
             return [named[location]]
         known = EFFECTS.get(effect.id)
-        if location in ("all", "") and known is not None and known.family == "contact":
+        if location in ("all", "") and known is not None and known.acts_on == "contact":
             return [*self.supports.values()]
         found = [*self.forces.values()] if location in FORCES else []
         found += [*self.channels.values()] if location in CHANNELS else []

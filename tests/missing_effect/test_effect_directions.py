@@ -1,0 +1,87 @@
+"""Values have unit variance along what effects change, whatever few runs of the null say of it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy import linalg
+
+from tests.white_null import white_null
+from vibroimpact.missing_effect import constants
+from vibroimpact.missing_effect.effect_directions import EffectDirections, told_of
+from vibroimpact.missing_effect.null import Null, scatter
+
+RECORDS, FEATURES, RUNS = 4, 30, 24
+RANDOM = np.random.default_rng(8)
+CODES = 0.1 * np.eye(FEATURES)
+NUISANCE = RANDOM.standard_normal(FEATURES)  # the same in all records
+
+
+def runs(count):
+    """Return (record, run, feature): white scatter, and a nuisance that all records share."""
+    common = RANDOM.standard_normal((count, 1)) * NUISANCE
+    return RANDOM.standard_normal((RECORDS, count, FEATURES)) + common
+
+
+@pytest.fixture
+def null():
+    features = runs(RUNS)
+    return Null(
+        records=np.arange(RECORDS),
+        layout=SimpleNamespace(blend=1.0e9),  # nothing is drawn in
+        mean=np.zeros((RECORDS, FEATURES)),
+        features=features,
+        seeds_per_draw=1,
+        free=np.tile(CODES, (RECORDS, 1, 1)),
+        factor=np.array([linalg.cholesky(scatter(row) + CODES, lower=True) for row in features]),
+        measured=np.zeros(RECORDS * FEATURES),
+        groups=np.zeros(RECORDS * FEATURES, int),
+        along=np.zeros((0, RECORDS * FEATURES)),
+        rescaled=np.zeros((0, 0)),
+    )
+
+
+def variance(null, along):
+    """Return the variance of fresh measurements along a direction (value,)."""
+    fresh = runs(2000) + np.sqrt(0.1) * RANDOM.standard_normal((RECORDS, 2000, FEATURES))
+    rows = np.array([null.change(fresh[:, run]) for run in range(2000)])
+    return np.mean((rows @ along) ** 2)
+
+
+def test_nuisance_of_all_records_is_known(null, monkeypatch):
+    monkeypatch.setattr(constants, "ALIKE", 0.0)
+    change = null.change(np.tile(NUISANCE, (RECORDS, 1)))
+    change /= np.linalg.norm(change)
+    told = told_of(null, EffectDirections(change[None], np.ones(1)))
+    assert variance(null, change) > 2.0  # every record's covariance knows a quarter of it
+    assert variance(told, change) == pytest.approx(1.0, abs=0.5)  # 24 runs tell no better
+    aside = RANDOM.standard_normal(change.size)
+    aside -= (aside @ change) * change
+    assert null.in_units(aside) == pytest.approx(told.in_units(aside))
+
+
+def test_what_codes_differ_by_looks_like_effects(null):
+    along = np.linalg.qr(RANDOM.standard_normal((RECORDS * FEATURES, 2)))[0].T
+    share = np.array([0.8, 0.2])
+    variances = []
+    for alike in (0.0, constants.ALIKE):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(constants, "ALIKE", alike)
+            told = told_of(null, EffectDirections(along, share))
+        variances.append(linalg.inv(told.rescaled @ told.rescaled))
+    wanted = constants.ALIKE**2 * RECORDS * FEATURES * np.diag(share)
+    assert variances[1] - variances[0] == pytest.approx(wanted, abs=1.0e-8)
+
+
+def test_directions_are_those_of_seen_changes():
+    axes = np.eye(5)
+    changes = np.array([30.0 * axes[0], -60.0 * axes[0], 40.0 * axes[1], 1.0 * axes[2]])
+    effects = EffectDirections.of(changes, np.full(4, 1.0e-6), 5)
+    assert np.abs(effects.along) == pytest.approx(axes[:2], abs=1.0e-9)
+    assert effects.share == pytest.approx([2 / 3, 1 / 3], abs=1.0e-6)
+
+
+def test_without_effects_nothing_is_told():
+    null = white_null(np.arange(5.0))
+    effects = EffectDirections.of(np.zeros((0, 5)), np.zeros(0), 5)
+    assert told_of(null, effects).measured == pytest.approx(null.measured)
