@@ -5,20 +5,31 @@ There is one definition of the closed share, and one place where it is worked ou
 
 import numpy as np
 
+from vibroimpact.units import TIME_DERIVATIVES
+
 from . import priors
 
 ABOVE_NOISE_DB = 6.0
+# A channel answers to motion across its direction too, by 1 % at best (transverse sensitivity, ISO
+# 16063-31): what is farther below the strongest channel is not known to be what it should measure.
+BELOW_STRONGEST_DB = 40.0
 
 
 def counted(bench):
-    """Return (record, channel, band) bool: where the measurement is 6 dB above the noise."""
-    layout = bench.layout
+    """Return (record, channel, band) bool: where the measurement is 6 dB above the noise, and no
+    farther than 40 dB below the strongest channel of its record and band, all as displacements.
+    """
+    layout, signals = bench.layout, bench.signals
     power = layout.power(bench.measured_features)
     width = np.diff(layout.edges)
     noise = 10.0 * np.log10(
-        np.maximum(bench.signals.noise[:, None] ** 2 * width / (0.5 * layout.rate), 1.0e-300)
+        np.maximum(signals.noise[:, None] ** 2 * width / (0.5 * layout.rate), 1.0e-300)
     )
-    return power > noise + ABOVE_NOISE_DB
+    middle = np.pi * (layout.edges[1:] + layout.edges[:-1])  # rad/s
+    derivatives = np.array([TIME_DERIVATIVES[kind] for kind in signals.kinds])
+    moved = power - 20.0 * derivatives[:, None] * np.log10(middle)
+    strong = moved > moved.max(axis=1, keepdims=True) - BELOW_STRONGEST_DB
+    return (power > noise + ABOVE_NOISE_DB) & strong
 
 
 def level_distance(difference, chosen):

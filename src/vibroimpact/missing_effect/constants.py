@@ -8,16 +8,13 @@ SOMETHING_ELSE = 0.1  # that an effect is missing which the catalogue does not h
 PAIRS = 0.1  # of all that is left: two effects of the catalogue
 NAMED = 0.9  # probability from which an explanation is named, or a set of them given
 # Probability by chance of all that is measured, from which on nothing is looked for.
-CHANCE = 0.05
+CHANCE = 0.5
 # Share of the chi-square beyond chance that an explanation must take away; with less it is a part
 # of one.
 EXPLAINED = 0.75
 # Share of the excess of the misfit that a completed model must close on the records that took no
 # part; with less it is a part of what is missing.
 CLOSED = 0.5
-# Power of the likelihood: values of one record are less independent than their covariance, of few
-# runs, says.
-POWER = 0.5
 
 # What laws of one effect differ by, as a share of what the effect changes: of each value, and of
 # all values of a group of channels together. Measured between this code and an independent one.
@@ -33,9 +30,9 @@ SEEN = 30.0
 WHITE = 0.2
 SIZES = (1.0, 30.0)
 # What two right codes differ by looks like effects too, in the same units: one code's contact
-# dissipates a little more than another's. Most likely of three structures in which nothing is
-# hidden: 0.1, 0.45 and 0.8, together 0.5.
-ALIKE = 0.5
+# dissipates a little more than another's. Most likely of two structures in which nothing is
+# hidden: 0.2 and 0.4, together 0.3.
+ALIKE = 0.3
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances
