@@ -36,7 +36,10 @@ def posterior(search: Search) -> dict[str, float]:
             found = search.fits[name]
             out[name] = known + found.log_evidence
             gone = 0.5 * (search.null.measured @ search.null.measured - found.left)
-            if gone <= 0.0:  # all of its runs are farther from the measurement than nothing is
+            # none where all runs are farther from the measurement than nothing is; nor beside a
+            # pair: that three are missing is not believed, and where a law does not fit, any
+            # second effect seems to help
+            if gone <= 0.0 or family in pairs:
                 continue
             occam = found.log_evidence - gone  # what its parameters cost
             out[name + constants.ELSE] = (
