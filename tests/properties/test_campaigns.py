@@ -177,7 +177,7 @@ def read(path):
         told = [row["message"] for row in rows if row["level"] == "refuse"]
         raise CampaignError("\n".join(f"{path}: {message}" for message in told))
     if not comparison_problems(model(), checked_description(path)):
-        usable, refusal = usable_campaign(path, rows)
+        usable, refusal = usable_campaign(path, rows, model().integration)
         assert refusal or np.isfinite(signals_of(usable).load).all()
     try:
         own_records(path)

@@ -28,13 +28,18 @@ NO_GAP_M = 1.0  # where a record has no clearance
 
 
 def schedule_of(campaign, integration, duration_s):
-    """Return the Schedule of runs from rest at the campaign's sampling frequency, its steps at
-    least those of the model's configuration and as many as the output filter needs.
-    """
+    """Return the Schedule of runs from rest at the campaign's sampling frequency."""
     sampling = float(campaign.attrs["sampling_frequency"])
+    steps = steps_per_second(sampling, integration)
+    return Schedule(steps, sampling, 0.0, duration_s, integration.scheme)
+
+
+def steps_per_second(sampling, integration):
+    """Return the steps of a run that is kept at a sampling frequency: at least those of the model's
+    configuration, and as many as the output filter needs.
+    """
     needed = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
-    ratio = max(LEAST_STAGES, needed)
-    return Schedule(RATIO * ratio * sampling, sampling, 0.0, duration_s, integration.scheme)
+    return RATIO * max(LEAST_STAGES, needed) * sampling
 
 
 class Forces:

@@ -26,9 +26,11 @@ def counted(bench):
         np.maximum(signals.noise[:, None] ** 2 * width / (0.5 * layout.rate), 1.0e-300)
     )
     middle = np.pi * (layout.edges[1:] + layout.edges[:-1])  # rad/s
-    derivatives = np.array([TIME_DERIVATIVES[kind] for kind in signals.kinds])
+    derivatives = np.array([TIME_DERIVATIVES.get(kind, 0) for kind in signals.kinds])
     moved = power - 20.0 * derivatives[:, None] * np.log10(middle)
-    strong = moved > moved.max(axis=1, keepdims=True) - BELOW_STRONGEST_DB
+    motion = np.isin(signals.kinds, list(TIME_DERIVATIVES))[:, None]
+    strongest = np.max(moved, axis=1, keepdims=True, where=motion, initial=-np.inf)
+    strong = ~motion | (moved > strongest - BELOW_STRONGEST_DB)
     return (power > noise + ABOVE_NOISE_DB) & strong
 
 

@@ -39,6 +39,7 @@ from .nearest_model import fit_from_nearest, translated
 from .nuisance import neutral, plausible
 from .scales import scales
 from .sensed import differentiated, kind_groups
+from .slower import slower
 from .workbench import Workbench, corrected_nuisance
 
 
@@ -94,9 +95,9 @@ class Prepared:
         )
 
 
-def usable_campaign(path, checks):
+def usable_campaign(path, checks, integration):
     """Return (campaign Dataset, sentence or None): without the channels and records that the checks
-    leave out, and why that is too little.
+    leave out, at the sampling rate that it is compared at, and why that is too little.
     """
     if refused(checks):
         return None, next(row["message"] for row in checks if row["level"] == "refuse")
@@ -135,14 +136,14 @@ def usable_campaign(path, checks):
         channels = np.arange(response.shape[1])
     if len(records) < 2:
         return None, "Fewer than two records are left after the checks: repair what they name."
-    return campaign.isel(record=records, channel=channels), None
+    return slower(campaign.isel(record=records, channel=channels), integration), None
 
 
 def workbench(config, campaign_path, prepared, seconds=None):
     """Return the Workbench of a campaign, each record cut to so many seconds (None: whole), as the
     linear stage left it: nuisances corrected, the linear effects adopted.
     """
-    campaign, refusal = usable_campaign(campaign_path, prepared.checks)
+    campaign, refusal = usable_campaign(campaign_path, prepared.checks, config.integration)
     if refusal:
         raise CampaignError(refusal)
     bench = Workbench(config, campaign, seconds, prepared.draw)
@@ -200,7 +201,7 @@ def prepare(config, campaign_path, draw=0):
             check_row("model", "refuse", f"{problem}.")
             for problem in comparison_problems(config, whole)
         ]
-    campaign, refusal = usable_campaign(campaign_path, checks)
+    campaign, refusal = usable_campaign(campaign_path, checks, config.integration)
     if refusal is None:
         try:
             whole_s = campaign.sizes["time"] / float(campaign.attrs["sampling_frequency"])
@@ -209,7 +210,7 @@ def prepare(config, campaign_path, draw=0):
             mixed = [*mixed_up(bench), *contact_force_rows(bench.bare, bench.signals)]
             if mixed:
                 before, checks = campaign.sizes, [*checks, *mixed]
-                campaign, refusal = usable_campaign(campaign_path, checks)
+                campaign, refusal = usable_campaign(campaign_path, checks, config.integration)
                 if refusal is None and campaign.sizes != before:  # something was left out
                     bench = Workbench(config, campaign, seconds)
         except CampaignError as error:
