@@ -111,10 +111,13 @@ class Engine:
         return searching.Search(bench, null, prepared.scales)
 
     def refine(self, search: searching.Search) -> None:
-        """Run what may be the answer until it is known, its other places too."""
+        """Run what may be the answer until it is known, its other places and what is like it
+        too.
+        """
         searching.race(search, self.spent.rounds, self.spent.width)
         for name in searching.leaders(search, 1):
             if search.fits[name].log_evidence > 0.0:
+                searching.similar_too(search, name)
                 searching.elsewhere_too(search, search.bench.values, name)
                 searching.race(search, self.spent.rounds, self.spent.width)
 

@@ -153,7 +153,7 @@ def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray |
 
 # Points at which an explanation is run first, by the number of its parameters.
 FIRST = {
-    1: ((0.75,), (0.3,), (0.55,), (0.92,)),
+    1: ((0.75,), (0.3,), (0.1,), (0.55,)),
     2: ((0.7, 0.7), (0.3, 0.3), (0.3, 0.7), (0.7, 0.3)),
     3: ((0.7, 0.7, 0.7), (0.3, 0.3, 0.3), (0.3, 0.7, 0.5), (0.7, 0.3, 0.5)),
 }
@@ -267,6 +267,17 @@ def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
     """Return the `count` explanations that explain most."""
     found = [name for name in search.fits if ("+" in name) == pairs]
     return sorted(found, key=lambda name: -search.fits[name].log_evidence)[:count]
+
+
+def similar_too(search: Search, name: str) -> None:
+    """Run what has a signature like a leading explanation's at as many first points as may be: at
+    two, a law may be as good as rigid, or do nothing.
+    """
+    similar = candidate_named(name).effect.aliases
+    for other, trial in search.trials.items():
+        if "+" not in other and trial.screened > 1 and trial.candidate.effect_id in similar:
+            search.run_first(other, 4)
+            search.fit(other)
 
 
 def elsewhere_too(search: Search, values: Values, name: str) -> None:
