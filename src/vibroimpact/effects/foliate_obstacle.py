@@ -3,55 +3,65 @@
 import math
 
 from . import places
-from .effect import Effect, Parameter, Values
+from .effect import Apply, Effect, Parameter, Values
 
 
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with four lobes at the supports of a location."""
-    profile = {
-        "kind": "lobes",
-        "count": LOBES,
-        "depth_m": parameters["depth"],
-        "angle_deg": math.degrees(parameters["angle"]),
-    }
-    return places.with_supports(values, location, lambda support: {"profile": profile})
+def with_lobes(count: int) -> Apply:
+    """Return the function that gives supports a hole of so many lobes."""
+
+    def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
+        """Return the configuration with lobes at the supports of a location."""
+        profile = {
+            "kind": "lobes",
+            "count": count,
+            "depth_m": parameters["depth"],
+            "angle_deg": math.degrees(parameters["angle"]),
+        }
+        return places.with_supports(values, location, lambda support: {"profile": profile})
+
+    return apply
 
 
+def lobed(count: int, id: str, source: str) -> Effect:
+    """Return the effect of a hole of so many lobes, reported as foliate_obstacle."""
+    return Effect(
+        id=id,
+        family="shape of the hole",
+        law_of="" if id == REPORTED else REPORTED,
+        explanation=f"the hole is not circular: {count} lobes, or flat lands as their limit",
+        law=(
+            f"r(theta) = gap + depth (1 - cos({count} (theta - angle))) / 2; force along the normal"
+            " of the profile"
+        ),
+        source=source,
+        parameters=(
+            Parameter(
+                "depth",
+                "m",
+                0.03,
+                4.0,
+                0.0,
+                per="gap",
+                gain_power=1.0,
+                meaning="depth of the lobes",
+            ),
+            Parameter(
+                "angle",
+                "rad",
+                0.0,
+                2.0 * math.pi / count,
+                0.0,
+                log=False,
+                meaning="direction of the first land",
+            ),
+        ),
+        apply=with_lobes(count),
+        locations=places.holes,
+        broken=("T4",) if count % 2 == 0 else ("T3", "T4"),
+        aliases=("dry_friction",),
+    )
+
+
+REPORTED = "foliate_obstacle"
 LOBES = 4
-
-
-EFFECT = Effect(
-    id="foliate_obstacle",
-    family="shape of the hole",
-    explanation="the hole is not circular: lobes, or flat lands as their limit",
-    law=(
-        "r(theta) = gap + depth (1 - cos(4 (theta - angle))) / 2; force along the normal of the"
-        " profile"
-    ),
-    source="profile with four lobes",
-    parameters=(
-        Parameter(
-            "depth",
-            "m",
-            0.03,
-            1.5,
-            0.0,
-            per="gap",
-            gain_power=1.0,
-            meaning="depth of the lobes",
-        ),
-        Parameter(
-            "angle",
-            "rad",
-            0.0,
-            1.5707963267948966,
-            0.0,
-            log=False,
-            meaning="direction of the first land",
-        ),
-    ),
-    apply=apply,
-    locations=places.holes,
-    broken=("T4",),
-    aliases=("dry_friction",),
-)
+EFFECT = lobed(LOBES, REPORTED, "a quadrifoil, as of broached support plates")

@@ -157,7 +157,8 @@ FIRST = {
     2: ((0.7, 0.7), (0.3, 0.3), (0.3, 0.7), (0.7, 0.3)),
     3: ((0.7, 0.7, 0.7), (0.3, 0.3, 0.3), (0.3, 0.7, 0.5), (0.7, 0.3, 0.5)),
 }
-VECTOR = ((0.65, 0.5), (0.5, 0.65), (0.35, 0.5), (0.5, 0.35))
+# Of a vector: first as large as may be seen in both directions, then smaller.
+VECTOR = ((0.75, 0.75), (0.6, 0.4), (0.3, 0.7), (0.5, 0.35))
 
 
 def first_points(candidate: Candidate) -> np.ndarray:
@@ -273,9 +274,13 @@ def similar_too(search: Search, name: str) -> None:
     """Run what has a signature like a leading explanation's at as many first points as may be: at
     two, a law may be as good as rigid, or do nothing.
     """
-    similar = candidate_named(name).effect.aliases
+    leading = candidate_named(name)
     for other, trial in search.trials.items():
-        if "+" not in other and trial.screened > 1 and trial.candidate.effect_id in similar:
+        if (
+            "+" not in other
+            and trial.candidate.effect_id in leading.effect.aliases
+            and (trial.screened > 1 or trial.candidate.location == leading.location)
+        ):
             search.run_first(other, 4)
             search.fit(other)
 
