@@ -26,20 +26,23 @@ def seen(seconds, *filled, strength=(10.0, 10.0)):
     return noise * rng.standard_normal((2, samples)) + response
 
 
+def noise(campaign, response, rate, band):
+    """The noise of responses of which no force is looked at."""
+    return noise_of(campaign, (np.zeros((1, response.shape[-1])), response), rate, band)
+
+
 @pytest.mark.parametrize("seconds", [10, 20, 49])
 def test_noise_without_contact_is_the_level_above_the_band(seconds):
-    assert noise_of({}, seen(seconds, BAND), RATE, BAND) == pytest.approx([0.1, 1.0], rel=0.05)
+    assert noise({}, seen(seconds, BAND), RATE, BAND) == pytest.approx([0.1, 1.0], rel=0.05)
 
 
 @pytest.mark.parametrize("seconds", [20, 49])
 def test_impacts_are_not_noise(seconds):
-    assert noise_of({}, seen(seconds, (9.0, 1024.0)), RATE, BAND) == pytest.approx(
-        [0.1, 1.0], rel=0.2
-    )
+    assert noise({}, seen(seconds, (9.0, 1024.0)), RATE, BAND) == pytest.approx([0.1, 1.0], rel=0.2)
 
 
 def test_noise_is_bounded_by_the_quietest_band():
-    assert noise_of({}, seen(20, (0.0, 100.0), (100.0, 1024.0)), RATE, BAND) == pytest.approx(
+    assert noise({}, seen(20, (0.0, 100.0), (100.0, 1024.0)), RATE, BAND) == pytest.approx(
         [1.0, 10.0], rel=0.1
     )
 
@@ -48,7 +51,7 @@ def test_impacts_that_fade_with_frequency_are_not_noise():
     """As at 0.5 N a stop met now and then: three times the noise's density above the band, and
     nothing but noise in the uppermost fifth.
     """
-    assert noise_of(
+    assert noise(
         {}, seen(20, (5.0, 200.0), (200.0, 620.0), strength=(10.0, 1.4)), RATE, BAND
     ) == pytest.approx([0.1, 1.0], rel=0.05)
 
@@ -59,6 +62,22 @@ def test_single_quiet_band_does_not_set_the_noise():
     """
     rng = np.random.default_rng(0)
     read = np.concatenate(
-        [noise_of({}, rng.standard_normal((25, int(20 * RATE))), RATE, BAND) for _ in range(40)]
+        [noise({}, rng.standard_normal((25, int(20 * RATE))), RATE, BAND) for _ in range(40)]
     )
     assert np.abs(20.0 * np.log10(read)).max() < 0.5
+
+
+def test_noise_within_the_band_is_what_forces_do_not_explain():
+    """Sampled for the band alone: two lightly damped modes under two forces, 40 dB above the noise,
+    and a channel that does not move.
+    """
+    rate, band, samples, rng = 512.0, (5.0, 200.0), 512 * 20, np.random.default_rng(6)
+    frequency = np.fft.rfftfreq(samples, 1.0 / rate)
+    inside = (frequency > band[0]) & (frequency < band[1])
+    force = np.fft.rfft(rng.standard_normal((2, samples))) * inside
+    transfer = [1.0 / (at**2 - frequency**2 + 0.01j * at * frequency) for at in (60.0, 130.0)]
+    moves = np.fft.irfft(np.array([[1.0, 0.5], [0.3, -1.0]]) @ (force * transfer), samples)
+    moves = np.vstack([moves / moves.std(axis=-1, keepdims=True), np.zeros(samples)])
+    response = moves + 0.01 * rng.standard_normal(moves.shape)
+    found = noise_of({}, (np.fft.irfft(force, samples), response), rate, band)
+    assert found == pytest.approx([0.01, 0.01, 0.01], rel=0.25)

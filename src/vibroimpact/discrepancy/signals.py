@@ -21,6 +21,8 @@ BELOW, LEAST_LINES, MOST_LINES = (
 # sigma of the median of n lines is this over sqrt(n) of it: 1 / ln 2 for exponentials, sqrt(1.5)
 # for neighbours under a Hann window
 MEDIAN_SCATTER = 1.77
+SEGMENT_S = 4.0
+RESOLUTION = 1.0e-6  # of a channel's largest response: no recorder resolves less of its range
 ALIKE = (
     4.0  # sigma: the least of some dozens of parts lies two below their mean, and none far above it
 )
@@ -100,28 +102,35 @@ def signals_of(campaign, longest_s=None):
         load=load,
         split=np.array(measured.splits),
         record_names=tuple(measured.records),
-        noise=noise_of(campaign, response[lowest], rate, band, measured.factors),
+        noise=np.maximum(
+            noise_of(campaign, (force[lowest], response[lowest]), rate, band, measured.factors),
+            RESOLUTION * np.sqrt(np.nanmean(response**2, axis=-1)).max(axis=0),
+        ),
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
     )
 
 
-def noise_of(campaign, response, rate, band, factors=1.0):
+def noise_of(campaign, lowest, rate, band, factors=1.0):
     """Return (channel,) RMS of the noise in SI: as the campaign says, or the least density of the
-    lowest record's spectrum; 0 where neither tells.
+    lowest record's spectrum above the band; of what the forces do not explain within it, where
+    there is nothing above.
 
-    factors (channel,): SI units per unit in which the campaign says it.
+    lowest: (force (force_channel, sample), response (channel, sample)) of that record; factors
+    (channel,): SI units per unit in which the campaign says it.
 
     Where the lowest record touches, impacts fill the range above the band: noise is what parts of
     the spectrum that are as low as the lowest have, within their scatter.
     """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float) * factors
-    valid = response[:, np.isfinite(response).all(axis=0)]
+    force, response = lowest
+    inside = np.isfinite(response).all(axis=0)
+    force, valid = force[:, inside], response[:, inside]
     window = np.hanning(valid.shape[-1])
     frequency = np.fft.rfftfreq(valid.shape[-1], 1.0 / rate)
     quiet = (frequency > QUIET_ABOVE * band[1]) & (frequency < QUIET * 0.5 * rate)
     if quiet.sum() < LEAST_QUIET:
-        return np.zeros(len(response))
+        return unexplained(force, valid, rate, band)
     power = np.abs(np.fft.rfft(window * valid, axis=-1)) ** 2
     edges = _edges(*np.searchsorted(frequency, [band[0] / BELOW, QUIET * 0.5 * rate]))
     lines = np.diff(edges)
@@ -134,6 +143,35 @@ def noise_of(campaign, response, rate, band, factors=1.0):
     least = np.min(density * np.exp(ALIKE * MEDIAN_SCATTER / np.sqrt(lines))[:, None], axis=0)
     share = lines[:, None] * (density <= least)
     return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
+
+
+def unexplained(force, response, rate, band):
+    """Return (channel,) RMS, over the range to half the rate, of white noise as dense as what the
+    forces (force_channel, sample) explain least of the responses (channel, sample): in the band of
+    BANDS in which that is least, for between its peaks a response is explained best.
+    """
+    length = min(response.shape[-1], round(SEGMENT_S * rate))
+    starts = range(0, response.shape[-1] - length + 1, length // 2)
+    window = np.hanning(length)
+    force, response = (
+        np.stack([np.fft.rfft(window * rows[:, at : at + length], axis=-1) for at in starts], 1)
+        for rows in (force, response)
+    )
+    frequency = np.fft.rfftfreq(length, 1.0 / rate)
+    own = np.einsum("fsl,gsl->lfg", force, force.conj())
+    both = np.einsum("csl,fsl->lcf", response, force.conj())
+    own += 1.0e-12 * np.einsum("lff->l", own).real[:, None, None] * np.eye(len(force))
+    explained = np.einsum("lcf,lfg,lcg->cl", both, np.linalg.pinv(own), both.conj()).real
+    freedom = max(len(starts) - len(force), 1)
+    rest = np.maximum(np.sum(np.abs(response) ** 2, axis=1) - explained, 0.0) / freedom
+    edges = np.searchsorted(frequency, np.geomspace(*band, BANDS + 1))
+    density = [
+        rest[:, low:high].mean(axis=-1)
+        for low, high in itertools.pairwise(edges)
+        if high - low >= LEAST_LINES // 4
+    ]
+    least = np.min(density, axis=0) if density else np.zeros(len(response))
+    return np.sqrt(least / np.sum(window**2))
 
 
 def _edges(first, last):

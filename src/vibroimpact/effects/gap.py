@@ -32,8 +32,8 @@ EFFECT = Effect(
         Parameter(
             "gap_factor",
             "1",
-            0.4,
-            2.5,
+            0.25,
+            4.0,
             1.0,
             gain_power=1.0,
             meaning="clearance over its nominal value",

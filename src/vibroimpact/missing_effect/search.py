@@ -270,15 +270,22 @@ def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
     return sorted(found, key=lambda name: -search.fits[name].log_evidence)[:count]
 
 
+def _similar(effect, leading):
+    """Return whether an Effect may look like a leading one."""
+    return effect.family == leading.family or effect.id in leading.aliases
+
+
 def similar_too(search: Search, name: str) -> None:
     """Run what has a signature like a leading explanation's at as many first points as may be: at
     two, a law may be as good as rigid, or do nothing.
     """
     leading = candidate_named(name)
+    if isinstance(leading, Pair):
+        return
     for other, trial in search.trials.items():
         if (
             "+" not in other
-            and trial.candidate.effect_id in leading.effect.aliases
+            and _similar(trial.candidate.effect, leading.effect)
             and (trial.screened > 1 or trial.candidate.location == leading.location)
         ):
             search.run_first(other, 4)

@@ -90,9 +90,12 @@ class Emulator:
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
 
     def _learn(self, change):
-        """Take the length that predicts left-out runs best; of one run, the shortest."""
+        """Take the length that predicts left-out runs best; of few runs, a short one: they tell of
+        no length, and a long one would tell of all that was not run.
+        """
         best = np.inf
-        for length in constants.LENGTHS:
+        few = constants.FEW_LENGTHS if len(change) < constants.FEW_RUNS else constants.LENGTHS
+        for length in few:
             self.length = length
             inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
             error = np.sum((inverse @ change / np.diag(inverse)[:, None]) ** 2)
