@@ -24,6 +24,7 @@ from .probabilities import posterior
 from .refused import write_refused
 from .verification import closing
 
+LEADING = 3  # explanations whose likes are looked at too
 OPEN = 0.3  # probability of something else, beside an explanation or alone, from which two effects
 # are looked for
 ROOM = 20.0  # of log evidence: two effects can gain no less than they cost
@@ -115,11 +116,15 @@ class Engine:
         too.
         """
         searching.race(search, self.spent.rounds, self.spent.width)
-        for name in searching.leaders(search, 1):
-            if search.fits[name].log_evidence > 0.0:
-                searching.similar_too(search, name)
-                searching.elsewhere_too(search, search.bench.values, name)
-                searching.race(search, self.spent.rounds, self.spent.width)
+        leading = [
+            name for name in searching.leaders(search, LEADING) if search.fits[name].promised > 0.0
+        ]
+        for name in leading:
+            searching.similar_too(search, name)
+        for name in leading[:1]:
+            searching.elsewhere_too(search, search.bench.values, name)
+        if leading:
+            searching.race(search, self.spent.rounds, self.spent.width)
 
     def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""

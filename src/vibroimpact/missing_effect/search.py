@@ -182,11 +182,11 @@ LEAST = 6
 
 
 def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation at two points, at single supports at one, and those that may explain
-    the measurement at more.
+    """Run every explanation at two points for each parameter, at single supports at one, and those
+    that may explain the measurement at more.
     """
     for name in names:
-        search.run_first(name, 2)
+        search.run_first(name, 2 * len(candidate_named(name).effect.parameters))
         for other in elsewhere(candidate_named(name), values):
             search.run_first(other.name, 1)
     search.learn()
