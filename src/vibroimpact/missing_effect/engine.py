@@ -112,10 +112,10 @@ class Engine:
         return searching.Search(bench, null, prepared.scales)
 
     def refine(self, search: searching.Search) -> None:
-        """Run what may be the answer until it is known, its other places and what is like it
-        too.
+        """Run what may be the answer until it is known, its other places, what is like it and the
+        other laws of its family too.
         """
-        searching.race(search, self.spent.rounds, self.spent.width)
+        searching.race(search, self.spent)
         leading = [
             name for name in searching.leaders(search, LEADING) if search.fits[name].promised > 0.0
         ]
@@ -123,8 +123,10 @@ class Engine:
             searching.similar_too(search, name)
         for name in leading[:1]:
             searching.elsewhere_too(search, search.bench.values, name)
-        if leading:
-            searching.race(search, self.spent.rounds, self.spent.width)
+            searching.race(search, self.spent)
+        for name in searching.leaders(search, 1):
+            if search.fits[name].promised > 0.0:
+                searching.race(search, self.spent, laws=searching.laws_of(search, name))
 
     def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""
@@ -138,7 +140,7 @@ class Engine:
         room = 0.25 * (left - LEAST * search.null.values)
         if self.spent.pairs and open_ > OPEN and room > ROOM:
             searching.seek_pairs(search, seconds=self.spent.pairs)
-            searching.race(search, self.spent.rounds, self.spent.width, pairs=True)
+            searching.race(search, self.spent, pairs=True)
 
     def whole_benches(self, prepared: Prepared) -> tuple[Workbench, Workbench]:
         """Return (Workbench of the model as given, Workbench with what was adopted), of whole

@@ -2,6 +2,7 @@
 or nothing more is to be learned.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,6 +22,7 @@ from vibroimpact.integration.kernels.lanes import LANES
 
 from . import constants
 from .effect_directions import EffectDirections, told_of
+from .effort import Effort
 from .evidence import SomethingElse, fit
 from .null import Null
 from .trials import AnyEmulator, Emulator, PairEmulator, Trial
@@ -228,14 +230,16 @@ LEAST_RUNS = 3
 KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
 
 
-def contenders(search: Search, pairs: bool = False) -> list[str]:
+def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) -> list[str]:
     """Return the names of explanations that may yet explain as much as the best and are not known
     well enough: by turns those that explain most, and those that may explain more than is known.
+
+    laws: of these alone, however much less they explain so far.
     """
     known = {
         name: max(found.promised, 0.0)  # nothing at all explains by 0
         for name, found in search.fits.items()
-        if ("+" in name) == pairs
+        if ("+" in name) == pairs and (name in laws or not laws)
     }
     upper = {name: chance + 0.5 * search.fits[name].hidden for name, chance in known.items()}
     best = max(known.values(), default=0.0)
@@ -244,7 +248,7 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
         name
         for name in upper
         if explains.get(name, np.inf) > LITTLE
-        and upper[name] > best - DECIDED
+        and (laws or upper[name] > best - DECIDED)
         and search.trials[name].refined < RUNS
         and (
             max(upper[name] - known[name], search.fits[name].not_shown) > KNOWN
@@ -255,10 +259,14 @@ def contenders(search: Search, pairs: bool = False) -> list[str]:
     return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
 
 
-def race(search: Search, rounds: int, width: int = 4, pairs: bool = False, points: int = 2) -> None:
-    """Run contenders, `width` at a time, until none is left or the rounds are over."""
-    for _ in range(rounds):
-        names = contenders(search, pairs)[:width]
+def race(
+    search: Search, spent: Effort, pairs: bool = False, laws: Sequence[str] = (), points: int = 2
+) -> None:
+    """Run contenders, as many at a time as an Effort spends, until none is left or its rounds are
+    over; laws: see contenders.
+    """
+    for _ in range(spent.rounds):
+        names = contenders(search, pairs, laws)[: spent.width]
         if not names:
             return
         refine(search, names, points)
@@ -273,6 +281,21 @@ def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
 def _similar(effect, leading):
     """Return whether an Effect may look like a leading one."""
     return effect.family == leading.family or effect.id in leading.aliases
+
+
+def laws_of(search: Search, name: str) -> list[str]:
+    """Return the names of what was run of a leading explanation's family, at its place or at that
+    of the first runs.
+    """
+    leading = candidate_named(name)
+    return [
+        other
+        for other, trial in search.trials.items()
+        if "+" not in other
+        and other in search.fits
+        and trial.candidate.effect.family == leading.effect.family
+        and (trial.screened > 1 or trial.candidate.location == leading.location)
+    ]
 
 
 def similar_too(search: Search, name: str) -> None:
