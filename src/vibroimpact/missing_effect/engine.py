@@ -141,6 +141,8 @@ class Engine:
         if self.spent.pairs and open_ > OPEN and room > ROOM:
             searching.seek_pairs(search, seconds=self.spent.pairs)
             searching.race(search, self.spent, pairs=True)
+            for name in searching.leaders(search, 1, pairs=True):
+                searching.parts_alone(search, name)
 
     def whole_benches(self, prepared: Prepared) -> tuple[Workbench, Workbench]:
         """Return (Workbench of the model as given, Workbench with what was adopted), of whole

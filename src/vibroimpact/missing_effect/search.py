@@ -156,7 +156,7 @@ def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray |
 # Points at which an explanation is run first, by the number of its parameters.
 FIRST = {
     1: ((0.75,), (0.3,), (0.1,), (0.55,)),
-    2: ((0.7, 0.7), (0.3, 0.3), (0.3, 0.7), (0.7, 0.3)),
+    2: ((0.8, 0.5), (0.3, 0.3), (0.5, 0.8), (0.7, 0.2)),
     3: ((0.7, 0.7, 0.7), (0.3, 0.3, 0.3), (0.3, 0.7, 0.5), (0.7, 0.3, 0.5)),
 }
 # Of a vector: first as large as may be seen in both directions, then smaller.
@@ -308,6 +308,7 @@ def similar_too(search: Search, name: str) -> None:
     for other, trial in search.trials.items():
         if (
             "+" not in other
+            and not trial.refined
             and _similar(trial.candidate.effect, leading.effect)
             and (trial.screened > 1 or trial.candidate.location == leading.location)
         ):
@@ -323,6 +324,13 @@ def elsewhere_too(search: Search, values: Values, name: str) -> None:
     for other in [*other_places(candidate, values), *elsewhere(candidate, values)]:
         if other.name not in search.trials:
             search.run(other.name, unit)
+
+
+def parts_alone(search: Search, pair: str) -> None:
+    """Run each of two effects alone where both are thought to be: one may do without the other."""
+    trial, found = search.trials[pair], search.fits[pair]
+    for part, unit in trial.candidate.parts(found.unit):
+        search.run(part.name, unit)
 
 
 def seek_pairs(search: Search, firsts: int = 2, seconds: int = 6) -> list[str]:
