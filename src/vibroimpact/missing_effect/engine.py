@@ -116,17 +116,14 @@ class Engine:
         other laws of its family too.
         """
         searching.race(search, self.spent)
-        leading = [
-            name for name in searching.leaders(search, LEADING) if search.fits[name].promised > 0.0
-        ]
+        leading = searching.leaders(search, LEADING)
         for name in leading:
             searching.similar_too(search, name)
         for name in leading[:1]:
             searching.elsewhere_too(search, search.bench.values, name)
             searching.race(search, self.spent)
         for name in searching.leaders(search, 1):
-            if search.fits[name].promised > 0.0:
-                searching.race(search, self.spent, laws=searching.laws_of(search, name))
+            searching.race(search, self.spent, laws=searching.laws_of(search, name))
 
     def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""

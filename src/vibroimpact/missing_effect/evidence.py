@@ -25,8 +25,9 @@ class Fit:
     constants.LAWS, with its prior; unit (parameter,) the most probable; samples (sample,
     parameter) with weight (sample,): the posterior; mean (value,) the change of the run nearest to
     the measurement and left: chi-square that remains there; unseen: by how much less remains at
-    unit, where nothing was run; hidden: by how much less may remain anywhere, by what the emulator
-    does not know; doubt: standard deviation of the log evidence by the scatter of the runs
+    unit, where nothing was run; closest (parameter,): where the emulator leaves least, takes: the
+    chi-square that it takes away there, may_take: that it may take away anywhere, by what it does
+    not know; doubt: standard deviation of the log evidence by the scatter of the runs
     near the nearest.
     """
 
@@ -38,7 +39,9 @@ class Fit:
     mean: np.ndarray
     left: float
     unseen: float
-    hidden: float
+    closest: np.ndarray
+    takes: float
+    may_take: float
     doubt: float
 
     @property
@@ -77,6 +80,8 @@ def fit(
     rest = null.measured - mean @ emulator.directions
     left = np.sum(rest**2, axis=1)
     nearest = 1 + int(np.argmin(left[1:]))
+    chi_square = float(null.measured @ null.measured)
+    remains = np.append(even.left, about.left)
     least = float(min(even.may_be_left.min(), about.may_be_left.min()))
     return Fit(
         float(logsumexp(by_law)),
@@ -87,7 +92,9 @@ def fit(
         null.measured - rest[nearest],
         float(left[nearest]),
         max(0.0, float(left[nearest] - left[0])),
-        max(0.0, min(float(left[0]), float(null.measured @ null.measured)) - least),
+        samples[np.argmin(remains)],
+        max(0.0, chi_square - float(remains.min())),
+        max(0.0, chi_square - least),
         _doubt(rest[nearest], variance[nearest].sum() / null.values),
     )
 
@@ -104,12 +111,14 @@ def _doubt(rest, variance):
 class Likelihoods:
     """chance (law, point): log likelihoods against nothing, with constants.LAWS' priors;
     allowed (point,): whether the change is seen and brings the model nearer to the measurement;
-    seen (point,): whether it is; may_be_left (point,): least chi-square that may be left.
+    seen (point,): whether it is; left, may_be_left (point,): chi-square that is left, and least
+    that may be.
     """
 
     chance: np.ndarray
     allowed: np.ndarray
     seen: np.ndarray
+    left: np.ndarray
     may_be_left: np.ndarray
 
     @classmethod
@@ -158,9 +167,9 @@ def _proposal(near, best):
 
 def log_likelihoods(
     emulator: AnyEmulator, units: np.ndarray, null: Null, law: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return (log likelihood against nothing, allowed, seen, least chi-square that may be left),
-    (point,) each, at units (point, parameter).
+) -> tuple[np.ndarray, ...]:
+    """Return (log likelihood against nothing, allowed, seen, chi-square that is left, least that
+    may be), (point,) each, at units (point, parameter).
 
     The covariance is that of the null, what the law may differ by, and what the emulator does not
     know along its directions. A change that does not bring the model nearer to the measurement is
@@ -184,7 +193,7 @@ def log_likelihoods(
     left = np.sum(rest**2, axis=1)
     nearer = left < null.measured @ null.measured
     may_be_left = left - hidden(rest @ emulator.directions.T, variance)
-    return -0.5 * (square + size) - null.chance, seen & nearer, seen, may_be_left
+    return -0.5 * (square + size) - null.chance, seen & nearer, seen, left, may_be_left
 
 
 class SomethingElse:

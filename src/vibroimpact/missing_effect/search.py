@@ -213,17 +213,22 @@ def may_explain(search: Search) -> list[str]:
 
 
 def refine(search: Search, names: list[str], points: int) -> None:
-    """Run explanations at `points` points each: the most probable, and others drawn from what is
-    known of their parameters.
+    """Run explanations at `points` points each: where they leave least, where they are most
+    probable, and others drawn from what is known of their parameters.
     """
     random = np.random.default_rng(search.seed)
     for name in names:
         found = search.fits[name]
-        drawn = found.samples[random.choice(len(found.samples), points - 1, p=found.weight)]
+        units = [found.closest]
+        if np.abs(found.unit - found.closest).max() > APART:
+            units.append(found.unit)
+        more = max(points - len(units), 0)
+        drawn = found.samples[random.choice(len(found.samples), more, p=found.weight)]
         moved = drawn + 0.04 * random.standard_normal(drawn.shape)
-        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0))
+        search.run(name, np.clip(np.vstack([*units, moved]), 0.0, 1.0))
 
 
+APART = 0.04  # of the searched range: between two runs
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
 RUNS = 12  # of an explanation at most, beside those screened
 LEAST_RUNS = 3
@@ -236,12 +241,14 @@ def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) ->
 
     laws: of these alone, however much less they explain so far.
     """
-    known = {
-        name: max(found.promised, 0.0)  # nothing at all explains by 0
+    fits = {
+        name: found
         for name, found in search.fits.items()
         if ("+" in name) == pairs and (name in laws or not laws)
     }
-    upper = {name: chance + 0.5 * search.fits[name].hidden for name, chance in known.items()}
+    # by chi-square: far from the measurement, a likelihood is that of what laws may differ by
+    known = {name: 0.5 * found.takes for name, found in fits.items()}
+    upper = {name: 0.5 * found.may_take for name, found in fits.items()}
     best = max(known.values(), default=0.0)
     explains = search.explains(search.null.measured)  # of those screened
     left = [
@@ -273,9 +280,16 @@ def race(
 
 
 def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
-    """Return the `count` explanations that explain most."""
-    found = [name for name in search.fits if ("+" in name) == pairs]
-    return sorted(found, key=lambda name: -search.fits[name].log_evidence)[:count]
+    """Return the `count` explanations of which a run leaves least, of those that bring the model
+    nearer to the measurement.
+    """
+    nothing = float(search.null.measured @ search.null.measured)
+    left = {
+        name: found.left
+        for name, found in search.fits.items()
+        if ("+" in name) == pairs and found.left < nothing
+    }
+    return sorted(left, key=lambda name: left[name])[:count]
 
 
 def _similar(effect, leading):
