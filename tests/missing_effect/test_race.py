@@ -1,0 +1,89 @@
+"""The race runs what may explain a measurement until it is known, on changes that are made up."""
+
+import numpy as np
+import pytest
+
+from tests.white_null import white_null
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.missing_effect.effort import Effort
+from vibroimpact.missing_effect.search import (
+    Search,
+    first_points,
+    laws_of,
+    leaders,
+    parts_alone,
+    race,
+    similar_too,
+)
+
+VALUES, NOISE = 200, 1.0e-2
+AXES = np.linalg.qr(np.random.default_rng(9).standard_normal((VALUES, 6)))[0].T
+STIFFNESS, HERTZ, FRICTION = "contact_stiffness@all", "hertz@all", "dry_friction@all"
+SPENT = Effort(compared_s=10.0, rounds=8, width=3, pairs=2)
+
+
+def changed(name, unit):
+    """Return (value,): the stiffness softens one direction, Hertz's law bends on to another below
+    a fifth of its range, friction changes a third.
+    """
+    (at,) = unit
+    if name == STIFFNESS:
+        return 60.0 * (1.0 - at) * AXES[0]
+    if name == HERTZ:
+        return 60.0 * np.exp(-(at**2) / 0.02) * (0.5 * AXES[0] + AXES[1])
+    return 40.0 * at * AXES[2]
+
+
+class Made(Search):
+    """A Search whose runs are looked up."""
+
+    def _change(self, candidate, unit):
+        parts = candidate.parts(unit)
+        return sum(changed(part.name, own) for part, own in parts), NOISE
+
+
+@pytest.fixture
+def searched():
+    measured = np.random.default_rng(2).standard_normal(VALUES) + changed(HERTZ, [0.05])
+    search = Made(
+        None, white_null(measured), dict.fromkeys(("one", "contact_stiffness", "hertz"), 1.0)
+    )
+    for name in (STIFFNESS, HERTZ, FRICTION):
+        search.run_first(name, 2)
+        search.fit(name)
+    return search
+
+
+def test_law_that_did_nothing_at_first_is_found(searched):
+    assert leaders(searched, 1) == [STIFFNESS]  # Hertz's law is as good as rigid at 0.3 and 0.75
+    similar_too(searched, STIFFNESS)
+    race(searched, SPENT)
+    race(searched, SPENT, laws=laws_of(searched, STIFFNESS))
+    assert leaders(searched, 1) == [HERTZ]
+    assert searched.fits[HERTZ].left / VALUES == pytest.approx(1.0, abs=0.3)
+    assert searched.fits[HERTZ].unit[0] == pytest.approx(0.05, abs=0.03)
+
+
+def test_first_runs_are_told_from_those_of_the_race(searched):
+    race(searched, SPENT)
+    trial = searched.trials[STIFFNESS]
+    assert trial.refined > 0 and trial.screened == 2
+    similar_too(searched, HERTZ)  # the stiffness is like it, and was run already
+    assert searched.trials[STIFFNESS].screened == 2
+    assert trial.unit[: trial.screened] == pytest.approx(
+        first_points(candidate_named(STIFFNESS))[:2]
+    )
+
+
+def test_what_changes_nothing_that_is_missing_is_not_run(searched):
+    race(searched, SPENT)
+    assert searched.trials[FRICTION].refined == 0
+
+
+def test_each_of_two_effects_is_run_alone(searched):
+    pair = f"{STIFFNESS}+{FRICTION}"
+    searched.run(pair, np.array([[0.5, 0.5]]))
+    runs = len(searched.trials[FRICTION].noise)
+    parts_alone(searched, pair)
+    assert len(searched.trials[FRICTION].noise) == runs + 1
+    assert searched.trials[FRICTION].unit[-1] == pytest.approx(searched.fits[pair].unit[1:])
