@@ -98,6 +98,9 @@ class Engine:
         so_far.write(self.folder, search, prepared)
         with self.stage("refinement"):
             self.refine(search)
+            if self.spent.pairs and open_chance(search) > OPEN and room(search) > ROOM:
+                searching.look_wider(search, names)
+                self.refine(search)
         with self.stage("two effects"):
             self.seek_pairs(search)
 
@@ -127,15 +130,7 @@ class Engine:
 
     def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""
-        chances = posterior(search)
-        open_ = sum(
-            np.exp(chance)
-            for name, chance in chances.items()
-            if name == "something else" or name.endswith(constants.ELSE)
-        )
-        left = min([search.fits[name].left for name in searching.leaders(search, 3)], default=0.0)
-        room = 0.25 * (left - LEAST * search.null.values)
-        if self.spent.pairs and open_ > OPEN and room > ROOM:
+        if self.spent.pairs and open_chance(search) > OPEN and room(search) > ROOM:
             searching.seek_pairs(search, seconds=self.spent.pairs)
             searching.race(search, self.spent, pairs=True)
             for name in searching.leaders(search, 1, pairs=True):
@@ -150,6 +145,21 @@ class Engine:
             return whole, whole
         bare = replace(prepared, adopted=None, fit=None)
         return workbench(self.config, self.campaign, bare), whole
+
+
+def open_chance(search: searching.Search) -> float:
+    """Return the probability of something else, beside an explanation or alone."""
+    return sum(
+        np.exp(chance)
+        for name, chance in posterior(search).items()
+        if name == "something else" or name.endswith(constants.ELSE)
+    )
+
+
+def room(search: searching.Search) -> float:
+    """Return the log evidence that is left to gain beyond the explanations that lead."""
+    left = min([search.fits[name].left for name in searching.leaders(search, 3)], default=0.0)
+    return 0.25 * (left - LEAST * search.null.values)
 
 
 def screened(prepared: Prepared) -> list[str]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.stats import qmc
 
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.discrepancy.candidates import (
@@ -178,6 +179,19 @@ def first_explanations(screened: list[str], places: int = 2) -> list[str]:
     return [name for names in by_effect.values() for name in names[:places]]
 
 
+WIDER = 3  # points for each parameter
+
+
+def look_wider(search: Search, names: list[str]) -> None:
+    """Run explanations at more points, evenly strewn: what resonates, as a support plate, is seen
+    near its answer alone.
+    """
+    for name in names:
+        count = len(candidate_named(name).effect.parameters)
+        strewn = qmc.Halton(count, scramble=False).random(1 + WIDER * count)[1:]
+        search.run(name, strewn)
+
+
 LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter
 MAY = 0.25  # of the chi-square that the best direction takes away
 LEAST = 6
@@ -230,7 +244,7 @@ def refine(search: Search, names: list[str], points: int) -> None:
 
 APART = 0.04  # of the searched range: between two runs
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
-RUNS = 12  # of an explanation at most, beside those screened
+RUNS = 16  # of an explanation at most, beside those screened
 LEAST_RUNS = 3
 KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
 
