@@ -28,7 +28,6 @@ def fit_at(laws=(0.0, -9.0, -9.0)):
         mean=np.zeros(9),
         left=9.0,
         unseen=0.0,
-        closest=np.zeros(1),
         takes=0.0,
         may_take=0.0,
         doubt=0.0,

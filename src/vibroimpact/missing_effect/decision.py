@@ -142,11 +142,11 @@ def ambiguity_sets(rows: list[tuple[str, float, float]], nothing: float, linear:
         candidate = candidate_named(name)
         for ids, share in [((), 1.0)] if candidate.alone else beside:
             key = tuple(sorted({*ids, *candidate.ids}))
-            out[key] = out.get(key, 0.0) + chance * share
+            out[key] = min(out.get(key, 0.0) + chance * share, 1.0)
     if linear:
         for ids, share in linear:
             key = tuple(sorted(ids))
-            out[key] = out.get(key, 0.0) + nothing * share
+            out[key] = min(out.get(key, 0.0) + nothing * share, 1.0)
     return sorted(out.items(), key=lambda row: -row[1])
 
 
@@ -169,6 +169,7 @@ def chosen_of(row: tuple[str, float, float], fits: dict[str, Fit]) -> Chosen:
     name, chance, beside = row
     found = fits[name]
     low, high = weighted_interval(found.samples, found.weight)
+    low, high = np.minimum(low, found.unit), np.maximum(high, found.unit)
     laws = np.exp(found.by_law - found.by_law.max())
     other_law = beside > 0.5 or laws[-1] > laws[:-1].sum()
     return Chosen(

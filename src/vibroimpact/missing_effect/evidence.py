@@ -21,14 +21,15 @@ FAR = 1.0e6  # of log likelihood
 
 @dataclass(frozen=True)
 class Fit:
-    """What a Trial says: promised: log evidence against nothing; by_law (law,): the same by each of
-    constants.LAWS, with its prior; unit (parameter,) the most probable; samples (sample,
-    parameter) with weight (sample,): the posterior; mean (value,) the change of the run nearest to
-    the measurement and left: chi-square that remains there; unseen: by how much less remains at
-    unit, where nothing was run; closest (parameter,): where the emulator leaves least, takes: the
-    chi-square that it takes away there, may_take: that it may take away anywhere, by what it does
-    not know; doubt: standard deviation of the log evidence by the scatter of the runs
-    near the nearest.
+    """What a Trial says.
+
+    promised: log evidence against nothing; by_law (law,): the same by each of constants.LAWS, with
+    its prior; unit (parameter,) where least is expected to be left; samples (sample, parameter)
+    with weight (sample,): the posterior; mean (value,) the change of the run nearest to the
+    measurement and left: chi-square that remains there; unseen: by how much less remains at unit,
+    where nothing was run; takes: chi-square that is expected to be taken away there, may_take: that
+    may be anywhere, by what the emulator does not know; doubt: standard deviation of the log
+    evidence by the scatter of the runs near the nearest.
     """
 
     promised: float
@@ -39,7 +40,6 @@ class Fit:
     mean: np.ndarray
     left: float
     unseen: float
-    closest: np.ndarray
     takes: float
     may_take: float
     doubt: float
@@ -74,14 +74,16 @@ def fit(
     by_law = even.evidence(about, density)
     samples = np.vstack([first, near])
     chances = np.append(even.over_laws, about.over_laws)
-    unit = samples[np.argmax(chances)]
+    # not where the likelihood is largest: where little is known, and far out, where laws may differ
+    # by more, it is wide
+    expected = np.append(even.expected, about.expected)
+    unit = samples[np.argmin(expected)]
     weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
     mean, variance = emulator(np.vstack([unit, emulator.run]))
     rest = null.measured - mean @ emulator.directions
     left = np.sum(rest**2, axis=1)
     nearest = 1 + int(np.argmin(left[1:]))
     chi_square = float(null.measured @ null.measured)
-    remains = np.append(even.left, about.left)
     least = float(min(even.may_be_left.min(), about.may_be_left.min()))
     return Fit(
         float(logsumexp(by_law)),
@@ -92,8 +94,7 @@ def fit(
         null.measured - rest[nearest],
         float(left[nearest]),
         max(0.0, float(left[nearest] - left[0])),
-        samples[np.argmin(remains)],
-        max(0.0, chi_square - float(remains.min())),
+        max(0.0, chi_square - float(expected.min())),
         max(0.0, chi_square - least),
         _doubt(rest[nearest], variance[nearest].sum() / null.values),
     )
@@ -111,14 +112,14 @@ def _doubt(rest, variance):
 class Likelihoods:
     """chance (law, point): log likelihoods against nothing, with constants.LAWS' priors;
     allowed (point,): whether the change is seen and brings the model nearer to the measurement;
-    seen (point,): whether it is; left, may_be_left (point,): chi-square that is left, and least
-    that may be.
+    seen (point,): whether it is; expected, may_be_left (point,): chi-square that is expected to be
+    left, and least that may be.
     """
 
     chance: np.ndarray
     allowed: np.ndarray
     seen: np.ndarray
-    left: np.ndarray
+    expected: np.ndarray
     may_be_left: np.ndarray
 
     @classmethod
@@ -168,8 +169,8 @@ def _proposal(near, best):
 def log_likelihoods(
     emulator: AnyEmulator, units: np.ndarray, null: Null, law: float
 ) -> tuple[np.ndarray, ...]:
-    """Return (log likelihood against nothing, allowed, seen, chi-square that is left, least that
-    may be), (point,) each, at units (point, parameter).
+    """Return (log likelihood against nothing, allowed, seen, chi-square that is expected to be
+    left, least that may be), (point,) each, at units (point, parameter).
 
     The covariance is that of the null, what the law may differ by, and what the emulator does not
     know along its directions. A change that does not bring the model nearer to the measurement is
@@ -193,7 +194,13 @@ def log_likelihoods(
     left = np.sum(rest**2, axis=1)
     nearer = left < null.measured @ null.measured
     may_be_left = left - hidden(rest @ emulator.directions.T, variance)
-    return -0.5 * (square + size) - null.chance, seen & nearer, seen, left, may_be_left
+    return (
+        -0.5 * (square + size) - null.chance,
+        seen & nearer,
+        seen,
+        left + variance.sum(axis=1),
+        may_be_left,
+    )
 
 
 class SomethingElse:

@@ -227,22 +227,17 @@ def may_explain(search: Search) -> list[str]:
 
 
 def refine(search: Search, names: list[str], points: int) -> None:
-    """Run explanations at `points` points each: where they leave least, where they are most
-    probable, and others drawn from what is known of their parameters.
+    """Run explanations at `points` points each: where least is expected to be left, and others
+    drawn from what is known of their parameters.
     """
     random = np.random.default_rng(search.seed)
     for name in names:
         found = search.fits[name]
-        units = [found.closest]
-        if np.abs(found.unit - found.closest).max() > APART:
-            units.append(found.unit)
-        more = max(points - len(units), 0)
-        drawn = found.samples[random.choice(len(found.samples), more, p=found.weight)]
+        drawn = found.samples[random.choice(len(found.samples), points - 1, p=found.weight)]
         moved = drawn + 0.04 * random.standard_normal(drawn.shape)
-        search.run(name, np.clip(np.vstack([*units, moved]), 0.0, 1.0))
+        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0))
 
 
-APART = 0.04  # of the searched range: between two runs
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
 RUNS = 16  # of an explanation at most, beside those screened
 LEAST_RUNS = 3
