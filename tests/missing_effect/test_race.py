@@ -11,6 +11,7 @@ from vibroimpact.missing_effect.search import (
     first_points,
     laws_of,
     leaders,
+    look_wider,
     parts_alone,
     race,
     similar_too,
@@ -73,6 +74,13 @@ def test_first_runs_are_told_from_those_of_the_race(searched):
     assert trial.unit[: trial.screened] == pytest.approx(
         first_points(candidate_named(STIFFNESS))[:2]
     )
+
+
+def test_strewn_runs_leave_room_for_those_of_the_race(searched):
+    look_wider(searched, [STIFFNESS])
+    trial = searched.trials[STIFFNESS]
+    assert (trial.screened, trial.strewn, trial.refined) == (2, 3, 0)
+    assert trial.unit[2:, 0] == pytest.approx([0.5, 0.25, 0.75])
 
 
 def test_what_changes_nothing_that_is_missing_is_not_run(searched):

@@ -189,7 +189,9 @@ def look_wider(search: Search, names: list[str]) -> None:
     for name in names:
         count = len(candidate_named(name).effect.parameters)
         strewn = qmc.Halton(count, scramble=False).random(1 + WIDER * count)[1:]
+        before = len(search.trials[name].noise)
         search.run(name, strewn)
+        search.trials[name].strewn += len(search.trials[name].noise) - before
 
 
 LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter

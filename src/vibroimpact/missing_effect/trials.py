@@ -17,7 +17,8 @@ NEGLIGIBLE = 1.0e-3  # of what the runs change: directions below it are left out
 class Trial:
     """An explanation and its runs: candidate; unit (run, parameter) from 0 to 1; change (run,
     value) and noise (run,): variance of a value of it; failed: [(unit, sentence)];
-    screened: how many of the runs, the first, were placed without regard to the measurement.
+    screened: how many of the runs, the first, were placed without regard to the measurement;
+    strewn: how many later ones.
     """
 
     candidate: Candidate | Pair
@@ -26,6 +27,7 @@ class Trial:
     noise: np.ndarray
     failed: list = field(default_factory=list)
     screened: int = 0
+    strewn: int = 0
 
     @property
     def tried(self) -> int:
@@ -34,8 +36,8 @@ class Trial:
 
     @property
     def refined(self) -> int:
-        """Return the number of runs beside the first."""
-        return len(self.noise) - self.screened
+        """Return the number of runs that were placed by what is known."""
+        return len(self.noise) - self.screened - self.strewn
 
     @classmethod
     def empty(cls, candidate: Candidate | Pair, values: int) -> "Trial":
