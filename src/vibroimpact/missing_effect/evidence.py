@@ -24,12 +24,13 @@ class Fit:
     """What a Trial says.
 
     promised: log evidence against nothing; by_law (law,): the same by each of constants.LAWS, with
-    its prior; unit (parameter,) where least is expected to be left; samples (sample, parameter)
-    with weight (sample,): the posterior; mean (value,) the change of the run nearest to the
-    measurement and left: chi-square that remains there; unseen: by how much less remains at unit,
-    where nothing was run; takes: chi-square that is expected to be taken away there, may_take: that
-    may be anywhere, by what the emulator does not know; doubt: standard deviation of the log
-    evidence by the scatter of the runs near the nearest.
+    its prior; unit (parameter,) where least is expected to be left; samples (sample, parameter),
+    even ones first, with weight (sample,): the posterior, and density (sample,): of the draw; mean
+    (value,) the change of the run nearest to the measurement and left: chi-square that remains
+    there; unseen: by how much less remains at unit, where nothing was run; takes: chi-square that
+    is expected to be taken away there, may_take: that may be anywhere, by what the emulator does
+    not know; doubt: standard deviation of the log evidence by the scatter of the runs near the
+    nearest.
     """
 
     promised: float
@@ -37,6 +38,7 @@ class Fit:
     unit: np.ndarray
     samples: np.ndarray
     weight: np.ndarray
+    density: np.ndarray
     mean: np.ndarray
     left: float
     unseen: float
@@ -91,6 +93,7 @@ def fit(
         unit,
         samples,
         np.exp(weight - logsumexp(weight)),
+        np.append(np.ones(SAMPLES), density),
         null.measured - rest[nearest],
         float(left[nearest]),
         max(0.0, float(left[nearest] - left[0])),
@@ -211,18 +214,31 @@ class SomethingElse:
         self.share = (1.0 - constants.WHITE) * null.values * effects.share
         self.sizes = np.geomspace(*constants.SIZES, 24)
 
-    def log_evidence(self, mean: np.ndarray) -> float:
-        """Return the log evidence against nothing that the measurement is mean (value,) and
-        something else.
+    def log_evidence(self, mean: np.ndarray) -> np.ndarray:
+        """Return (...,) the log evidence against nothing that the measurement is mean (..., value)
+        and something else.
         """
         rest = self.null.measured - mean
-        along = self.along @ rest
-        outside = rest @ rest - along @ along
-        white = 1.0 + constants.WHITE * self.sizes**2
-        inside = white[:, None] + self.sizes[:, None] ** 2 * self.share
-        chance = -0.5 * (
-            np.sum(along**2 / inside + np.log(inside), axis=1)
-            + outside / white
-            + (self.null.values - len(along)) * np.log(white)
-        )
-        return float(logsumexp(chance - self.null.chance) - np.log(len(self.sizes)))
+        along = rest @ self.along.T
+        outside = np.sum(rest**2, axis=-1) - np.sum(along**2, axis=-1)
+        rows = []
+        for size in self.sizes:
+            white = 1.0 + constants.WHITE * size**2
+            inside = white + size**2 * self.share
+            rows.append(
+                np.sum(along**2 / inside + np.log(inside), axis=-1)
+                + outside / white
+                + (self.null.values - len(inside)) * np.log(white)
+            )
+        chance = -0.5 * np.array(rows) - self.null.chance
+        return logsumexp(chance, axis=0) - np.log(len(self.sizes))
+
+    def beside(self, found: Fit, emulator: AnyEmulator) -> float:
+        """Return the log evidence that the measurement is an explanation's change, whatever its
+        parameters, and something else: what its runs show of it.
+        """
+        mean, _ = emulator(found.samples)
+        chance = self.log_evidence(mean @ emulator.directions)
+        even, near = np.split(chance - np.log(found.density), [SAMPLES])
+        promised = max(logsumexp(even) - np.log(SAMPLES), logsumexp(near) - np.log(NEAR))
+        return float(promised - max(0.0, chance.max() - self.log_evidence(found.mean)))

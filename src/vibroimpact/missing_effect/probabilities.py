@@ -35,18 +35,15 @@ def posterior(search: Search) -> dict[str, float]:
             known = np.log(rest * share / len(names))
             found = search.fits[name]
             out[name] = known + found.log_evidence
-            gone = 0.5 * (search.null.measured @ search.null.measured - found.left)
             # none where all runs are farther from the measurement than nothing is; nor beside a
             # pair: that three are missing is not believed, and where a law does not fit, any
             # second effect seems to help
-            if gone <= 0.0 or family in pairs:
+            if found.left >= search.null.measured @ search.null.measured or family in pairs:
                 continue
-            occam = found.log_evidence - gone  # what its parameters cost
             out[name + constants.ELSE] = (
                 known
                 + np.log(constants.SOMETHING_ELSE)
-                + else_.log_evidence(found.mean)
-                + min(occam, 0.0)
+                + else_.beside(found, search.emulator(name))
             )
     return averaged(out, {name: found.doubt for name, found in search.fits.items()})
 
