@@ -123,3 +123,10 @@ def test_a_name_that_leaves_most_is_a_part():
     assert (
         partly_decision(decided(nothing=0.94, something_else=0.01, friction=0.05)).verdict == "none"
     )
+
+
+def test_rounding_makes_no_probability_above_one():
+    found = decided(
+        nothing=1.0e-300, something_else=1.0e-300, friction=0.9, friction_beside=0.1 + 1.0e-12
+    )
+    assert found.rows[0][1] == found.probabilities[0] == 1.0

@@ -126,7 +126,7 @@ def explanations(chances: Chances) -> list[tuple[str, float, float]]:
             [plain, beside + chance] if name.endswith(constants.ELSE) else [plain + chance, beside]
         )
     rows = [
-        (name, plain + beside, beside / max(plain + beside, 1.0e-300))
+        (name, min(plain + beside, 1.0), beside / max(plain + beside, 1.0e-300))
         for name, (plain, beside) in both.items()
     ]
     return sorted(rows, key=lambda row: -row[1])
