@@ -5,7 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vibroimpact.missing_effect.decision import decide, partly_decision, smallest, weighted_interval
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.missing_effect.decision import (
+    decide,
+    exactly_alike,
+    partly_decision,
+    smallest,
+    weighted_interval,
+)
 from vibroimpact.missing_effect.evidence import Fit
 from vibroimpact.missing_effect.verification import Closing
 
@@ -130,3 +137,16 @@ def test_rounding_makes_no_probability_above_one():
         nothing=1.0e-300, something_else=1.0e-300, friction=0.9, friction_beside=0.1 + 1.0e-12
     )
     assert found.rows[0][1] == found.probabilities[0] == 1.0
+
+
+def test_gap_of_all_supports_is_no_other_than_a_common_gain():
+    name = "gap@all"
+    found = decided(
+        fits={name: fit_at()}, nothing=0.01, something_else=0.01, **{name: 0.98, "friction": 0.0001}
+    )
+    assert found.verdict == "ambiguous"
+    assert found.ambiguity == [["gap"], ["sensor_gain"]]
+    assert found.probabilities == pytest.approx([0.49, 0.49])
+    assert exactly_alike(candidate_named("gap@plate_1")) == [["gap"]]
+    both = sorted(map(sorted, exactly_alike(candidate_named("added_mass@apex+gap@all"))))
+    assert both == [["added_mass", "gap"], ["added_mass", "sensor_gain"]]

@@ -140,14 +140,29 @@ def ambiguity_sets(rows: list[tuple[str, float, float]], nothing: float, linear:
     beside = linear or [((), 1.0)]
     for name, chance, _ in rows:
         candidate = candidate_named(name)
+        alike = exactly_alike(candidate)
         for ids, share in [((), 1.0)] if candidate.alone else beside:
-            key = tuple(sorted({*ids, *candidate.ids}))
-            out[key] = min(out.get(key, 0.0) + chance * share, 1.0)
+            for own in alike:
+                key = tuple(sorted({*ids, *own}))
+                out[key] = min(out.get(key, 0.0) + chance * share / len(alike), 1.0)
     if linear:
         for ids, share in linear:
             key = tuple(sorted(ids))
             out[key] = min(out.get(key, 0.0) + nothing * share, 1.0)
     return sorted(out.items(), key=lambda row: -row[1])
+
+
+def exactly_alike(candidate: Candidate | Pair) -> list[list[str]]:
+    """Return the sets of ids that no record tells from a candidate, its own first.
+
+    Force and responses scaled alike are clearances scaled, where all of them are: a common gain of
+    the chain is not run, and as probable.
+    """
+    parts = [candidate.first, candidate.second] if isinstance(candidate, Pair) else [candidate]
+    own = list(candidate.ids)
+    if not any(part.effect_id == "gap" and part.location == "all" for part in parts):
+        return [own]
+    return [own, ["sensor_gain" if effect == "gap" else effect for effect in own]]
 
 
 def smallest(sets: Sets) -> tuple[float, Sets]:
