@@ -1,5 +1,6 @@
 """Values have unit variance along what effects change, whatever few runs of the null say of it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -85,3 +86,12 @@ def test_without_effects_nothing_is_told():
     null = white_null(np.arange(5.0))
     effects = EffectDirections.of(np.zeros((0, 5)), np.zeros(0), 5)
     assert told_of(null, effects).measured == pytest.approx(null.measured)
+
+
+def test_null_is_known_as_it_was_before_effects_were_run(null):
+    null = replace(null, measured=RANDOM.standard_normal(RECORDS * FEATURES))
+    along = np.linalg.qr(RANDOM.standard_normal((RECORDS * FEATURES, 2)))[0].T
+    told = told_of(null, EffectDirections(along, np.array([0.8, 0.2])))
+    assert np.abs(told.measured - null.measured).max() > 0.1
+    assert told.plain.measured == pytest.approx(null.measured)
+    assert told.plain.probability() == pytest.approx(null.probability())

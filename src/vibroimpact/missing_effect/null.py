@@ -82,6 +82,21 @@ class Null:
         inside = change @ self.along.T
         return change + (inside @ self.rescaled - inside) @ self.along
 
+    def out_of_units(self, change: np.ndarray) -> np.ndarray:
+        """Return whitened changes (..., value): in_units undone."""
+        inside = change @ self.along.T
+        return change + (np.linalg.solve(self.rescaled, inside.T).T - inside) @ self.along
+
+    @property
+    def plain(self) -> "Null":
+        """Return this Null in units of its covariance alone, as before effects were run."""
+        return replace(
+            self,
+            measured=self.out_of_units(self.measured),
+            along=self.along[:0],
+            rescaled=self.rescaled[:0, :0],
+        )
+
     @property
     def chance(self) -> float:
         """Return the log likelihood of the measurement where nothing is missing, less that of a

@@ -25,7 +25,7 @@ def write(folder: Path, search: Search, prepared: Prepared) -> None:
     """Write so_far.json of a Search into the folder."""
     null = search.null
     content = {
-        "probability_by_chance": null.probability(),
+        "probability_by_chance": null.plain.probability(),
         "lowest_record": None if prepared.adopted is None else prepared.adopted["name"],
         "where": where(null, search.bench.signals),
         "effects": [],

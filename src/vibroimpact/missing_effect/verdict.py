@@ -166,9 +166,13 @@ def by_chance(
     """
     given, whole = closed.benches
     off = measured - closed.before.compared[null.records]
+    # along what effects change a Null is told of more than chance
+    plain = null.plain
     # the null holds what was adopted; the model as given does not
-    before = null.probability(None if given is whole else null.change(null.mean + off))
-    return before, before if closed.after is closed.before else null.probability(rest)
+    before = plain.probability(None if given is whole else plain.change(null.mean + off))
+    if closed.after is closed.before:
+        return before, before
+    return before, plain.probability(null.out_of_units(rest))
 
 
 def left_out(search: Search) -> list[Values]:
