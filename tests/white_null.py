@@ -1,5 +1,7 @@
 """A Null of one record whose values are its features, white as long as nothing is told of them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from vibroimpact.missing_effect.null import Null
@@ -10,7 +12,7 @@ def white_null(measured, groups=None):
     values = len(measured)
     return Null(
         records=np.array([0]),
-        layout=None,
+        layout=SimpleNamespace(blend=1.0e9),  # nothing is drawn in
         mean=np.zeros((1, values)),
         features=np.zeros((1, 2, values)),
         seeds_per_draw=1,

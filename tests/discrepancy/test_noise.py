@@ -5,7 +5,8 @@ band.
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.signals import noise_of
+from tests.discrepancy.test_sampling_rate import campaign
+from vibroimpact.discrepancy.signals import noise_of, signals_of
 
 RATE, BAND = 2048.0, (5.0, 200.0)
 
@@ -81,3 +82,16 @@ def test_noise_within_the_band_is_what_forces_do_not_explain():
     response = moves + 0.01 * rng.standard_normal(moves.shape)
     found = noise_of({}, (np.fft.irfft(force, samples), response), rate, band)
     assert found == pytest.approx([0.01, 0.01, 0.01], rel=0.25)
+
+
+def test_measured_channel_is_as_noisy_as_what_is_simulated():
+    """A channel across the motion, still until the tube touches, with less noise than a recorder
+    resolves of its range.
+    """
+    dataset = campaign(RATE)
+    dataset["response"][0, 1] *= 1.0e-12
+    dataset["noise_floor_rms"][:] = 0.0
+    signals = signals_of(dataset)
+    largest = np.nanstd(signals.response[1, 1])
+    assert signals.noise[1] == pytest.approx(1.0e-6 * largest, rel=0.01)
+    assert np.nanstd(signals.response[0, 1]) == pytest.approx(signals.noise[1], rel=0.02)

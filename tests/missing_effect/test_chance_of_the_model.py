@@ -3,25 +3,18 @@
 from types import SimpleNamespace
 
 import numpy as np
-from scipy import stats
 
+from tests.white_null import white_null
 from vibroimpact.missing_effect.verdict import by_chance
 
 VALUES = 40
 MEASURED = np.random.default_rng(3).standard_normal((1, VALUES))
-NULL = SimpleNamespace(
-    records=np.array([1]),
-    mean=np.zeros((1, VALUES)),
-    change=lambda features: features.ravel(),
-    probability=lambda rest=None: float(
-        stats.chi2.sf(np.sum((MEASURED if rest is None else rest) ** 2), VALUES)
-    ),
-)
+NULL = white_null(MEASURED.ravel())
 
 
 def verified(shift):
     """What is compared of both records, all values off by so much."""
-    return SimpleNamespace(compared=np.full((2, VALUES), shift))
+    return SimpleNamespace(compared=np.full((1, VALUES), shift))
 
 
 def test_model_as_given_lacks_what_the_lowest_record_told():

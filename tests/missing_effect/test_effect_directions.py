@@ -77,15 +77,26 @@ def test_what_codes_differ_by_looks_like_effects(null):
 def test_directions_are_those_of_seen_changes():
     axes = np.eye(5)
     changes = np.array([30.0 * axes[0], -60.0 * axes[0], 40.0 * axes[1], 1.0 * axes[2]])
-    effects = EffectDirections.of(changes, np.full(4, 1.0e-6), 5)
+    effects = EffectDirections.of(changes, np.full(4, 1.0e-6), white_null(np.zeros(5)))
     assert np.abs(effects.along) == pytest.approx(axes[:2], abs=1.0e-9)
     assert effects.share == pytest.approx([2 / 3, 1 / 3], abs=1.0e-6)
 
 
 def test_without_effects_nothing_is_told():
     null = white_null(np.arange(5.0))
-    effects = EffectDirections.of(np.zeros((0, 5)), np.zeros(0), 5)
+    effects = EffectDirections.of(np.zeros((0, 5)), np.zeros(0), null)
     assert told_of(null, effects).measured == pytest.approx(null.measured)
+
+
+def test_what_the_mean_is_off_by_is_no_direction(null):
+    """It is in the change of every run, as it is in the measurement."""
+    off = RANDOM.standard_normal((RECORDS, FEATURES))
+    changes = np.array([null.change(row - off) for row in runs(12).transpose(1, 0, 2)])
+    null = replace(null, features=null.features - off[:, None])
+    none = EffectDirections.of(changes, np.ones(12), null)
+    assert np.abs(none.along @ null.change(off)).max(initial=0.0) < 0.3 * np.linalg.norm(
+        null.change(off)
+    )
 
 
 def test_null_is_known_as_it_was_before_effects_were_run(null):

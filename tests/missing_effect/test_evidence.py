@@ -15,9 +15,9 @@ AXES = np.linalg.qr(np.random.default_rng(5).standard_normal((VALUES, VALUES)))[
 
 
 class Line:
-    """A candidate of one parameter, not periodic."""
+    """A candidate of one parameter, not periodic; the first of two has one."""
 
-    periodic = ()
+    periodic, split = (), 1
 
 
 class Known:
@@ -125,9 +125,7 @@ def test_two_effects_add_until_a_run_corrects_the_sum():
     both = np.array([[0.5, 0.4]])
     sum_ = (15.0 * AXES[0] + 12.0 * AXES[1])[None]
     for more in (0.0, 8.0):
-        emulator = PairEmulator(
-            trial_of(both, sum_ + more * AXES[2], 1.0e-4), first, second, split=1
-        )
+        emulator = PairEmulator(trial_of(both, sum_ + more * AXES[2], 1.0e-4), first, second)
         change = emulator(both)[0] @ emulator.directions
         assert change == pytest.approx(sum_ + more * AXES[2], abs=0.5)
 

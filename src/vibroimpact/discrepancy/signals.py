@@ -91,6 +91,12 @@ def signals_of(campaign, longest_s=None):
     load = np.sqrt(np.nanmean(force[:, 0] ** 2, axis=-1))
     gap = measured.gap
     lowest = int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), load))[0])
+    read = noise_of(campaign, (force[lowest], response[lowest]), rate, band, measured.factors)
+    noise = np.maximum(read, RESOLUTION * np.sqrt(np.nanmean(response**2, axis=-1)).max(axis=0))
+    # what is simulated is as noisy: a measurement with less is made so too
+    quiet, rng = np.flatnonzero(noise > read), np.random.default_rng(7)
+    lacking = np.sqrt(noise[quiet] ** 2 - read[quiet] ** 2)[:, None]
+    response[:, quiet] += lacking * rng.standard_normal(response[:, quiet].shape)
     return Signals(
         force=force[..., :kept],
         response=response[..., :kept],
@@ -102,10 +108,7 @@ def signals_of(campaign, longest_s=None):
         load=load,
         split=np.array(measured.splits),
         record_names=tuple(measured.records),
-        noise=np.maximum(
-            noise_of(campaign, (force[lowest], response[lowest]), rate, band, measured.factors),
-            RESOLUTION * np.sqrt(np.nanmean(response**2, axis=-1)).max(axis=0),
-        ),
+        noise=noise,
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
     )
 

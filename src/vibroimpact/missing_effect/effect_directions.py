@@ -21,19 +21,38 @@ class EffectDirections:
     share: np.ndarray
 
     @classmethod
-    def of(cls, changes: np.ndarray, noise: np.ndarray, values: int) -> "EffectDirections":
-        """Return the EffectDirections of changes (run, value), less their noise (run,): variance of
-        a value; a change that is not seen has none.
+    def of(cls, changes: np.ndarray, noise: np.ndarray, null: Null) -> "EffectDirections":
+        """Return the EffectDirections of changes (run, value) with noise (run,), the variance of a
+        value; a change that is not seen has none.
+
+        Changes are counted from the mean of the null's drawn runs. Its mean is of a few runs, and
+        what it is off by is in every change and in the measurement: were it a direction, every
+        explanation would take it away.
         """
-        whole = np.sum(changes**2, axis=1)
-        told = whole - noise * values > constants.SEEN
-        unit = changes[told] / np.sqrt(whole[told])[:, None]
+        changes = changes - null.drawn
+        told = seen(changes, noise)
+        whole = np.sum(changes[told] ** 2, axis=1)
+        unit = changes[told] / np.sqrt(whole)[:, None]
         count = max(len(unit), 1)
-        scattered = np.sum(noise[told] * values / whole[told]) / count**2
+        scattered = np.sum(noise[told] * null.values / whole) / count**2
         _, singular, along = linalg.svd(unit, full_matrices=False)
-        share = singular**2 / count - scattered
-        along, share = along[share > 0.0], share[share > 0.0]
+        # the largest singular value of scatter alone (Marchenko and Pastur 1967)
+        largest = scattered * (1.0 + np.sqrt(count / null.values)) ** 2
+        kept = singular**2 / count > largest
+        along, share = along[kept], singular[kept] ** 2 / count - scattered
         return cls(along, share / max(share.sum(), 1.0e-12))
+
+
+TOLD = 3.0  # standard deviations of the scatter of its own that a change must exceed
+
+
+def seen(changes: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """Return (run,) bool: whether changes (run, value) can be told from their own scatter, noise
+    (run,): variance of a value.
+    """
+    values = changes.shape[1]
+    size = np.sum(changes**2, axis=1) - noise * values
+    return size > constants.SEEN + TOLD * noise * np.sqrt(2.0 * values)
 
 
 def told_of(null: Null, effects: EffectDirections) -> Null:

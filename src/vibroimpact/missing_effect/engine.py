@@ -16,7 +16,7 @@ from vibroimpact.stopwatch import Stopwatch
 
 from . import constants, so_far, verdict
 from . import search as searching
-from .decision import decide
+from .decision import decide, share_explained
 from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
@@ -98,8 +98,9 @@ class Engine:
         so_far.write(self.folder, search, prepared)
         with self.stage("refinement"):
             self.refine(search)
-            if self.spent.pairs and open_chance(search) > OPEN and room(search) > ROOM:
+            if self.spent.pairs and unexplained(search):
                 searching.look_wider(search, names)
+                search.look()
                 self.refine(search)
         with self.stage("two effects"):
             self.seek_pairs(search)
@@ -119,6 +120,7 @@ class Engine:
         other laws of its family too.
         """
         searching.race(search, self.spent)
+        search.look()
         leading = searching.leaders(search, LEADING)
         for name in leading:
             searching.similar_too(search, name)
@@ -130,11 +132,12 @@ class Engine:
 
     def seek_pairs(self, search: searching.Search) -> None:
         """Look for two effects where one leaves room for a second."""
-        if self.spent.pairs and open_chance(search) > OPEN and room(search) > ROOM:
+        if self.spent.pairs and unexplained(search):
             searching.seek_pairs(search, seconds=self.spent.pairs)
             searching.race(search, self.spent, pairs=True)
             for name in searching.leaders(search, 1, pairs=True):
                 searching.parts_alone(search, name)
+        search.look()
 
     def whole_benches(self, prepared: Prepared) -> tuple[Workbench, Workbench]:
         """Return (Workbench of the model as given, Workbench with what was adopted), of whole
@@ -156,10 +159,17 @@ def open_chance(search: searching.Search) -> float:
     )
 
 
-def room(search: searching.Search) -> float:
-    """Return the log evidence that is left to gain beyond the explanations that lead."""
-    left = min([search.fits[name].left for name in searching.leaders(search, 3)], default=0.0)
-    return 0.25 * (left - LEAST * search.null.values)
+def unexplained(search: searching.Search) -> bool:
+    """Return whether more is missing than what leads: something else is as probable, or it leaves
+    more than what is named may leave, and there is log evidence left to gain.
+    """
+    null, leading = search.null, searching.leaders(search, 3)
+    nothing = float(null.measured @ null.measured)
+    left = min((search.fits[name].left for name in leading), default=nothing)
+    if 0.25 * (left - LEAST * null.values) < ROOM:
+        return False
+    explained = share_explained(left, nothing, null.values)
+    return explained < constants.EXPLAINED or open_chance(search) > OPEN
 
 
 def screened(prepared: Prepared) -> list[str]:

@@ -99,16 +99,15 @@ def fit(
         max(0.0, float(left[nearest] - left[0])),
         max(0.0, chi_square - float(expected.min())),
         max(0.0, chi_square - least),
-        _doubt(rest[nearest], variance[nearest].sum() / null.values),
+        _doubt(emulator.directions @ rest[nearest], variance[nearest]),
     )
 
 
 def _doubt(rest, variance):
-    """Return the standard deviation of the log evidence where rest (value,) is left by runs whose
-    scatter has a variance in every value: that of the square of rest.
+    """Return the standard deviation of the log evidence where rest (direction,) is left by runs
+    whose scatter has a variance (direction,): that of the square of rest.
     """
-    of_square = 4.0 * variance * (rest @ rest) + 2.0 * rest.size * variance**2
-    return 0.5 * float(np.sqrt(of_square))
+    return 0.5 * float(np.sqrt(np.sum(4.0 * variance * rest**2 + 2.0 * variance**2)))
 
 
 @dataclass(frozen=True)

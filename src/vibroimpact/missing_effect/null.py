@@ -67,6 +67,11 @@ class Null:
         """Return (record, run, feature): what its own runs differ by from the mean, compressed."""
         return compressed(self.features - self.mean[:, None], self.layout)
 
+    @property
+    def drawn(self) -> np.ndarray:
+        """Return (value,): what the mean of its own runs differs by from the mean."""
+        return self.change(self.features.mean(axis=1))
+
     def change(self, features: np.ndarray) -> np.ndarray:
         """Return (value,): what features (record, feature) differ by from the mean."""
         whitened = [

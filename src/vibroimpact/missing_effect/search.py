@@ -21,8 +21,7 @@ from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 
-from . import constants
-from .effect_directions import EffectDirections, told_of
+from .effect_directions import EffectDirections, seen, told_of
 from .effort import Effort
 from .evidence import SomethingElse, fit
 from .null import Null
@@ -32,7 +31,7 @@ from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 @dataclass
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
-    Fits {name: Fit}.
+    Fits {name: Fit}. along (direction, value): see look; None: all that runs change is known.
     """
 
     bench: Workbench
@@ -41,6 +40,7 @@ class Search:
     trials: dict = field(default_factory=dict)
     fits: dict = field(default_factory=dict)
     seed: int = 1000
+    along: np.ndarray | None = None
 
     def run(self, name: str, units: np.ndarray) -> None:
         """Run an explanation at units (point, parameter) and fit it again."""
@@ -48,9 +48,16 @@ class Search:
         self.fit(name)
 
     def run_first(self, name: str, points: int) -> None:
-        """Run an explanation until it was run at so many of its first points."""
-        done = self.trials[name].tried if name in self.trials else 0
-        self._run(name, first_points(candidate_named(name))[done:points])
+        """Run an explanation at those of so many of its first points where it was not run."""
+        tried = self.trials[name].tried if name in self.trials else []
+        first = first_points(candidate_named(name))[:points]
+        new = [unit for unit in first if not any(np.array_equal(unit, other) for other in tried)]
+        if new:
+            self.run_screened(name, np.array(new))
+
+    def run_screened(self, name: str, units: np.ndarray) -> None:
+        """Run an explanation at units (point, parameter) of screening."""
+        self._run(name, units)
         self.trials[name].screened = len(self.trials[name].noise)
 
     def _run(self, name, units):
@@ -78,8 +85,8 @@ class Search:
             first, second = (
                 self.emulator(part.name) for part in (trial.candidate.first, trial.candidate.second)
             )
-            return PairEmulator(trial, first, second, trial.candidate.split)
-        return Emulator(trial, neutral_unit(trial.candidate, self.scales))
+            return PairEmulator(trial, first, second, self.along)
+        return Emulator(trial, neutral_unit(trial.candidate, self.scales), self.along)
 
     def _change(self, candidate, unit):
         """Return (change (value,), variance of a value) of one batch of runs."""
@@ -102,13 +109,28 @@ class Search:
     @property
     def effects(self) -> EffectDirections:
         """Return the EffectDirections of all runs of screening."""
-        trials = [trial for trial in self.trials.values() if trial.screened]
+        return self._directions({name: trial.screened for name, trial in self.trials.items()})
+
+    def _directions(self, counts):
+        """Return the EffectDirections of the first runs of explanations {name: number}."""
+        trials = [(self.trials[name], count) for name, count in counts.items()]
         nothing = np.zeros((0, self.null.values))  # where no explanation could be run
         return EffectDirections.of(
-            np.vstack([nothing, *(trial.change[: trial.screened] for trial in trials)]),
-            np.concatenate([[], *(trial.noise[: trial.screened] for trial in trials)]),
-            self.null.values,
+            np.vstack([nothing, *(trial.change[:count] for trial, count in trials)]),
+            np.concatenate([[], *(trial.noise[:count] for trial, count in trials)]),
+            self.null,
         )
+
+    def look(self) -> None:
+        """Look along the directions of all runs so far, and fit every explanation again.
+
+        Runs are known along them alone: their scatter is the same in all values, and that of
+        hundreds of values would hide what changes in a few directions.
+        """
+        runs = {name: len(trial.noise) for name, trial in self.trials.items()}
+        self.along = self._directions(runs).along
+        for name in self.trials:
+            self.fit(name)
 
     def something_else(self) -> SomethingElse:
         """Return the SomethingElse of all trials."""
@@ -123,22 +145,31 @@ class Search:
     def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
         runs takes away}, of those screened.
-
-        A run whose change can not be told from its own scatter has no direction.
         """
-        out = {}
-        for name, trial in self.trials.items():
-            if not trial.screened:
-                continue
-            scatter = trial.noise * self.null.values
-            size = np.sum(trial.change**2, axis=1) - scatter
-            seen = size > constants.SEEN + TOLD * trial.noise * np.sqrt(2.0 * self.null.values)
-            along = np.maximum(trial.change @ rest, 0.0)
-            out[name] = float(np.max(np.where(seen, along**2 / np.maximum(size, 1.0), 0.0)))
-        return out
+        return {
+            name: float(directed(trial, rest).max())
+            for name, trial in self.trials.items()
+            if trial.screened
+        }
 
 
-TOLD = 3.0  # standard deviations of the scatter of its own that a change must exceed
+def directed(trial: Trial, rest: np.ndarray) -> np.ndarray:
+    """Return (run,): the chi-square of rest (value,) that the direction of a run takes away; none
+    where its change can not be told from its own scatter.
+    """
+    scatter = trial.noise * rest.size
+    size = np.sum(trial.change**2, axis=1) - scatter
+    along = np.maximum(trial.change @ rest, 0.0)
+    return np.where(seen(trial.change, trial.noise), along**2 / np.maximum(size, 1.0), 0.0)
+
+
+def telling(trial: Trial, rest: np.ndarray) -> int:
+    """Return the number of the run whose direction takes most of the chi-square of rest (value,)
+    away; where none does, of the run that changes most.
+    """
+    return int(np.lexsort((np.sum(trial.change**2, axis=1), directed(trial, rest)))[-1])
+
+
 BELOW = -0.2  # of the searched range: where an effect is nothing whose size is searched in its
 # logarithm from little to much
 
@@ -200,18 +231,19 @@ LEAST = 6
 
 
 def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation at two points for each parameter, at single supports at one, and those
-    that may explain the measurement at more.
+    """Run every explanation at two points for each parameter, at single supports where it explains
+    most at all of them, and those that may explain the measurement at more.
     """
     for name in names:
         search.run_first(name, 2 * len(candidate_named(name).effect.parameters))
+        at_all = search.trials[name]
         for other in elsewhere(candidate_named(name), values):
-            search.run_first(other.name, 1)
+            if len(at_all.noise):
+                search.run_screened(other.name, at_all.unit[telling(at_all, search.null.measured)])
     search.learn()
     for name in may_explain(search):
         search.run_first(name, 4)
-    for name in search.trials:
-        search.fit(name)
+    search.look()
 
 
 def may_explain(search: Search) -> list[str]:
@@ -244,6 +276,9 @@ DECIDED = 7.0  # of log probability: what is so much less probable is out of the
 RUNS = 16  # of an explanation at most, beside those screened
 LEAST_RUNS = 3
 KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
+OF_REST = (
+    0.05  # of what the best leaves beyond chance: where nothing explains, less is known enough
+)
 
 
 def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) -> list[str]:
@@ -261,6 +296,8 @@ def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) ->
     known = {name: 0.5 * found.takes for name, found in fits.items()}
     upper = {name: 0.5 * found.may_take for name, found in fits.items()}
     best = max(known.values(), default=0.0)
+    rest = min((found.left for found in fits.values()), default=0.0) - search.null.values
+    enough = max(KNOWN, OF_REST * 0.5 * rest)
     explains = search.explains(search.null.measured)  # of those screened
     left = [
         name
@@ -269,7 +306,7 @@ def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) ->
         and (laws or upper[name] > best - DECIDED)
         and search.trials[name].refined < RUNS
         and (
-            max(upper[name] - known[name], search.fits[name].not_shown) > KNOWN
+            max(upper[name] - known[name], search.fits[name].not_shown) > enough
             or search.trials[name].refined < LEAST_RUNS
         )
     ]

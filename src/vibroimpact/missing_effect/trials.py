@@ -30,9 +30,9 @@ class Trial:
     strewn: int = 0
 
     @property
-    def tried(self) -> int:
-        """Return the number of points, those that could not be run too."""
-        return len(self.noise) + len(self.failed)
+    def tried(self) -> list[np.ndarray]:
+        """Return the points, those that could not be run too."""
+        return [*self.unit, *(unit for unit, _ in self.failed)]
 
     @property
     def refined(self) -> int:
@@ -59,16 +59,22 @@ class Trial:
 class Emulator:
     """The change (value,) at any parameters, by a Gaussian process that all values share, of the
     length that predicts left-out runs best; neutral (parameter,): where nothing changes, None: far
-    from all runs the change is their mean then, 0 where it is not centred.
+    from all runs the change is their mean then, 0 where it is not centred; along (direction,
+    value): orthonormal, what of the runs is known, None: all.
 
     directions (direction, value) are orthonormal: those that the runs, smoothed, lie along; run
     (run, parameter): where it was run.
     """
 
     def __init__(
-        self, trial: Trial, neutral: np.ndarray | None = None, centred: bool = True
+        self,
+        trial: Trial,
+        neutral: np.ndarray | None = None,
+        along: np.ndarray | None = None,
+        centred: bool = True,
     ) -> None:
-        unit, change, noise = trial.unit, trial.change, trial.noise
+        unit, noise = trial.unit, trial.noise
+        change = trial.change if along is None else trial.change @ along.T
         self.run = unit
         self.periodic = list(trial.candidate.periodic)
         centre = np.zeros(change.shape[1])
@@ -86,9 +92,11 @@ class Emulator:
         smooth = self._kernel(unit, unit) @ self.inverse @ (change - centre) + centre
         _, sizes, directions = linalg.svd(smooth, full_matrices=False)
         kept = sizes**2 > NEGLIGIBLE * np.sum(sizes**2)
-        self.directions: np.ndarray = directions[kept]
-        self.centre = self.directions @ centre
-        self.solved = self.inverse @ (change - centre) @ self.directions.T
+        self.centre = directions[kept] @ centre
+        self.solved = self.inverse @ (change - centre) @ directions[kept].T
+        self.directions: np.ndarray = (
+            directions[kept] if along is None else directions[kept] @ along
+        )
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
 
     def _learn(self, change):
@@ -121,17 +129,23 @@ class Emulator:
 
 class PairEmulator:
     """The change of two effects at once: the sum of what each changes alone, and what runs of both
-    differ from it by; first, second: Emulators; trial: of the pair; split: number of the first
-    one's parameters.
+    differ from it by; first, second: Emulators; trial: of the pair; along: see Emulator.
     """
 
     def __init__(
-        self, trial: Trial, first: "AnyEmulator", second: "AnyEmulator", split: int
+        self,
+        trial: Trial,
+        first: "AnyEmulator",
+        second: "AnyEmulator",
+        along: np.ndarray | None = None,
     ) -> None:
-        self.first, self.second, self.split, self.run = first, second, split, trial.unit
+        self.first, self.second, self.run = first, second, trial.unit
+        self.split = trial.candidate.split
         sum_ = np.array([self._sum(unit) for unit in trial.unit])
         self.rest = Emulator(
-            Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise), centred=False
+            Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise),
+            along=along,
+            centred=False,
         )
         parts = (first, second, self.rest)
         self.directions: np.ndarray = np.vstack([part.directions for part in parts])
