@@ -32,6 +32,7 @@ def fit_at(laws=(0.0, -9.0, -9.0)):
         unit=np.array([0.5]),
         samples=samples,
         weight=np.full(101, 1 / 101),
+        open_weight=np.full(101, 1 / 101),
         density=np.ones(101),
         mean=np.zeros(9),
         left=9.0,

@@ -9,6 +9,7 @@ from .candidates import Candidate, candidate_named, linear_candidates
 from .linear_fit import LinearChanges, fitted
 from .linear_naming import calibrate, table_of
 from .linear_pairs import best_pairs
+from .linear_places import placed
 
 # of the best effects are fitted with the model itself: between the points of a table a stinger was
 # read 8 % off
@@ -32,6 +33,8 @@ def linear_rows(bench, sizes, tables, begun=()):
                 bench, candidate, sizes, changes
             )  # a table is of what a record shows
         found.append(calibrate(bench, candidate, sizes, tables.get(candidate.name)))
+    between = placed(bench, changes, found, sizes, tables)
+    found += [] if between is None else [between]
     found.sort(key=lambda row: -row.gain)
     found[:FITTED] = [
         (

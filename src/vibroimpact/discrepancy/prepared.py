@@ -403,13 +403,13 @@ def read_again(moved, fresh, out, tables, begun):
             moved.values is moved.given or moved.measured_fit is None
         ):  # a fault of the chain moves no mode
             return moved
-        bare, before = fresh(), out.adopted["name"]
+        bare, before = fresh(), candidate_named(out.adopted["name"]).ids
         bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
         rows = linear_rows(bare, out.scales, tables, begun)
         if not nameable(rows[0], out.scales):
             return moved
         out.linear, out.adopted = rows, rows[0]
-        if rows[0]["name"] == before:
+        if candidate_named(rows[0]["name"]).ids == before:
             break
         moved = fresh()  # fitted anew from the model that holds what is adopted now
         adopt(moved, out)

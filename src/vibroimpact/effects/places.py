@@ -16,6 +16,8 @@ from .effect import Values
 
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
 SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is split
+# of a place on a tube that no point of it names: its arc length, arc_355_6mm is at 355.6 mm
+ARC, MILLIMETRES = "arc_", "mm"
 TUBES: dict[str, type[UTube] | type[Path]] = {"u_tube": UTube, "path": Path}
 
 
@@ -95,10 +97,35 @@ def with_element(
 
 
 def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
-    """Return the configuration with another point mass; unchanged where it is 0."""
+    """Return the configuration with another point mass, at a named point or a place between (see
+    between); unchanged where it is 0.
+    """
     if mass_kg == 0.0:
         return values
-    return with_entry(values, "masses", name, {"point": point, "mass_kg": mass_kg})
+    entry = {"point": point, "mass_kg": mass_kg}
+    return with_entry(_with_place(values, point), "masses", name, entry)
+
+
+def between(arc_length_m: float) -> str:
+    """Return the location of a place on a tube."""
+    return f"{ARC}{1e3 * arc_length_m:.1f}{MILLIMETRES}".replace(".", "_")
+
+
+def arc_lengths(values: Values, points: Sequence[str]) -> list[float]:
+    """Return the arc lengths in m of named points of a tube; none of another structure."""
+    if values["structure"]["kind"] not in TUBES:
+        return []
+    line = _centreline(values)
+    return [line.locate(values["points"][point], point) for point in points]
+
+
+def _with_place(values: Values, location: str) -> Values:
+    """Return the configuration with a named point at a location between those that it has."""
+    if location in values["points"] or not location.startswith(ARC):
+        return values
+    arc_length = location.removeprefix(ARC).removesuffix(MILLIMETRES).replace("_", ".")
+    place = _centreline(values).position(1.0e-3 * float(arc_length))
+    return values | {"points": values["points"] | {location: [float(x) for x in place]}}
 
 
 def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:

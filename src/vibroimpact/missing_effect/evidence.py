@@ -25,7 +25,8 @@ class Fit:
 
     promised: log evidence against nothing; by_law (law,): the same by each of constants.LAWS, with
     its prior; unit (parameter,) where least is expected to be left; samples (sample, parameter),
-    even ones first, with weight (sample,): the posterior, and density (sample,): of the draw; mean
+    even ones first, with weight (sample,): the posterior, open_weight (sample,): the same whether a
+    sample brings the model nearer or not, and density (sample,): of the draw; mean
     (value,) the change of the run nearest to the measurement and left: chi-square that remains
     there; unseen: by how much less remains at unit, where nothing was run; takes: chi-square that
     is expected to be taken away there, may_take: that may be anywhere, by what the emulator does
@@ -38,6 +39,7 @@ class Fit:
     unit: np.ndarray
     samples: np.ndarray
     weight: np.ndarray
+    open_weight: np.ndarray
     density: np.ndarray
     mean: np.ndarray
     left: float
@@ -80,7 +82,8 @@ def fit(
     # by more, it is wide
     expected = np.append(even.expected, about.expected)
     unit = samples[np.argmin(expected)]
-    weight = chances - np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
+    drawn = np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
+    weight, open_weight = chances - drawn, np.append(even.anyhow, about.anyhow) - drawn
     mean, variance = emulator(np.vstack([unit, emulator.run]))
     rest = null.measured - mean @ emulator.directions
     left = np.sum(rest**2, axis=1)
@@ -93,6 +96,7 @@ def fit(
         unit,
         samples,
         np.exp(weight - logsumexp(weight)),
+        np.exp(open_weight - logsumexp(open_weight)),
         np.append(np.ones(SAMPLES), density),
         null.measured - rest[nearest],
         float(left[nearest]),
@@ -133,9 +137,14 @@ class Likelihoods:
         return cls(chance, *rows[0][1:])
 
     @property
+    def anyhow(self) -> np.ndarray:
+        """Return (point,): whatever the law."""
+        return logsumexp(self.chance, axis=0)
+
+    @property
     def over_laws(self) -> np.ndarray:
         """Return (point,): whatever the law; far below all others where nothing is explained."""
-        return logsumexp(self.chance, axis=0) - FAR * ~self.allowed
+        return self.anyhow - FAR * ~self.allowed
 
     def evidence(self, about: "Likelihoods", density: np.ndarray) -> np.ndarray:
         """Return (law,): log evidence over a prior that is flat where the effect is seen; about:

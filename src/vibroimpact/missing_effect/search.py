@@ -260,16 +260,21 @@ def may_explain(search: Search) -> list[str]:
     ]
 
 
+NEW = 0.02  # of the searched range: a point that is nearer to one that was run tells little
+
+
 def refine(search: Search, names: list[str], points: int) -> None:
-    """Run explanations at `points` points each: where least is expected to be left, and others
-    drawn from what is known of their parameters.
+    """Run explanations at `points` points each: where least is expected to be left, unless it was
+    run there, and others drawn from what is known of their parameters.
     """
     random = np.random.default_rng(search.seed)
     for name in names:
-        found = search.fits[name]
-        drawn = found.samples[random.choice(len(found.samples), points - 1, p=found.weight)]
-        moved = drawn + 0.04 * random.standard_normal(drawn.shape)
-        search.run(name, np.clip(np.vstack([found.unit, moved]), 0.0, 1.0))
+        found, trial = search.fits[name], search.trials[name]
+        drawn = found.samples[random.choice(len(found.samples), points, p=found.open_weight)]
+        units = np.clip(drawn + 0.04 * random.standard_normal(drawn.shape), 0.0, 1.0)
+        if np.abs(trial.unit - found.unit).max(axis=1).min() > NEW:
+            units[0] = found.unit
+        search.run(name, units)
 
 
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
