@@ -17,6 +17,7 @@ from vibroimpact.discrepancy.linear_fit import LinearChanges
 from vibroimpact.discrepancy.nearest_model import translated
 from vibroimpact.discrepancy.prepared import adopt, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
+from vibroimpact.effects.places import between
 from vibroimpact.excitation.random_force import band_limited_noise
 
 RATE, SECONDS, GAP = 2048.0, 12.0, 2.8886e-4
@@ -148,6 +149,18 @@ def test_single_effect_is_not_split_in_two(study_config, tmp_path):
         prepared.adopted["name"].split("@")[0] == "added_mass"
         and "+" not in prepared.adopted["name"]
     )
+
+
+@pytest.mark.slow
+def test_mass_is_placed_between_named_points(study_config, tmp_path):
+    at_m = 1.21  # 12 cm from the next point that has a name
+    hidden = (f"added_mass@{between(at_m)}", {"mass": 0.3})
+    prepared = prepare(study_config, file_of(study_config, tmp_path / "campaign.nc", hidden))
+    best, low, high = read(prepared)["added_mass"]["mass"]
+    assert best == pytest.approx(0.3, rel=0.05)
+    location = candidate_named(prepared.adopted["name"]).location
+    assert float(location[4:-2].replace("_", ".")) == pytest.approx(1e3 * at_m, abs=15.0)
+    assert not prepared.nonlinear_low
 
 
 @pytest.mark.slow

@@ -9,8 +9,8 @@ from vibroimpact.effects import places
 from .candidates import AT_A_POINT
 from .linear_naming import calibrate, table_of
 
-NEAR_M = 5.0e-4  # closer is not looked
-TURNS = 16
+NEAR_M = 1.0e-4  # closer is not looked
+TURNS = 20
 
 
 def placed(bench, changes, found, sizes, tables):

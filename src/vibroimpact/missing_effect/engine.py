@@ -99,7 +99,7 @@ class Engine:
         with self.stage("refinement"):
             self.refine(search)
             if self.spent.pairs and unexplained(search):
-                searching.look_wider(search, names)
+                searching.look_wider(search)
                 search.look()
                 self.refine(search)
         with self.stage("two effects"):

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.stats import qmc
 
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.discrepancy.candidates import (
@@ -86,7 +85,8 @@ class Search:
                 self.emulator(part.name) for part in (trial.candidate.first, trial.candidate.second)
             )
             return PairEmulator(trial, first, second, self.along)
-        return Emulator(trial, neutral_unit(trial.candidate, self.scales), self.along)
+        near = trial.drawn_in(FARTHEST * np.linalg.norm(self.null.measured))
+        return Emulator(near, neutral_unit(trial.candidate, self.scales), self.along)
 
     def _change(self, candidate, unit):
         """Return (change (value,), variance of a value) of one batch of runs."""
@@ -153,6 +153,9 @@ class Search:
         }
 
 
+FARTHEST = 3.0  # times what is measured: larger changes only tell that the answer is not there
+
+
 def directed(trial: Trial, rest: np.ndarray) -> np.ndarray:
     """Return (run,): the chi-square of rest (value,) that the direction of a run takes away; none
     where its change can not be told from its own scatter.
@@ -213,16 +216,23 @@ def first_explanations(screened: list[str], places: int = 2) -> list[str]:
 WIDER = 3  # points for each parameter
 
 
-def look_wider(search: Search, names: list[str]) -> None:
-    """Run explanations at more points, evenly strewn: what resonates, as a support plate, is seen
-    near its answer alone.
+def look_wider(search: Search) -> None:
+    """Run what may explain more than all that was run, and what did nothing so far, at more points:
+    what resonates, as a support plate, is seen near its answer alone.
     """
-    for name in names:
-        count = len(candidate_named(name).effect.parameters)
-        strewn = qmc.Halton(count, scramble=False).random(1 + WIDER * count)[1:]
-        before = len(search.trials[name].noise)
-        search.run(name, strewn)
-        search.trials[name].strewn += len(search.trials[name].noise) - before
+    best = max((found.takes for found in search.fits.values()), default=0.0)
+    for name, found in list(search.fits.items()):
+        trial = search.trials[name]
+        if isinstance(trial.candidate, Pair):
+            continue
+        before = len(trial.noise)
+        if not seen(trial.change, trial.noise).any():
+            search.run_first(name, 4)
+            search.fit(name)
+        elif found.may_take > best:
+            for _ in trial.candidate.effect.parameters:
+                refine(search, [name], WIDER)
+            trial.strewn += len(trial.noise) - before
 
 
 LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter

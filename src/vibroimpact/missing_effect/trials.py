@@ -1,6 +1,6 @@
 """Runs of one explanation, and what they tell of it between the points that were run."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import linalg
@@ -48,6 +48,13 @@ class Trial:
             np.zeros((0, values)),
             np.zeros(0),
         )
+
+    def drawn_in(self, size: float) -> "Trial":
+        """Return the Trial with larger changes made so large: were they left as they are, how far a
+        run tells would be learned from where no answer can be.
+        """
+        share = np.minimum(1.0, size / np.maximum(np.linalg.norm(self.change, axis=1), 1.0e-12))
+        return replace(self, change=self.change * share[:, None], noise=self.noise * share**2)
 
     def add(self, unit: np.ndarray, change: np.ndarray, noise: float) -> None:
         """Add a run."""
