@@ -1,5 +1,7 @@
 """Corrections find the tube's modes among those of a plate."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,3 +43,10 @@ def test_correction_follows_the_mode_not_its_number(study_model, with_plates):
     moved = linear.corrected(with_plates, nuisance, study_model)
     assert np.flatnonzero(moved.damping != with_plates.damping).tolist() == [8]
     assert moved.omega[8] == pytest.approx(1.01 * study_model.omega[4])
+
+
+def test_close_modes_are_each_where_they_were_seen(study_model):
+    """The two planes of a straight tube: the second mode may be the lower one."""
+    pair = replace(study_model, omega=np.concatenate([[200.0, 200.0], study_model.omega[2:]]))
+    nuisance = linear.Nuisance(np.array([0, 1]), np.array([1.003, 0.999]), np.ones(2), np.ones(1))
+    assert linear.corrected(pair, nuisance).omega[:2] == pytest.approx([200.6, 199.8])

@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
+from vibroimpact.reduction.modal_model import NEAR
+
 from . import priors
 from .linearised import same_modes
 
@@ -194,13 +196,14 @@ def corrected(model, nuisance, bare=None):
     modes = nuisance.modes if bare is None else same_modes(model, nuisance.modes, bare)
     omega[modes] *= nuisance.frequency
     damping[modes] *= nuisance.damping * nuisance.frequency
-    seen = np.isin(
-        np.arange(len(omega)), modes
-    )  # a mode that was seen is where it was seen, its neighbours make room
+    # a mode that was seen is where it was seen, its neighbours make room; of two that are close, as
+    # those of a straight tube in two planes, the second may be below the first
+    seen = np.isin(np.arange(len(omega)), modes)
     lower = np.maximum.accumulate(np.where(seen, omega, 0.0))
     upper = np.minimum.accumulate(np.where(seen, omega, np.inf)[::-1])[::-1]
+    omega = np.where(seen, omega, np.clip(omega, lower, upper))
     return replace(
         model,
-        omega=np.maximum.accumulate(np.where(seen, omega, np.clip(omega, lower, upper))),
+        omega=np.maximum(omega, (1.0 - NEAR) * np.maximum.accumulate(omega)),
         damping=damping,
     )

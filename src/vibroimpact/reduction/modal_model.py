@@ -44,6 +44,9 @@ NAMES = {
 }
 
 
+NEAR = 0.05  # of a frequency: what a measured structure may differ by from its model
+
+
 @dataclass(frozen=True, eq=False)
 class ModalModel:
     """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, with local forces.
@@ -52,7 +55,7 @@ class ModalModel:
 
     Modes:
 
-    omega: (mode,) rad/s, ascending.
+    omega: (mode,) rad/s, ascending; of two within NEAR of each other the second may be the lower.
     damping: (mode,) 2 zeta omega in 1/s.
     full_mode_frequencies: (full_mode,) Hz, the lowest of the full model without contact.
     initial_displacement, initial_velocity: (mode,) kg^1/2 m and kg^1/2 m/s, state at the start.
@@ -231,7 +234,7 @@ class ModalModel:
         for name in (field.name for field in fields(self) if field.name in AXES):
             if not np.isfinite(getattr(self, name)).all():
                 yield f"{name} holds values that are not finite"
-        if (np.diff(self.omega) < 0.0).any() or (self.omega < 0.0).any():
+        if (np.diff(self.omega) < -NEAR * self.omega[:-1]).any() or (self.omega < 0.0).any():
             yield "omega must be ascending and not negative"
         if (self.damping < 0.0).any():
             yield "damping must not be negative"
