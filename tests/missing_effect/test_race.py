@@ -78,7 +78,7 @@ def test_first_runs_are_told_from_those_of_the_race(searched):
     )
 
 
-def test_wider_look_is_at_what_did_nothing_and_at_what_may_explain_more(searched):
+def test_wider_look_is_at_what_did_nothing_so_far(searched):
     search_more = {name: len(searched.trials[name].noise) for name in searched.trials}
     look_wider(searched)
     more = {name: len(searched.trials[name].noise) - runs for name, runs in search_more.items()}

@@ -111,6 +111,22 @@ def between(arc_length_m: float) -> str:
     return f"{ARC}{1e3 * arc_length_m:.1f}{MILLIMETRES}".replace(".", "_")
 
 
+def arc_length_m(location: str) -> float | None:
+    """Return the arc length in m of a place that `between` named; None of another location."""
+    number = location.removeprefix(ARC).removesuffix(MILLIMETRES).replace("_", ".")
+    named = location.startswith(ARC) and location.endswith(MILLIMETRES)
+    try:
+        return 1.0e-3 * float(number) if named else None
+    except ValueError:  # a point of the model that is called so
+        return None
+
+
+def place_in_words(location: str) -> str:
+    """Return a location as a reader is told it: a place that no point names by where it is."""
+    arc_length = arc_length_m(location)
+    return location if arc_length is None else f"{arc_length:.4f} m along the tube"
+
+
 def arc_lengths(values: Values, points: Sequence[str]) -> list[float]:
     """Return the arc lengths in m of named points of a tube; none of another structure."""
     if values["structure"]["kind"] not in TUBES:
@@ -121,10 +137,10 @@ def arc_lengths(values: Values, points: Sequence[str]) -> list[float]:
 
 def _with_place(values: Values, location: str) -> Values:
     """Return the configuration with a named point at a location between those that it has."""
-    if location in values["points"] or not location.startswith(ARC):
+    arc_length = arc_length_m(location)
+    if location in values["points"] or arc_length is None:
         return values
-    arc_length = location.removeprefix(ARC).removesuffix(MILLIMETRES).replace("_", ".")
-    place = _centreline(values).position(1.0e-3 * float(arc_length))
+    place = _centreline(values).position(arc_length)
     return values | {"points": values["points"] | {location: [float(x) for x in place]}}
 
 

@@ -14,6 +14,7 @@ from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.discrepancy.results_folder import best_places
 from vibroimpact.effects.effect import TESTS
+from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.verdict.content import Misfit, Verdict
 
@@ -131,7 +132,7 @@ def _ranking_rows(verdict):
         rows.append(
             {
                 "ids": in_words(row["ids"]),
-                "location": ", ".join((row.get("location") or "").split("+")),
+                "location": ", ".join(map(place_in_words, (row.get("location") or "").split("+"))),
                 "probability": percent(row.get("probability")),
                 "score": digits(row["heldout_score"]),
                 "closed": percent(row["closed_fraction"]),
@@ -200,7 +201,7 @@ def _effect_rows(verdict):
             "explanation": known.explanation if known else "",
             "family": effect.family or "",
             "law_fits": effect.law_fits or "",
-            "location": effect.location or "all",
+            "location": place_in_words(effect.location or "all"),
         }
         for name, value in [
             (name, for_reading(row)) for name, row in effect.parameters.items()

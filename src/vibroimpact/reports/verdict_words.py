@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from vibroimpact.display_units import display_unit
+from vibroimpact.effects.places import place_in_words
 from vibroimpact.verdict.content import Estimate, Verdict
 
 from .number_text import digits, percent
@@ -78,7 +79,7 @@ def _with_parameters(effect):
         f" {digits(value['low'])} and {digits(value['high'])}"
         for name, value in ((name, for_reading(row)) for name, row in effect.parameters.items())
     )
-    place = f" at {effect.location}" if effect.location not in ("", "all") else ""
+    place = f" at {place_in_words(effect.location)}" if effect.location not in ("", "all") else ""
     told = f"{in_words([effect.id])}{place}" + (f" ({values})" if values else "")
     if effect.law_fits == "no":
         family = in_words([effect.family or effect.id])

@@ -1,0 +1,44 @@
+"""A mass sits at any place of a tube, told by its arc length."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.config.reading import check_config
+from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.effects import places
+from vibroimpact.reduction.reduced_model import build_model
+
+
+@pytest.fixture(scope="module")
+def values(study_config):
+    return study_config.model_dump(mode="json")
+
+
+def test_place_is_where_its_arc_length_says(values):
+    leg = values["points"]["left_leg"]
+    (arc_length,) = places.arc_lengths(values, ["left_leg"])
+    named = places.with_mass(values, "extra", places.between(arc_length), 0.2)
+    point = named["masses"][-1]["point"]
+    assert named["points"][point] == pytest.approx(leg, abs=1.0e-4)  # a tenth of a millimetre
+
+
+def test_mass_between_points_is_one_at_a_point(values):
+    (arc_length,) = places.arc_lengths(values, ["left_leg"])
+    location = places.between(arc_length)
+    there, named = (
+        build_model(
+            check_config(candidate_named(f"added_mass@{place}").variant(values, {"mass": 0.2}), "x")
+        )
+        for place in (location, "left_leg")
+    )
+    assert np.allclose(there.omega[:6], named.omega[:6], rtol=1.0e-3)
+
+
+@pytest.mark.parametrize("location", ["left_leg", "arc_of_the_bend", "all"])
+def test_other_locations_are_no_arc_lengths(location):
+    assert places.arc_length_m(location) is None
+    assert places.place_in_words(location) == location
+
+
+def test_place_in_words():
+    assert places.place_in_words(places.between(1.7175)) == "1.7175 m along the tube"
