@@ -2,20 +2,25 @@
 
 from dataclasses import replace
 
+import numpy as np
 from scipy import optimize
 
 from vibroimpact.effects import places
 
 from .candidates import AT_A_POINT
-from .linear_naming import calibrate, table_of
+from .linear_fit import fitted
+from .linear_naming import table_of
 
-NEAR_M = 1.0e-4  # closer is not looked
+NEAR_M = 2.0e-4  # closer is not looked
 TURNS = 20
 
 
 def placed(bench, changes, found, sizes, tables):
     """Return the LinearResult of the effect at a point that explains most, at the place between its
     neighbours on the tube that explains most; None where there is none.
+
+    With the model itself: the reduced basis alone put a mass 1 cm off, which a record with 1 % of
+    noise told from where it was.
 
     changes: LinearChanges of a Workbench; found: [LinearResult] at named points; tables are
     extended.
@@ -34,9 +39,8 @@ def placed(bench, changes, found, sizes, tables):
 
     def loss(arc):
         candidate = replace(best.candidate, location=places.between(arc))
-        table = table_of(bench, candidate, sizes, changes)
-        results[arc] = calibrate(bench, candidate, sizes, table), table
-        return -results[arc][0].gain
+        results[arc] = fitted(bench, changes, candidate, best.unit, sizes)
+        return np.inf if results[arc] is None else -results[arc].gain
 
     at = optimize.minimize_scalar(
         loss,
@@ -44,6 +48,8 @@ def placed(bench, changes, found, sizes, tables):
         method="bounded",
         options={"xatol": NEAR_M, "maxiter": TURNS},
     ).x
-    result, table = results[at]
-    tables[result.candidate.name] = table
-    return result if result.gain > best.gain else None
+    result = results[at]
+    if result is None or result.gain <= best.gain:
+        return None
+    tables[result.candidate.name] = table_of(bench, result.candidate, sizes, changes)
+    return result

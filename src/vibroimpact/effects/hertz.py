@@ -23,8 +23,8 @@ EFFECT = Effect(
         Parameter(
             "coefficient",
             "N/m^1.5",
-            0.005,
-            5.0,
+            0.001,
+            1.0,
             None,
             per="hertz",
             gain_power=-0.5,

@@ -103,7 +103,7 @@ class Engine:
                 search.look()
                 self.refine(search)
         with self.stage("two effects"):
-            self.seek_pairs(search)
+            self.seek_pairs(search, prepared)
 
     def null_stage(self, prepared: Prepared) -> searching.Search:
         """Return the Search with its Null."""
@@ -130,13 +130,14 @@ class Engine:
         for name in searching.leaders(search, 1):
             searching.race(search, self.spent, laws=searching.laws_of(search, name))
 
-    def seek_pairs(self, search: searching.Search) -> None:
+    def seek_pairs(self, search: searching.Search, prepared: Prepared) -> None:
         """Look for two effects where one leaves room for a second."""
         if self.spent.pairs and unexplained(search):
-            searching.seek_pairs(search, seconds=self.spent.pairs)
+            searching.seek_pairs(search, prepared.room, seconds=self.spent.pairs)
             searching.race(search, self.spent, pairs=True)
             for name in searching.leaders(search, 1, pairs=True):
                 searching.parts_alone(search, name)
+                searching.race(search, self.spent)  # a part alone may be better than all so far
         search.look()
 
     def whole_benches(self, prepared: Prepared) -> tuple[Workbench, Workbench]:

@@ -2,7 +2,7 @@
 or nothing more is to be learned.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -410,9 +410,11 @@ def parts_alone(search: Search, pair: str) -> None:
         search.run(part.name, unit)
 
 
-def seek_pairs(search: Search, firsts: int = 2, seconds: int = 6) -> list[str]:
+def seek_pairs(
+    search: Search, room: Callable[[Pair], bool], firsts: int = 2, seconds: int = 6
+) -> list[str]:
     """Run the leading explanations with a second effect each, of those that may explain what the
-    first leaves; return the pairs' names.
+    first leaves and for which there is room; return the pairs' names.
     """
     out = []
     for first in leaders(search, firsts):
@@ -424,6 +426,7 @@ def seek_pairs(search: Search, firsts: int = 2, seconds: int = 6) -> list[str]:
             for name in sorted(explains, key=lambda name: -explains[name])
             if not set(candidate_named(name).ids) & set(own.ids) and "+" not in name
         ]
+        order = [name for name in order if room(Pair(own, candidate_named(name)))]
         for second in order[:seconds]:
             pair = Pair(own, candidate_named(second)).name
             reverse = Pair(candidate_named(second), own).name
