@@ -142,7 +142,7 @@ def made_up_candidates():
                     "parameter": "mu",
                     "unit": "1",
                     "values": mu.tolist(),
-                    "score": (212.0 - 90.0 * np.log(mu / 0.15) ** 2).tolist(),
+                    "left": (1.1 + 9.0 * np.log(mu / 0.15) ** 2).tolist(),
                     "simulated": [0.1, 0.15, 0.3],
                 }
             ],
@@ -154,7 +154,7 @@ def made_up_candidates():
                     "parameter": "gap",
                     "unit": "m",
                     "values": gap.tolist(),
-                    "score": (31.0 - 9e9 * (gap - 2.6e-4) ** 2).tolist(),
+                    "left": (1.3 + 9e8 * (gap - 2.6e-4) ** 2).tolist(),
                 }
             ],
         },

@@ -8,9 +8,8 @@ import numpy as np
 
 from vibroimpact.records import plain_values, write_text
 
-from . import constants
 from .decision import Decision, weighted_interval
-from .evidence import log_likelihoods
+from .evidence import Likelihoods
 from .search import Search
 
 POINTS = 41  # along a parameter
@@ -38,7 +37,7 @@ def write(search: Search, decision: Decision, folder: Path) -> None:
 def parameters_of(search: Search, name: str) -> dict[str, Any]:
     """Return {"profile": [...], "parameters": {...}} of an explanation."""
     trial, found = search.trials[name], search.fits[name]
-    emulator, law = search.emulator(name), constants.LAWS[0][0]
+    emulator = search.emulator(name)
     low, high = weighted_interval(found.samples, found.weight)
     profile, parameters, first = [], {}, 0
     parts = trial.candidate.parts(found.unit)
@@ -50,7 +49,7 @@ def parameters_of(search: Search, name: str) -> dict[str, Any]:
         for number, parameter in enumerate(candidate.effect.parameters):
             units = np.repeat(found.unit[None], POINTS, axis=0)
             units[:, first + number] = np.linspace(0.0, 1.0, POINTS)
-            chance = log_likelihoods(emulator, units, search.null, law)[0]
+            left = Likelihoods.of(emulator, units, search.null).expected
             prefix = "" if len(parts) == 1 else f"{candidate.effect.reported}."
             profile.append(
                 {
@@ -60,7 +59,7 @@ def parameters_of(search: Search, name: str) -> dict[str, Any]:
                         candidate.physical(unit, search.scales)[parameter.name]
                         for unit in units[:, inside]
                     ],
-                    "score": chance.tolist(),
+                    "left": (left / search.null.values).tolist(),
                     "simulated": sorted({point[parameter.name] for point in run}),
                 }
             )

@@ -113,13 +113,13 @@ def _true(value):
 
 
 def profiles_figure(candidates, effects):
-    """Return [Sheet] of score against parameter value for the named effects.
+    """Return [Sheet] of what is left against parameter value for the named effects.
 
     Where none is named, those of the best candidate are shown. Effects identified on the lowest
     record have no profile.
 
     candidates: contents of candidates/*.json, best first: {ids, parameters: {name: {value}},
-    profile: [{parameter, unit, values, score, simulated}]}.
+    profile: [{parameter, unit, values, left, simulated}]}.
     effects: those of verdict.json.
     """
     shown = named_of(candidates, effects)
@@ -127,17 +127,17 @@ def profiles_figure(candidates, effects):
         :MOST_PROFILES
     ]
     caption = (
-        "Score against each parameter, the others re-fitted, where they were scanned. Line: value"
-        " of the verdict; shaded: its 90 % interval. Ticks: values that were simulated; between"
-        " those far apart the curve forgives what it does not know. A curve that is flat there"
-        " tells nothing about its parameter."
+        "What is expected to be left of the differences (chi-square per value; dashed: as much as"
+        " chance leaves) against each parameter, the others as in the verdict. Line: value of the"
+        " verdict; shaded: its 90 % interval. Ticks: values that were simulated; far from them more"
+        " is left, since less is known. A curve that is flat tells nothing about its parameter."
     )
     if not curves:
         sheet = Sheet("discrepancy_profiles", "How well the parameters are known", caption)
         why = "no parameter was scanned" + ": what is named was read off the lowest record" * bool(
             effects
         )
-        sheet.note(sheet.axes["main"], why, "parameter", "score")
+        sheet.note(sheet.axes["main"], why, "parameter", "left")
         return [sheet]
     across = min(3, len(curves))
     keys = [f"{index} {curve['parameter']}" for index, curve in enumerate(curves)]
@@ -196,11 +196,13 @@ def _profile(sheet, axes, curve, effects):
     unit, factor = display_unit(curve["unit"], curve["values"])
     order = np.argsort(curve["values"])
     values = np.asarray(curve["values"], float)[order] * factor
-    score = np.asarray(curve["score"], float)[order]
+    left = np.asarray(curve["left"], float)[order]
     place = sheet.record(
-        axes, curve["parameter"], parameter=np.asarray(curve["values"], float)[order], score=score
+        axes, curve["parameter"], parameter=np.asarray(curve["values"], float)[order], left=left
     )
-    axes.plot(values, score, color=BLUE, marker="o", markersize=4, gid=place)
+    axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8)
+    axes.set_yscale("log")
+    axes.plot(values, left, color=BLUE, marker="o", markersize=4, gid=place)
     simulated = np.asarray(curve.get("simulated", []), float)
     if len(simulated):
         place = sheet.record(axes, f"{curve['parameter']} simulated", parameter=simulated)
@@ -231,7 +233,7 @@ def _profile(sheet, axes, curve, effects):
     if values.min() > 0.0 and values.max() > 30.0 * values.min():
         axes.set_xscale("log")
     axes.set_xlabel(axis_label(curve["parameter"], unit))
-    axes.set_ylabel(label_of("score"))
+    axes.set_ylabel(label_of("left"))
 
 
 def axis_label(parameter, unit):
