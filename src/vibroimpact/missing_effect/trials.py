@@ -111,7 +111,8 @@ class Emulator:
         no length, and a long one would tell of all that was not run.
         """
         best = np.inf
-        few = constants.FEW_LENGTHS if len(change) < constants.FEW_RUNS else constants.LENGTHS
+        known = len(change) >= constants.FEW_RUNS * self.unit.shape[1]
+        few = constants.LENGTHS if known else constants.FEW_LENGTHS
         for length in few:
             self.length = length
             inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
