@@ -33,6 +33,9 @@ class Known:
         unit = np.atleast_2d(unit)
         return self.size * unit[:, :1], np.full((len(unit), 1), self.variance)
 
+    def open_along(self, unit, directions, variance):
+        return directions, variance
+
 
 def normal(covariance):
     return stats.multivariate_normal(np.zeros(VALUES), covariance)

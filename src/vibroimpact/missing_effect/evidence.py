@@ -25,8 +25,8 @@ class Fit:
 
     promised: log evidence against nothing; by_law (law,): the same by each of constants.LAWS, with
     its prior; unit (parameter,) where least is expected to be left; samples (sample, parameter),
-    even ones first, with weight (sample,): the posterior, open_weight (sample,): the same whether a
-    sample brings the model nearer or not, and density (sample,): of the draw; mean
+    even ones first, with weight (sample,): the posterior, open_weight (sample,): of where least may
+    be left, and density (sample,): of the draw; mean
     (value,) the change of the run nearest to the measurement and left: chi-square that remains
     there; unseen: by how much less remains at unit, where nothing was run; takes: chi-square that
     is expected to be taken away there, may_take: that may be anywhere, by what the emulator does
@@ -83,7 +83,8 @@ def fit(
     expected = np.append(even.expected, about.expected)
     unit = samples[np.argmin(expected)]
     drawn = np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
-    weight, open_weight = chances - drawn, np.append(even.anyhow, about.anyhow) - drawn
+    weight = chances - drawn
+    open_weight = -0.5 * np.append(even.may_be_left, about.may_be_left) - drawn
     mean, variance = emulator(np.vstack([unit, emulator.run]))
     rest = null.measured - mean @ emulator.directions
     left = np.sum(rest**2, axis=1)
@@ -137,14 +138,9 @@ class Likelihoods:
         return cls(chance, *rows[0][1:])
 
     @property
-    def anyhow(self) -> np.ndarray:
-        """Return (point,): whatever the law."""
-        return logsumexp(self.chance, axis=0)
-
-    @property
     def over_laws(self) -> np.ndarray:
         """Return (point,): whatever the law; far below all others where nothing is explained."""
-        return self.anyhow - FAR * ~self.allowed
+        return logsumexp(self.chance, axis=0) - FAR * ~self.allowed
 
     def evidence(self, about: "Likelihoods", density: np.ndarray) -> np.ndarray:
         """Return (law,): log evidence over a prior that is flat where the effect is seen; about:
@@ -204,7 +200,8 @@ def log_likelihoods(
     seen = np.sum(change**2, axis=1) > constants.SEEN
     left = np.sum(rest**2, axis=1)
     nearer = left < null.measured @ null.measured
-    may_be_left = left - hidden(rest @ emulator.directions.T, variance)
+    along, open_ = emulator.open_along(units, emulator.directions, variance)
+    may_be_left = left - hidden(rest @ along.T, open_)
     return (
         -0.5 * (square + size) - null.chance,
         seen & nearer,

@@ -30,7 +30,7 @@ from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 @dataclass
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
-    Fits {name: Fit}. along (direction, value): see look; None: all that runs change is known.
+    Fits {name: Fit}. looked: see look; None: all that runs change is known.
     """
 
     bench: Workbench
@@ -39,7 +39,7 @@ class Search:
     trials: dict = field(default_factory=dict)
     fits: dict = field(default_factory=dict)
     seed: int = 1000
-    along: np.ndarray | None = None
+    looked: EffectDirections | None = None
 
     def run(self, name: str, units: np.ndarray) -> None:
         """Run an explanation at units (point, parameter) and fit it again."""
@@ -84,9 +84,9 @@ class Search:
             first, second = (
                 self.emulator(part.name) for part in (trial.candidate.first, trial.candidate.second)
             )
-            return PairEmulator(trial, first, second, self.along)
+            return PairEmulator(trial, first, second, self.looked)
         near = trial.drawn_in(FARTHEST * np.linalg.norm(self.null.measured))
-        return Emulator(near, neutral_unit(trial.candidate, self.scales), self.along)
+        return Emulator(near, neutral_unit(trial.candidate, self.scales), self.looked)
 
     def _change(self, candidate, unit):
         """Return (change (value,), variance of a value) of one batch of runs."""
@@ -128,7 +128,7 @@ class Search:
         hundreds of values would hide what changes in a few directions.
         """
         runs = {name: len(trial.noise) for name, trial in self.trials.items()}
-        self.along = self._directions(runs).along
+        self.looked = self._directions(runs)
         for name in self.trials:
             self.fit(name)
 
@@ -213,7 +213,7 @@ def first_explanations(screened: list[str], places: int = 2) -> list[str]:
     return [name for names in by_effect.values() for name in names[:places]]
 
 
-WIDER = 3  # points for each parameter
+WIDER = 4  # points for each parameter
 
 
 def look_wider(search: Search) -> None:
@@ -229,7 +229,7 @@ def look_wider(search: Search) -> None:
         if not seen(trial.change, trial.noise).any():
             search.run_first(name, 4)
             search.fit(name)
-        elif found.may_take > best:
+        elif trial.screened > 1 and found.may_take > best:
             for _ in trial.candidate.effect.parameters:
                 refine(search, [name], WIDER)
             trial.strewn += len(trial.noise) - before

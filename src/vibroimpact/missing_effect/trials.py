@@ -8,6 +8,7 @@ from scipy import linalg
 from vibroimpact.discrepancy.candidates import Candidate, Pair
 
 from . import constants
+from .effect_directions import EffectDirections
 
 LEAST_SIGNAL = 0.1  # of the scatter: no change is known to be less
 NEGLIGIBLE = 1.0e-3  # of what the runs change: directions below it are left out
@@ -66,8 +67,8 @@ class Trial:
 class Emulator:
     """The change (value,) at any parameters, by a Gaussian process that all values share, of the
     length that predicts left-out runs best; neutral (parameter,): where nothing changes, None: far
-    from all runs the change is their mean then, 0 where it is not centred; along (direction,
-    value): orthonormal, what of the runs is known, None: all.
+    from all runs the change is their mean then, 0 where it is not centred; looked: EffectDirections
+    along which runs are known, None: along all.
 
     directions (direction, value) are orthonormal: those that the runs, smoothed, lie along; run
     (run, parameter): where it was run.
@@ -77,11 +78,11 @@ class Emulator:
         self,
         trial: Trial,
         neutral: np.ndarray | None = None,
-        along: np.ndarray | None = None,
+        looked: EffectDirections | None = None,
         centred: bool = True,
     ) -> None:
-        unit, noise = trial.unit, trial.noise
-        change = trial.change if along is None else trial.change @ along.T
+        unit, noise, self.looked = trial.unit, trial.noise, looked
+        change = trial.change if looked is None else trial.change @ looked.along.T
         self.run = unit
         self.periodic = list(trial.candidate.periodic)
         centre = np.zeros(change.shape[1])
@@ -102,7 +103,7 @@ class Emulator:
         self.centre = directions[kept] @ centre
         self.solved = self.inverse @ (change - centre) @ directions[kept].T
         self.directions: np.ndarray = (
-            directions[kept] if along is None else directions[kept] @ along
+            directions[kept] if looked is None else directions[kept] @ looked.along
         )
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
 
@@ -134,10 +135,27 @@ class Emulator:
         mean = self.centre + against @ self.solved
         return mean, np.clip(1.0 - told, 0.0, None)[:, None] * self.signal
 
+    def open_along(
+        self, unit: np.ndarray, directions: np.ndarray, variance: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return (directions (direction, value), variance (point, direction)): along what the
+        change at unit (point, parameter) may lie, given its variance along known directions.
+
+        Few runs do not show all directions that an explanation has: a share of what is not known
+        lies along those of all effects.
+        """
+        if self.looked is None:
+            return directions, variance
+        against = self._kernel(np.atleast_2d(unit), self.unit)
+        told = np.sum((against @ self.inverse) * against, axis=1)
+        new = self.size / (1.0 + len(self.run)) * self.looked.share
+        turned = (directions @ self.looked.along.T) ** 2
+        return self.looked.along, variance @ turned + np.clip(1.0 - told, 0.0, None)[:, None] * new
+
 
 class PairEmulator:
     """The change of two effects at once: the sum of what each changes alone, and what runs of both
-    differ from it by; first, second: Emulators; trial: of the pair; along: see Emulator.
+    differ from it by; first, second: Emulators; trial: of the pair; looked: see Emulator.
     """
 
     def __init__(
@@ -145,14 +163,14 @@ class PairEmulator:
         trial: Trial,
         first: "AnyEmulator",
         second: "AnyEmulator",
-        along: np.ndarray | None = None,
+        looked: EffectDirections | None = None,
     ) -> None:
         self.first, self.second, self.run = first, second, trial.unit
         self.split = trial.candidate.split
         sum_ = np.array([self._sum(unit) for unit in trial.unit])
         self.rest = Emulator(
             Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise),
-            along=along,
+            looked=looked,
             centred=False,
         )
         parts = (first, second, self.rest)
@@ -179,6 +197,12 @@ class PairEmulator:
         open_ = np.clip(rows[2][1].sum(axis=1) / (2.0 * self.rest.signal.sum()), 0.0, 1.0)
         variances = [rows[0][1] * open_[:, None], rows[1][1] * open_[:, None], rows[2][1]]
         return np.hstack([mean for mean, _ in rows]), np.hstack(variances)
+
+    def open_along(
+        self, unit: np.ndarray, directions: np.ndarray, variance: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the same as Emulator.open_along: of what both together add to their sum."""
+        return self.rest.open_along(unit, directions, variance)
 
 
 AnyEmulator = Emulator | PairEmulator
