@@ -15,9 +15,9 @@ AXES = np.linalg.qr(np.random.default_rng(5).standard_normal((VALUES, VALUES)))[
 
 
 class Line:
-    """A candidate of one parameter, not periodic; the first of two has one."""
+    """A candidate of one parameter, not periodic."""
 
-    periodic, split = (), 1
+    periodic = ()
 
 
 class Known:

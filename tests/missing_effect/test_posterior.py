@@ -6,7 +6,8 @@ import pytest
 from tests.white_null import white_null
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.missing_effect.probabilities import averaged, posterior
-from vibroimpact.missing_effect.search import Search, contenders
+from vibroimpact.missing_effect.race import contenders
+from vibroimpact.missing_effect.search import Search
 from vibroimpact.missing_effect.trials import Trial
 
 VALUES = 200

@@ -7,21 +7,18 @@ import pytest
 
 from tests.white_null import white_null
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.missing_effect.alike import at_its_place, laws_of, similar_too
 from vibroimpact.missing_effect.effort import Effort
-from vibroimpact.missing_effect.search import (
-    Search,
-    first_points,
-    laws_of,
-    leaders,
-    look_wider,
-    parts_alone,
-    race,
-    similar_too,
-)
+from vibroimpact.missing_effect.first_points import first_points
+from vibroimpact.missing_effect.race import leaders, look_wider, race
+from vibroimpact.missing_effect.search import Search
+from vibroimpact.missing_effect.two_effects import parts_alone
 
 VALUES, NOISE = 200, 1.0e-2
 AXES = np.linalg.qr(np.random.default_rng(9).standard_normal((VALUES, 6)))[0].T
+STOP_THERE = "clearance@span_1"
 STIFFNESS, HERTZ, FRICTION = "contact_stiffness@all", "hertz@all", "dry_friction@all"
+SCALES = ("one", "contact_stiffness", "hertz", "displacement", "tube_translation", "cubic")
 SPENT = Effort(compared_s=10.0, rounds=8, width=3, pairs=2)
 
 
@@ -29,7 +26,7 @@ def changed(name, unit):
     """Return (value,): the stiffness softens one direction, Hertz's law bends on to another below
     a fifth of its range, friction changes a third.
     """
-    (at,) = unit
+    at = unit[0]
     if name == STIFFNESS:
         return 60.0 * (1.0 - at) * AXES[0]
     if name == HERTZ:
@@ -48,9 +45,7 @@ class Made(Search):
 @pytest.fixture
 def searched():
     measured = np.random.default_rng(2).standard_normal(VALUES) + changed(HERTZ, [0.05])
-    search = Made(
-        None, white_null(measured), dict.fromkeys(("one", "contact_stiffness", "hertz"), 1.0)
-    )
+    search = Made(None, white_null(measured), dict.fromkeys(SCALES, 1.0))
     for name in (STIFFNESS, HERTZ, FRICTION):
         search.run_first(name, 2)
         search.fit(name)
@@ -101,3 +96,17 @@ def test_each_of_two_effects_is_run_alone(searched):
     parts_alone(searched, pair)
     assert len(searched.trials[FRICTION].noise) == runs + 1
     assert searched.trials[FRICTION].unit[-1] == pytest.approx(searched.fits[pair].unit[1:])
+
+
+def test_effects_at_a_point_are_run_where_one_leads(searched):
+    for name in (STOP_THERE, "cubic_stiffness@shaker"):
+        searched.run_first(name, 2)
+    at_its_place(searched, STOP_THERE)
+    assert "cubic_stiffness@span_1" in searched.trials  # as the stop; no stiffness of a contact is
+    assert {trial.candidate.location for trial in searched.trials.values()} == {
+        "all",
+        "span_1",
+        "shaker",
+    }
+    at_its_place(searched, STIFFNESS)
+    assert "cubic_stiffness@all" not in searched.trials

@@ -14,14 +14,14 @@ from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.stopwatch import Stopwatch
 
-from . import constants, so_far, verdict
-from . import search as searching
+from . import alike, constants, race, screening, so_far, two_effects, verdict
 from .decision import decide, share_explained
 from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
 from .probabilities import posterior
 from .refused import write_refused
+from .search import Search
 from .verification import closing
 
 LEADING = 3  # explanations whose likes are looked at too
@@ -90,22 +90,22 @@ class Engine:
             self.folder, prepared, search, (decision, closed), self.spent_so_far, provenance
         )
 
-    def search(self, search: searching.Search, prepared: Prepared) -> None:
+    def search(self, search: Search, prepared: Prepared) -> None:
         """Run explanations until what is missing is known, or nothing more is to be learned."""
         with self.stage("screening"):
-            names = searching.first_explanations(screened(prepared))
-            searching.screen(search, names, search.bench.values)
+            names = screening.first_explanations(screened(prepared))
+            screening.screen(search, names, search.bench.values)
         so_far.write(self.folder, search, prepared)
         with self.stage("refinement"):
             self.refine(search)
             if self.spent.pairs and unexplained(search):
-                searching.look_wider(search)
+                race.look_wider(search)
                 search.look()
                 self.refine(search)
         with self.stage("two effects"):
             self.seek_pairs(search, prepared)
 
-    def null_stage(self, prepared: Prepared) -> searching.Search:
+    def null_stage(self, prepared: Prepared) -> Search:
         """Return the Search with its Null."""
         with self.stage("null"):
             bench = workbench(self.config, self.campaign, prepared, self.spent.compared_s)
@@ -113,31 +113,34 @@ class Engine:
             if bench.reads_lowest:
                 records = records[records != bench.signals.lowest]
             null = null_of(bench, records, 0)
-        return searching.Search(bench, null, prepared.scales)
+        return Search(bench, null, prepared.scales)
 
-    def refine(self, search: searching.Search) -> None:
+    def refine(self, search: Search) -> None:
         """Run what may be the answer until it is known, its other places, what is like it and the
         other laws of its family too.
         """
-        searching.race(search, self.spent)
+        race.race(search, self.spent)
         search.look()
-        leading = searching.leaders(search, LEADING)
+        leading = race.leaders(search, LEADING)
         for name in leading:
-            searching.similar_too(search, name)
+            alike.similar_too(search, name)
         for name in leading[:1]:
-            searching.elsewhere_too(search, search.bench.values, name)
-            searching.race(search, self.spent)
-        for name in searching.leaders(search, 1):
-            searching.race(search, self.spent, laws=searching.laws_of(search, name))
+            alike.elsewhere_too(search, search.bench.values, name)
+            race.race(search, self.spent)
+        for name in race.leaders(search, 1):
+            alike.at_its_place(search, name)
+            race.race(search, self.spent)
+        for name in race.leaders(search, 1):
+            race.race(search, self.spent, laws=alike.laws_of(search, name))
 
-    def seek_pairs(self, search: searching.Search, prepared: Prepared) -> None:
+    def seek_pairs(self, search: Search, prepared: Prepared) -> None:
         """Look for two effects where one leaves room for a second."""
         if self.spent.pairs and unexplained(search):
-            searching.seek_pairs(search, prepared.room, seconds=self.spent.pairs)
-            searching.race(search, self.spent, pairs=True)
-            for name in searching.leaders(search, 1, pairs=True):
-                searching.parts_alone(search, name)
-                searching.race(search, self.spent)  # a part alone may be better than all so far
+            two_effects.seek_pairs(search, prepared.room, seconds=self.spent.pairs)
+            race.race(search, self.spent, pairs=True)
+            for name in race.leaders(search, 1, pairs=True):
+                two_effects.parts_alone(search, name)
+                race.race(search, self.spent)  # a part alone may be better than all so far
         search.look()
 
     def whole_benches(self, prepared: Prepared) -> tuple[Workbench, Workbench]:
@@ -151,7 +154,7 @@ class Engine:
         return workbench(self.config, self.campaign, bare), whole
 
 
-def open_chance(search: searching.Search) -> float:
+def open_chance(search: Search) -> float:
     """Return the probability of something else, beside an explanation or alone."""
     return sum(
         np.exp(chance)
@@ -160,11 +163,11 @@ def open_chance(search: searching.Search) -> float:
     )
 
 
-def unexplained(search: searching.Search) -> bool:
+def unexplained(search: Search) -> bool:
     """Return whether more is missing than what leads: something else is as probable, or it leaves
     more than what is named may leave, and there is log evidence left to gain.
     """
-    null, leading = search.null, searching.leaders(search, 3)
+    null, leading = search.null, race.leaders(search, 3)
     nothing = float(null.measured @ null.measured)
     left = min((search.fits[name].left for name in leading), default=nothing)
     if 0.25 * (left - LEAST * null.values) < ROOM:

@@ -1,28 +1,18 @@
-"""The search: every explanation is run at a few points, the likely ones at more, until one is sure
-or nothing more is to be learned.
-"""
+"""The search: what was run of every explanation, and what its runs say."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from vibroimpact.config.reading import ConfigError
-from vibroimpact.discrepancy.candidates import (
-    Candidate,
-    Pair,
-    candidate_named,
-    elsewhere,
-    other_places,
-)
+from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.workbench import Workbench
-from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 
 from .effect_directions import EffectDirections, seen, told_of
-from .effort import Effort
 from .evidence import SomethingElse, fit
+from .first_points import first_points
 from .null import Null
 from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 
@@ -153,6 +143,7 @@ class Search:
         }
 
 
+LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter
 FARTHEST = 3.0  # times what is measured: larger changes only tell that the answer is not there
 
 
@@ -186,255 +177,3 @@ def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray |
         if parameter.log and parameter.neutral == 0.0:
             unit[number] = BELOW
     return unit if np.isfinite(unit).all() else None
-
-
-# Points at which an explanation is run first, by the number of its parameters.
-FIRST = {
-    1: ((0.75,), (0.3,), (0.1,), (0.55,)),
-    2: ((0.8, 0.5), (0.3, 0.3), (0.5, 0.8), (0.7, 0.2)),
-    3: ((0.7, 0.7, 0.7), (0.3, 0.3, 0.3), (0.3, 0.7, 0.5), (0.7, 0.3, 0.5)),
-}
-# Of a vector: first as large as may be seen in both directions, then smaller.
-VECTOR = ((0.75, 0.75), (0.6, 0.4), (0.3, 0.7), (0.5, 0.35))
-
-
-def first_points(candidate: Candidate) -> np.ndarray:
-    """Return (point, parameter): where an explanation is run first."""
-    count = len(candidate.effect.parameters)
-    vector = count == 2 and len(candidate.signed) == 2
-    return np.array(VECTOR if vector else FIRST[count])
-
-
-def first_explanations(screened: list[str], places: int = 2) -> list[str]:
-    """Return the names to begin with: of every effect `places` places at most."""
-    by_effect: dict[str, list[str]] = {}
-    for name in screened:
-        by_effect.setdefault(candidate_named(name).effect_id, []).append(name)
-    return [name for names in by_effect.values() for name in names[:places]]
-
-
-WIDER = 4  # points for each parameter
-
-
-def look_wider(search: Search) -> None:
-    """Run what may explain more than all that was run, and what did nothing so far, at more points:
-    what resonates, as a support plate, is seen near its answer alone.
-    """
-    best = max((found.takes for found in search.fits.values()), default=0.0)
-    for name, found in list(search.fits.items()):
-        trial = search.trials[name]
-        if isinstance(trial.candidate, Pair):
-            continue
-        before = len(trial.noise)
-        if not seen(trial.change, trial.noise).any():
-            search.run_first(name, 4)
-            search.fit(name)
-        elif trial.screened > 1 and found.may_take > best:
-            for _ in trial.candidate.effect.parameters:
-                refine(search, [name], WIDER)
-            trial.strewn += len(trial.noise) - before
-
-
-LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter
-MAY = 0.25  # of the chi-square that the best direction takes away
-LEAST = 6
-
-
-def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation at two points for each parameter, at single supports where it explains
-    most at all of them, and those that may explain the measurement at more.
-    """
-    for name in names:
-        search.run_first(name, 2 * len(candidate_named(name).effect.parameters))
-        at_all = search.trials[name]
-        for other in elsewhere(candidate_named(name), values):
-            if len(at_all.noise):
-                search.run_screened(other.name, at_all.unit[telling(at_all, search.null.measured)])
-    search.learn()
-    for name in may_explain(search):
-        search.run_first(name, 4)
-    search.look()
-
-
-def may_explain(search: Search) -> list[str]:
-    """Return the names of explanations whose best direction takes much of the chi-square away, the
-    most first; none where little is to be taken away.
-    """
-    explains = search.explains(search.null.measured)
-    order = sorted(explains, key=lambda name: -explains[name])
-    return [
-        name
-        for name in order
-        if explains[name] > LITTLE
-        and (explains[name] > MAY * explains[order[0]] or name in order[:LEAST])
-    ]
-
-
-NEW = 0.02  # of the searched range: a point that is nearer to one that was run tells little
-
-
-def refine(search: Search, names: list[str], points: int) -> None:
-    """Run explanations at `points` points each: where least is expected to be left, unless it was
-    run there, and others drawn from what is known of their parameters.
-    """
-    random = np.random.default_rng(search.seed)
-    for name in names:
-        found, trial = search.fits[name], search.trials[name]
-        drawn = found.samples[random.choice(len(found.samples), points, p=found.open_weight)]
-        units = np.clip(drawn + 0.04 * random.standard_normal(drawn.shape), 0.0, 1.0)
-        if np.abs(trial.unit - found.unit).max(axis=1).min() > NEW:
-            units[0] = found.unit
-        search.run(name, units)
-
-
-DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
-RUNS = 16  # of an explanation at most, beside those screened
-LEAST_RUNS = 3
-KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
-OF_REST = (
-    0.05  # of what the best leaves beyond chance: where nothing explains, less is known enough
-)
-
-
-def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) -> list[str]:
-    """Return the names of explanations that may yet explain as much as the best and are not known
-    well enough: by turns those that explain most, and those that may explain more than is known.
-
-    laws: of these alone, however much less they explain so far.
-    """
-    fits = {
-        name: found
-        for name, found in search.fits.items()
-        if ("+" in name) == pairs and (name in laws or not laws)
-    }
-    # by chi-square: far from the measurement, a likelihood is that of what laws may differ by
-    known = {name: 0.5 * found.takes for name, found in fits.items()}
-    upper = {name: 0.5 * found.may_take for name, found in fits.items()}
-    best = max(known.values(), default=0.0)
-    rest = min((found.left for found in fits.values()), default=0.0) - search.null.values
-    enough = max(KNOWN, OF_REST * 0.5 * rest)
-    explains = search.explains(search.null.measured)  # of those screened
-    left = [
-        name
-        for name in upper
-        if explains.get(name, np.inf) > LITTLE
-        and (laws or upper[name] > best - DECIDED)
-        and search.trials[name].refined < RUNS
-        and (
-            max(upper[name] - known[name], search.fits[name].not_shown) > enough
-            or search.trials[name].refined < LEAST_RUNS
-        )
-    ]
-    rows = [sorted(left, key=lambda name: -of[name]) for of in (known, upper)]
-    return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
-
-
-def race(
-    search: Search, spent: Effort, pairs: bool = False, laws: Sequence[str] = (), points: int = 2
-) -> None:
-    """Run contenders, as many at a time as an Effort spends, until none is left or its rounds are
-    over; laws: see contenders.
-    """
-    for _ in range(spent.rounds):
-        names = contenders(search, pairs, laws)[: spent.width]
-        if not names:
-            return
-        refine(search, names, points)
-
-
-def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
-    """Return the `count` explanations of which a run leaves least, of those that bring the model
-    nearer to the measurement.
-    """
-    nothing = float(search.null.measured @ search.null.measured)
-    left = {
-        name: found.left
-        for name, found in search.fits.items()
-        if ("+" in name) == pairs and found.left < nothing
-    }
-    return sorted(left, key=lambda name: left[name])[:count]
-
-
-def _similar(effect, leading):
-    """Return whether an Effect may look like a leading one."""
-    return effect.family == leading.family or effect.id in leading.aliases
-
-
-def laws_of(search: Search, name: str) -> list[str]:
-    """Return the names of what was run of a leading explanation's family, at its place or at that
-    of the first runs.
-    """
-    leading = candidate_named(name)
-    return [
-        other
-        for other, trial in search.trials.items()
-        if "+" not in other
-        and other in search.fits
-        and trial.candidate.effect.family == leading.effect.family
-        and (trial.screened > 1 or trial.candidate.location == leading.location)
-    ]
-
-
-def similar_too(search: Search, name: str) -> None:
-    """Run what has a signature like a leading explanation's at as many first points as may be: at
-    two, a law may be as good as rigid, or do nothing.
-    """
-    leading = candidate_named(name)
-    if isinstance(leading, Pair):
-        return
-    for other, trial in search.trials.items():
-        if (
-            "+" not in other
-            and not trial.refined
-            and _similar(trial.candidate.effect, leading.effect)
-            and (trial.screened > 1 or trial.candidate.location == leading.location)
-        ):
-            search.run_first(other, 4)
-            search.fit(other)
-
-
-def elsewhere_too(search: Search, values: Values, name: str) -> None:
-    """Run a leading explanation at other places: of an effect at a point at the other points, of
-    one at all supports at each of them alone.
-    """
-    candidate, unit = candidate_named(name), search.fits[name].unit
-    for other in [*other_places(candidate, values), *elsewhere(candidate, values)]:
-        if other.name not in search.trials:
-            search.run(other.name, unit)
-
-
-def parts_alone(search: Search, pair: str) -> None:
-    """Run each of two effects alone where both are thought to be: one may do without the other."""
-    trial, found = search.trials[pair], search.fits[pair]
-    for part, unit in trial.candidate.parts(found.unit):
-        search.run(part.name, unit)
-
-
-def seek_pairs(
-    search: Search, room: Callable[[Pair], bool], firsts: int = 2, seconds: int = 6
-) -> list[str]:
-    """Run the leading explanations with a second effect each, of those that may explain what the
-    first leaves and for which there is room; return the pairs' names.
-    """
-    out = []
-    for first in leaders(search, firsts):
-        found = search.fits[first]
-        explains = search.explains(search.null.measured - found.mean)
-        own = candidate_named(first)
-        order = [
-            name
-            for name in sorted(explains, key=lambda name: -explains[name])
-            if not set(candidate_named(name).ids) & set(own.ids) and "+" not in name
-        ]
-        order = [name for name in order if room(Pair(own, candidate_named(name)))]
-        for second in order[:seconds]:
-            pair = Pair(own, candidate_named(second)).name
-            reverse = Pair(candidate_named(second), own).name
-            if pair in search.trials or reverse in search.trials:
-                continue
-            rest = search.null.measured - found.mean
-            trial = search.trials[second]
-            near = trial.unit[np.argsort(np.sum((rest - trial.change) ** 2, axis=1))[:2]]
-            search.run(pair, np.hstack([np.tile(found.unit, (len(near), 1)), near]))
-            out.append(pair)
-    return out

@@ -166,7 +166,7 @@ class PairEmulator:
         looked: EffectDirections | None = None,
     ) -> None:
         self.first, self.second, self.run = first, second, trial.unit
-        self.split = trial.candidate.split
+        self.split = first.run.shape[1]
         sum_ = np.array([self._sum(unit) for unit in trial.unit])
         self.rest = Emulator(
             Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise),

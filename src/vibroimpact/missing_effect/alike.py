@@ -1,0 +1,80 @@
+"""What may look like a leading explanation: other laws, other effects, other places."""
+
+from dataclasses import replace
+
+from vibroimpact.discrepancy.candidates import (
+    AT_A_POINT,
+    Pair,
+    candidate_named,
+    elsewhere,
+    other_places,
+)
+from vibroimpact.effects.effect import Effect, Values
+
+from .search import Search
+
+
+def _similar(effect: Effect, leading: Effect) -> bool:
+    """Return whether an Effect may look like a leading one."""
+    return effect.family == leading.family or effect.id in leading.aliases
+
+
+def laws_of(search: Search, name: str) -> list[str]:
+    """Return the names of what was run of a leading explanation's family, at its place or at that
+    of the first runs.
+    """
+    leading = candidate_named(name)
+    return [
+        other
+        for other, trial in search.trials.items()
+        if "+" not in other
+        and other in search.fits
+        and trial.candidate.effect.family == leading.effect.family
+        and (trial.screened > 1 or trial.candidate.location == leading.location)
+    ]
+
+
+def similar_too(search: Search, name: str) -> None:
+    """Run what has a signature like a leading explanation's at as many first points as may be: at
+    two, a law may be as good as rigid, or do nothing.
+    """
+    leading = candidate_named(name)
+    if isinstance(leading, Pair):
+        return
+    for other, trial in search.trials.items():
+        if (
+            "+" not in other
+            and not trial.refined
+            and _similar(trial.candidate.effect, leading.effect)
+            and (trial.screened > 1 or trial.candidate.location == leading.location)
+        ):
+            search.run_first(other, 4)
+            search.fit(other)
+
+
+def elsewhere_too(search: Search, values: Values, name: str) -> None:
+    """Run a leading explanation at other places: of an effect at a point at the other points, of
+    one at all supports at each of them alone.
+    """
+    candidate, unit = candidate_named(name), search.fits[name].unit
+    for other in [*other_places(candidate, values), *elsewhere(candidate, values)]:
+        if other.name not in search.trials:
+            search.run(other.name, unit)
+
+
+def at_its_place(search: Search, name: str) -> None:
+    """Run every effect at a point, of those that were run elsewhere, where a leading one is found:
+    a stop, a spring or a rubbing there may each look like another.
+    """
+    leading = candidate_named(name)
+    if isinstance(leading, Pair) or leading.effect_id not in AT_A_POINT:
+        return
+    run = {
+        trial.candidate.effect_id
+        for trial in search.trials.values()
+        if "+" not in trial.candidate.name
+    }
+    for effect_id in sorted(run & AT_A_POINT):
+        other = replace(leading, effect_id=effect_id)
+        search.run_first(other.name, 2 * len(other.effect.parameters))
+        search.fit(other.name)

@@ -1,0 +1,117 @@
+"""The race: what may be the answer is run until one is sure or nothing more is to be learned."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vibroimpact.discrepancy.candidates import Pair
+
+from .effect_directions import seen
+from .effort import Effort
+from .search import LITTLE, Search
+
+WIDER = 4  # points for each parameter
+
+
+def look_wider(search: Search) -> None:
+    """Run what may explain more than all that was run, and what did nothing so far, at more points:
+    what resonates, as a support plate, is seen near its answer alone.
+    """
+    best = max((found.takes for found in search.fits.values()), default=0.0)
+    for name, found in list(search.fits.items()):
+        trial = search.trials[name]
+        if isinstance(trial.candidate, Pair):
+            continue
+        before = len(trial.noise)
+        if not seen(trial.change, trial.noise).any():
+            search.run_first(name, 4)
+            search.fit(name)
+        elif trial.screened > 1 and found.may_take > best:
+            for _ in trial.candidate.effect.parameters:
+                refine(search, [name], WIDER)
+            trial.strewn += len(trial.noise) - before
+
+
+NEW = 0.02  # of the searched range: a point that is nearer to one that was run tells little
+
+
+def refine(search: Search, names: list[str], points: int) -> None:
+    """Run explanations at `points` points each: where least is expected to be left, unless it was
+    run there, and others drawn from what is known of their parameters.
+    """
+    random = np.random.default_rng(search.seed)
+    for name in names:
+        found, trial = search.fits[name], search.trials[name]
+        drawn = found.samples[random.choice(len(found.samples), points, p=found.open_weight)]
+        units = np.clip(drawn + 0.04 * random.standard_normal(drawn.shape), 0.0, 1.0)
+        if np.abs(trial.unit - found.unit).max(axis=1).min() > NEW:
+            units[0] = found.unit
+        search.run(name, units)
+
+
+DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
+RUNS = 16  # of an explanation at most, beside those screened
+LEAST_RUNS = 3
+KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
+OF_REST = (
+    0.05  # of what the best leaves beyond chance: where nothing explains, less is known enough
+)
+
+
+def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) -> list[str]:
+    """Return the names of explanations that may yet explain as much as the best and are not known
+    well enough: by turns those that explain most, and those that may explain more than is known.
+
+    laws: of these alone, however much less they explain so far.
+    """
+    fits = {
+        name: found
+        for name, found in search.fits.items()
+        if ("+" in name) == pairs and (name in laws or not laws)
+    }
+    # by chi-square: far from the measurement, a likelihood is that of what laws may differ by
+    known = {name: 0.5 * found.takes for name, found in fits.items()}
+    upper = {name: 0.5 * found.may_take for name, found in fits.items()}
+    best = max(known.values(), default=0.0)
+    rest = min((found.left for found in fits.values()), default=0.0) - search.null.values
+    enough = max(KNOWN, OF_REST * 0.5 * rest)
+    explains = search.explains(search.null.measured)  # of those screened
+    left = [
+        name
+        for name in upper
+        if explains.get(name, np.inf) > LITTLE
+        and (laws or upper[name] > best - DECIDED)
+        and search.trials[name].refined < RUNS
+        and (
+            max(upper[name] - known[name], search.fits[name].not_shown) > enough
+            or search.trials[name].refined < LEAST_RUNS
+        )
+    ]
+    rows = [sorted(left, key=lambda name: -of[name]) for of in (known, upper)]
+    return list(dict.fromkeys(name for pair in zip(*rows, strict=True) for name in pair))
+
+
+def race(
+    search: Search, spent: Effort, pairs: bool = False, laws: Sequence[str] = (), points: int = 2
+) -> None:
+    """Run contenders, as many at a time as an Effort spends, until none is left or its rounds are
+    over; laws: see contenders.
+    """
+    for _ in range(spent.rounds):
+        names = contenders(search, pairs, laws)[: spent.width]
+        if not names:
+            return
+        refine(search, names, points)
+
+
+def leaders(search: Search, count: int, pairs: bool = False) -> list[str]:
+    """Return the `count` explanations of which a run leaves least, of those that bring the model
+    nearer to the measurement.
+    """
+    nothing = float(search.null.measured @ search.null.measured)
+    left = {
+        name: found.left
+        for name, found in search.fits.items()
+        if ("+" in name) == pairs and found.left < nothing
+    }
+    return sorted(left, key=lambda name: left[name])[:count]

@@ -1,0 +1,49 @@
+"""Screening: every explanation is run at a few points, those that may explain the measurement at
+more.
+"""
+
+from vibroimpact.discrepancy.candidates import candidate_named, elsewhere
+from vibroimpact.effects.effect import Values
+
+from .search import LITTLE, Search, telling
+
+MAY = 0.25  # of the chi-square that the best direction takes away
+LEAST = 6
+
+
+def first_explanations(screened: list[str], places: int = 2) -> list[str]:
+    """Return the names to begin with: of every effect `places` places at most."""
+    by_effect: dict[str, list[str]] = {}
+    for name in screened:
+        by_effect.setdefault(candidate_named(name).effect_id, []).append(name)
+    return [name for names in by_effect.values() for name in names[:places]]
+
+
+def screen(search: Search, names: list[str], values: Values) -> None:
+    """Run every explanation at two points for each parameter, at single supports where it explains
+    most at all of them, and those that may explain the measurement at more.
+    """
+    for name in names:
+        search.run_first(name, 2 * len(candidate_named(name).effect.parameters))
+        at_all = search.trials[name]
+        for other in elsewhere(candidate_named(name), values):
+            if len(at_all.noise):
+                search.run_screened(other.name, at_all.unit[telling(at_all, search.null.measured)])
+    search.learn()
+    for name in may_explain(search):
+        search.run_first(name, 4)
+    search.look()
+
+
+def may_explain(search: Search) -> list[str]:
+    """Return the names of explanations whose best direction takes much of the chi-square away, the
+    most first; none where little is to be taken away.
+    """
+    explains = search.explains(search.null.measured)
+    order = sorted(explains, key=lambda name: -explains[name])
+    return [
+        name
+        for name in order
+        if explains[name] > LITTLE
+        and (explains[name] > MAY * explains[order[0]] or name in order[:LEAST])
+    ]
