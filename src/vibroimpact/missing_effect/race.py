@@ -36,21 +36,27 @@ NEW = 0.02  # of the searched range: a point that is nearer to one that was run 
 
 
 def refine(search: Search, names: list[str], points: int) -> None:
-    """Run explanations at `points` points each: where least is expected to be left, unless it was
-    run there, and others drawn from what is known of their parameters.
+    """Run explanations at `points` points each, by turns where least is expected to be left and
+    where least may be left.
+
+    The first of them, unless it was run there; others near the likely ones.
     """
     random = np.random.default_rng(search.seed)
     for name in names:
         found, trial = search.fits[name], search.trials[name]
-        drawn = found.samples[random.choice(len(found.samples), points, p=found.open_weight)]
-        units = np.clip(drawn + 0.04 * random.standard_normal(drawn.shape), 0.0, 1.0)
+        chosen = [
+            random.choice(len(found.samples), p=(found.weight, found.open_weight)[number % 2])
+            for number in range(points)
+        ]
+        near = 0.04 * random.standard_normal((points, found.samples.shape[1]))
+        units = np.clip(found.samples[chosen] + near, 0.0, 1.0)
         if np.abs(trial.unit - found.unit).max(axis=1).min() > NEW:
             units[0] = found.unit
         search.run(name, units)
 
 
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race
-RUNS = 16  # of an explanation at most, beside those screened
+RUNS = 16  # of an explanation at most, beside those screened; twice as many of the leading one
 LEAST_RUNS = 3
 KNOWN = 2.0  # of log probability: what may be hidden of one that is known well enough
 OF_REST = (
@@ -81,7 +87,7 @@ def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) ->
         for name in upper
         if explains.get(name, np.inf) > LITTLE
         and (laws or upper[name] > best - DECIDED)
-        and search.trials[name].refined < RUNS
+        and search.trials[name].refined < RUNS * (1 + (known[name] == best))
         and (
             max(upper[name] - known[name], search.fits[name].not_shown) > enough
             or search.trials[name].refined < LEAST_RUNS
