@@ -355,7 +355,7 @@ def read_lowest(bench, fresh, out):
                 ),
             }
         )
-    singles = [row for row in out.linear if "+" not in row["name"]]
+    singles, leaves = [row for row in out.linear if "+" not in row["name"]], []
     for row in (*singles[:1], *(row for row in out.linear[:1] if row not in singles)):
         if not nameable(row, out.scales):
             continue
@@ -364,13 +364,15 @@ def read_lowest(bench, fresh, out):
         adopt(bench, out)
         # modes that moved far are fitted well only from the model that moved them: what is left
         # there tells whether the structure is linear
-        if (
-            bench.linear_stage
-            and bench.measured_fit.residual[driven].max() < priors.LINEAR_RESIDUAL
-        ):
+        rest = bench.measured_fit.residual[driven].max() if bench.linear_stage else np.inf
+        if rest < priors.LINEAR_RESIDUAL:
             out.nonlinear_low = False
             bench = read_again(bench, fresh, out, tables, begun)
             break
+        leaves.append((rest, row, bench))
+    else:  # the modes were read without it: one effect, unless two leave less
+        if leaves:
+            _, out.adopted, bench = min(leaves, key=lambda one: one[0])
     if out.nonlinear_low:
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
