@@ -75,11 +75,11 @@ def test_first_runs_are_told_from_those_of_the_race(searched):
 
 def test_wider_look_is_at_what_did_nothing_so_far(searched):
     search_more = {name: len(searched.trials[name].noise) for name in searched.trials}
-    look_wider(searched)
+    look_wider(searched, 2)
     more = {name: len(searched.trials[name].noise) - runs for name, runs in search_more.items()}
     assert (more[HERTZ], more[FRICTION]) == (2, 0)
     searched.fits[FRICTION] = replace(searched.fits[FRICTION], may_take=1.0e6)
-    look_wider(searched)
+    look_wider(searched, 2)
     trial = searched.trials[FRICTION]  # which leaves room for the race
     assert (trial.screened, trial.strewn, trial.refined) == (2, 4, 0)
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class Effort:
     """compared_s: of every record that is compared; rounds: of the race, at most; width:
-    explanations in a round; pairs: second effects that are tried beside each leading one.
+    explanations in a round; pairs: second effects that are tried beside each leading one, and
+    explanations that are looked at more widely where nothing explains.
     """
 
     compared_s: float

@@ -99,7 +99,7 @@ class Engine:
         with self.stage("refinement"):
             self.refine(search)
             if self.spent.pairs and unexplained(search):
-                race.look_wider(search)
+                race.look_wider(search, self.spent.pairs)
                 search.look()
                 self.refine(search)
         with self.stage("two effects"):

@@ -9,27 +9,42 @@ from vibroimpact.discrepancy.candidates import Pair
 from .effect_directions import seen
 from .effort import Effort
 from .search import LITTLE, Search
+from .trials import Trial
 
 WIDER = 4  # points for each parameter
 
 
-def look_wider(search: Search) -> None:
-    """Run what may explain more than all that was run, and what did nothing so far, at more points:
-    what resonates, as a support plate, is seen near its answer alone.
+def look_wider(search: Search, count: int) -> None:
+    """Run what did nothing so far, and the `count` explanations that may explain most, more than
+    all that was run, at more points: what resonates, as a support plate, is seen near its answer
+    alone.
     """
     best = max((found.takes for found in search.fits.values()), default=0.0)
-    for name, found in list(search.fits.items()):
+    alone = {
+        name: found.may_take
+        for name, found in search.fits.items()
+        if not isinstance(search.trials[name].candidate, Pair)
+    }
+    idle = [name for name in alone if not seen_at_all(search.trials[name])]
+    for name in idle:
+        search.run_first(name, 4)
+        search.fit(name)
+    may = [
+        name
+        for name in sorted(alone, key=lambda name: -alone[name])
+        if name not in idle and alone[name] > best and search.trials[name].screened > 1
+    ]
+    for name in may[:count]:
         trial = search.trials[name]
-        if isinstance(trial.candidate, Pair):
-            continue
         before = len(trial.noise)
-        if not seen(trial.change, trial.noise).any():
-            search.run_first(name, 4)
-            search.fit(name)
-        elif trial.screened > 1 and found.may_take > best:
-            for _ in trial.candidate.effect.parameters:
-                refine(search, [name], WIDER)
-            trial.strewn += len(trial.noise) - before
+        for _ in trial.candidate.effect.parameters:
+            refine(search, [name], WIDER)
+        trial.strewn += len(trial.noise) - before
+
+
+def seen_at_all(trial: Trial) -> bool:
+    """Return whether any run of a Trial changed what is told from its scatter."""
+    return bool(seen(trial.change, trial.noise).any())
 
 
 NEW = 0.02  # of the searched range: a point that is nearer to one that was run tells little
