@@ -7,6 +7,7 @@ from scipy import optimize
 
 from vibroimpact.effects import places
 
+from . import priors
 from .candidates import AT_A_POINT
 from .linear_fit import fitted
 from .linear_naming import table_of
@@ -17,7 +18,8 @@ TURNS = 20
 
 def placed(bench, changes, found, sizes, tables):
     """Return the LinearResult of the effect at a point that explains most, at the place between its
-    neighbours on the tube that explains most; None where there is none.
+    neighbours on the tube that explains most; None where none explains enough to be adopted, or the
+    place adds less than a parameter costs.
 
     With the model itself: the reduced basis alone put a mass 1 cm off, which a record with 1 % of
     noise told from where it was.
@@ -31,7 +33,7 @@ def placed(bench, changes, found, sizes, tables):
     best = max(rows, key=lambda row: row.gain)
     locations = best.candidate.effect.locations(bench.values)
     arcs = places.arc_lengths(bench.values, locations)
-    if len(arcs) < 2:
+    if len(arcs) < 2 or best.gain <= priors.LINEAR_GAIN:
         return None
     own = dict(zip(locations, arcs, strict=True))[best.candidate.location]
     below, above = [arc for arc in arcs if arc < own], [arc for arc in arcs if arc > own]
@@ -49,7 +51,7 @@ def placed(bench, changes, found, sizes, tables):
         options={"xatol": NEAR_M, "maxiter": TURNS},
     ).x
     result = results[at]
-    if result is None or result.gain <= best.gain:
+    if result is None or result.gain <= best.gain + priors.PARAMETER_COST:
         return None
     tables[result.candidate.name] = table_of(bench, result.candidate, sizes, changes)
     return result

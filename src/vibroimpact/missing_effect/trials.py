@@ -131,9 +131,12 @@ class Emulator:
     def __call__(self, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (mean, variance), (point, direction) each, at unit (point, parameter)."""
         against = self._kernel(np.atleast_2d(unit), self.unit)
+        return self.centre + against @ self.solved, self._unknown(against) * self.signal
+
+    def _unknown(self, against):
+        """Return (point, 1): the share of the variance that a kernel (point, run) leaves unknown."""
         told = np.sum((against @ self.inverse) * against, axis=1)
-        mean = self.centre + against @ self.solved
-        return mean, np.clip(1.0 - told, 0.0, None)[:, None] * self.signal
+        return np.clip(1.0 - told, 0.0, None)[:, None]
 
     def open_along(
         self, unit: np.ndarray, directions: np.ndarray, variance: np.ndarray
@@ -146,11 +149,10 @@ class Emulator:
         """
         if self.looked is None:
             return directions, variance
-        against = self._kernel(np.atleast_2d(unit), self.unit)
-        told = np.sum((against @ self.inverse) * against, axis=1)
+        unknown = self._unknown(self._kernel(np.atleast_2d(unit), self.unit))
         new = self.size / (1.0 + len(self.run)) * self.looked.share
         turned = (directions @ self.looked.along.T) ** 2
-        return self.looked.along, variance @ turned + np.clip(1.0 - told, 0.0, None)[:, None] * new
+        return self.looked.along, variance @ turned + unknown * new
 
 
 class PairEmulator:
