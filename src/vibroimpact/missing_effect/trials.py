@@ -134,7 +134,7 @@ class Emulator:
         return self.centre + against @ self.solved, self._unknown(against) * self.signal
 
     def _unknown(self, against):
-        """Return (point, 1): the share of the variance that a kernel (point, run) leaves unknown."""
+        """Return (point, 1): the share of variance that a kernel (point, run) leaves unknown."""
         told = np.sum((against @ self.inverse) * against, axis=1)
         return np.clip(1.0 - told, 0.0, None)[:, None]
 
