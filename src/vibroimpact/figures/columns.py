@@ -63,7 +63,7 @@ COLUMNS = {
     "discrepancy_dB": ("Measured / simulated (dB)", 1.0),
     "z": ("z (standard deviations)", 1.0),
     "fit_score": ("Log evidence of the fitted records (-)", 1.0),
-    "left": ("Left per value (-)", 1.0),
+    "left": ("Chi-square left per value (-)", 1.0),
     "parameter": ("Parameter (in its unit)", 1.0),
     "place_in_list": ("Place in the list (-)", 1.0),
     "psd_N2_per_Hz": ("PSD of force (N²/Hz)", 1.0),
