@@ -295,9 +295,24 @@ def test_swapped_axes_are_detected(sound):
     sound["response"].values[:, [across, along]] = sound["response"].values[:, [along, across]]
     found = complaints(sound)
     assert [(row["check"], row["channel"]) for row in found] == [
-        ("swapped channels", names(sound, 0, along)[1])
+        ("swapped channels", names(sound, 0, channel)[1]) for channel in (along, across)
     ]
     assert f"{names(sound, 0, across)[1]}, which lies across the force, does" in found[0]["message"]
+
+
+def test_swapped_channels_of_two_kinds_are_detected(sound):
+    """With one channel along the force beside them, and a unit that says nothing of their power."""
+    directions = sound["channel_direction"].values
+    across = int(np.argmax(np.abs(directions[:, 0])))
+    along, beside = np.argsort(-np.abs(directions[:, 1]), kind="stable")[:2].tolist()
+    sound["response"].values[:, [across, along]] = sound["response"].values[:, [along, across]]
+    few = sound.isel(channel=[along, beside, across])
+    few["channel_kind"].values[2] = "displacement"
+    few["channel_units"].values[2] = "m"
+    found = [row for row in complaints(few) if row["check"] == "swapped channels"]
+    assert [row["channel"] for row in found] == [
+        names(sound, 0, channel)[1] for channel in (along, across)
+    ]
 
 
 @pytest.mark.parametrize("channel", [0, 3])

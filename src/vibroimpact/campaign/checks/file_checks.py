@@ -304,20 +304,16 @@ def _linear(measured, spectra, record):
 
 def _mix_ups(measured, spectra, name):
     for index, other in swap_hints(measured, spectra):
-        partner = "others do: it is dead or wrongly named"
-        if other is not None:
-            partner = (
-                f"{measured.channels[other]}, which lies across the force, does: the two seem"
-                " swapped"
-            )
-        yield check_row(
-            "swapped channels",
-            "warn",
-            f"{measured.channels[index]} lies along the force and does not follow it in record"
-            f" {name} while {partner}.",
-            name,
-            measured.channels[index],
-        )
+        along = measured.channels[index]
+        silent = f"{along} lies along the force and does not follow it in record {name} while"
+        if other is None:
+            why = {along: f"{silent} others do: it is dead or wrongly named."}
+        else:
+            across = measured.channels[other]
+            swapped = f"{silent} {across}, which lies across the force, does: the two seem swapped."
+            why = {along: swapped, across: swapped}
+        for channel, message in why.items():
+            yield check_row("swapped channels", "warn", message, name, channel)
     against = reversed_hint(measured, spectra)
     if against is not None:
         yield check_row(

@@ -99,31 +99,32 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
 
     A channel along the force is suspect where it is incoherent although most others along the force
     are coherent; a contact force is not, which there is none of until the structure touches. Its
-    partner is a coherent channel across the force, the one at the same point if
-    there is one.
+    partner is a coherent channel across the force, the one at the same point if there is one, of
+    the same kind if there is one. Without a partner, one channel that follows tells of no other.
     """
     coherence, along = mean_coherence(spectra), alignment(signals)
     along = np.where(np.array(signals.kinds) == "contact_force", np.nan, along)
-    following = (along > ALIGNED) & (coherence > COHERENT)
+    following = np.sum((along > ALIGNED) & (coherence > COHERENT))
     silent = np.flatnonzero((along > ALIGNED) & (coherence < INCOHERENT))
     loud = np.flatnonzero((along < ACROSS) & (coherence > COHERENT))
-    if following.sum() < max(2, silent.size):
-        return []
     hints: list[tuple[int, int | None]] = []
+    if following < silent.size:
+        return hints
     for index in silent:
-        rivals = [
-            other
-            for other in loud
-            if signals.kinds[other] == signals.kinds[index]
-            and spectra.power[other] > OUTSHINES * spectra.power[index]
-        ]
+        alike = [other for other in loud if signals.kinds[other] == signals.kinds[index]]
+        rivals = (
+            [other for other in alike if spectra.power[other] > OUTSHINES * spectra.power[index]]
+            if alike
+            else loud.tolist()
+        )
         beside = [
             other
             for other in rivals
             if np.linalg.norm(signals.points[other] - signals.points[index]) < SAME_POINT_M
         ]
         partners = beside or rivals
-        hints.append((int(index), int(partners[0]) if partners else None))
+        if partners or following > 1:
+            hints.append((int(index), int(partners[0]) if partners else None))
     return hints
 
 
