@@ -11,9 +11,9 @@ from vibroimpact.missing_effect.decision import (
     exactly_alike,
     partly_decision,
     smallest,
-    weighted_interval,
 )
 from vibroimpact.missing_effect.evidence import Fit
+from vibroimpact.missing_effect.parameters import weighted_interval
 from vibroimpact.missing_effect.verification import Closing
 
 MASS, FRICTION, DAMPING, CROSSLEY = (
@@ -22,6 +22,9 @@ MASS, FRICTION, DAMPING, CROSSLEY = (
     "contact_damping@all",
     "hunt_crossley@all",
 )
+
+
+ESTIMATE = np.array([0.5]), np.array([[0.4, 0.6]])
 
 
 def fit_at(laws=(0.0, -9.0, -9.0)):
@@ -36,7 +39,7 @@ def fit_at(laws=(0.0, -9.0, -9.0)):
         density=np.ones(101),
         mean=np.zeros(9),
         left=9.0,
-        unseen=0.0,
+        not_shown=0.0,
         takes=0.0,
         may_take=0.0,
         doubt=0.0,
@@ -51,7 +54,7 @@ def decided(linear=(), fits=None, **chances):
         for name, chance in chances.items()
     }
     known = {name: fit_at() for name in names.values()} | (fits or {})
-    return decide(chances, known, list(linear), before=90.0, values=9)
+    return decide(chances, known, lambda _: ESTIMATE, list(linear), before=90.0, values=9)
 
 
 def test_one_explanation_above_nine_in_ten_is_named():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy import integrate, stats
+from scipy.stats import qmc
 
 from tests.white_null import white_null
 from vibroimpact.missing_effect import constants, evidence
@@ -26,8 +27,8 @@ class Known:
     directions = AXES[:1]
     run = np.linspace(0.0, 1.0, 401)[:, None]
 
-    def __init__(self, size, variance=0.0):
-        self.size, self.variance = size, variance
+    def __init__(self, size, variance=0.0, excess=0.0):
+        self.size, self.variance, self.excess = size, variance, np.array([excess])
 
     def __call__(self, unit):
         unit = np.atleast_2d(unit)
@@ -46,7 +47,8 @@ def null_with(measured):
 
 
 def trial_of(units, changes, noise):
-    return Trial(Line(), units, changes, np.full(len(units), noise), screened=len(units))
+    one_seed = [np.zeros((0, VALUES))] * len(units)
+    return Trial(Line(), units, changes, np.full(len(units), noise), one_seed)
 
 
 @pytest.mark.parametrize("law", [0.0, 0.3])
@@ -62,6 +64,14 @@ def test_likelihood_is_that_of_a_normal_law(law):
     wanted = stats.multivariate_normal(change, covariance).logpdf(measured)
     nothing = normal(np.eye(VALUES)).logpdf(measured)
     assert chance == pytest.approx(wanted - nothing, abs=1.0e-8)
+
+
+def test_what_an_explanation_scatters_by_counts_as_what_is_not_known():
+    """A measurement far along the direction that its own seeds scatter along is not so unlikely."""
+    null = null_with(20.0 * AXES[0])
+    wanted = log_likelihoods(Known(12.0, variance=3.0), [[0.7]], null, 0.0)[0]
+    assert log_likelihoods(Known(12.0, excess=3.0), [[0.7]], null, 0.0)[0] == pytest.approx(wanted)
+    assert log_likelihoods(Known(12.0), [[0.7]], null, 0.0)[0] < wanted - 10.0
 
 
 def test_evidence_is_the_integral_over_the_prior(monkeypatch):
@@ -82,16 +92,27 @@ def test_evidence_is_the_integral_over_the_prior(monkeypatch):
     assert found.left == pytest.approx(measured @ measured - along**2, rel=0.05)
 
 
-def test_what_no_run_shows_is_not_evidence():
+def test_what_no_run_shows_is_not_evidence(monkeypatch):
+    monkeypatch.setattr(constants, "LAWS", ((0.0, 1.0),))
     measured = np.random.default_rng(2).standard_normal(VALUES) + 14.0 * AXES[0]
     emulator = Known(30.0)
     shown = fit(emulator, 1, null_with(measured))
-    emulator.run = np.array([[0.9]])  # far from the answer, near 0.5
+    emulator.run = np.array([[0.7]])  # off the answer, near 0.5
     promised = fit(emulator, 1, null_with(measured))
     assert promised.promised == pytest.approx(shown.promised)
-    assert promised.left == pytest.approx(np.sum((measured - 0.9 * 30.0 * AXES[0]) ** 2), rel=0.1)
+    assert promised.left == pytest.approx(np.sum((measured - 0.7 * 30.0 * AXES[0]) ** 2), rel=0.1)
     lost = 0.5 * (promised.left - shown.left)
     assert promised.log_evidence == pytest.approx(shown.log_evidence - lost, abs=0.1)
+
+
+def test_explanation_of_which_no_run_comes_nearer_is_none():
+    """Whatever an emulator leaves open: it is run where it may be the answer, not believed."""
+    measured = 14.0 * AXES[0]
+    emulator = Known(30.0, variance=400.0)
+    emulator.run = np.array([[1.0]])  # twice as far as what is measured
+    found = fit(emulator, 1, null_with(measured))
+    assert found.promised > 20.0 and found.log_evidence < -1.0e3
+    assert found.may_take == pytest.approx(14.0**2)
 
 
 def test_something_else_is_a_normal_law_of_unknown_size():
@@ -118,6 +139,28 @@ def test_emulator_returns_runs_and_tells_what_it_lacks():
     wanted = 50.0 * np.sin(1.2) * AXES[0] + 20.0 * 0.36 * AXES[1]
     assert change[2] == pytest.approx(wanted, abs=0.3)
     assert variance[1].max() < 0.1 < 100.0 < variance[3].max()
+
+
+def test_scatter_along_what_a_run_changes_is_that_of_its_seeds():
+    random = np.random.default_rng(5)
+    trial = Trial(Line(), np.zeros((0, 1)), np.zeros((0, VALUES)), np.zeros(0), [])
+    for unit in np.linspace(0.1, 1.0, 10):
+        seeds = random.standard_normal((8, VALUES))
+        seeds[:, :] += 2.0 * random.standard_normal((8, 1)) * AXES[0] + 40.0 * unit * AXES[0]
+        trial.add(np.array([unit]), seeds)
+    emulator = Emulator(trial, np.array([0.0]), answer=20.0 * AXES[0])
+    along = int(np.argmax(np.abs(emulator.directions @ AXES[0])))
+    assert 1.0 + emulator.excess[along] == pytest.approx(5.0, rel=0.3)
+    far = trial.scatter(AXES[1:2], np.ones(10))
+    assert far == pytest.approx(1.0, rel=0.3)
+
+
+def test_length_is_that_of_each_parameter():
+    """A resonance turns within a twentieth of a range along which nothing else happens."""
+    units = qmc.Sobol(2, seed=1).random(32)
+    changes = 30.0 * np.sin(units[:, :1] / 0.06) * AXES[0] + 5.0 * units[:, 1:] * AXES[1]
+    emulator = Emulator(trial_of(units, changes, 1.0e-4), answer=changes[3])
+    assert emulator.length[0] < 0.1 < 0.5 < emulator.length[1]
 
 
 def test_two_effects_add_until_a_run_corrects_the_sum():

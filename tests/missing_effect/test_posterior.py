@@ -28,7 +28,10 @@ def searched(measured):
     search = Search(None, white_null(measured), dict.fromkeys(("one", "contact_stiffness"), 1.0))
     for name in (FRICTION, DAMPING, STIFFNESS):
         changes = SIZE * UNITS * DIRECTIONS[name]
-        trial = Trial(candidate_named(name), UNITS, changes, np.full(5, 1.0e-3), screened=5)
+        trial = Trial.empty(candidate_named(name), VALUES)
+        for unit, change in zip(UNITS, changes, strict=True):
+            trial.add(unit, change + 0.03 * np.outer([1.0, -1.0], np.ones(VALUES)))
+        trial.screened = 5
         search.trials[name] = trial
         search.fit(name)
     return search

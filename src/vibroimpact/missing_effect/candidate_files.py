@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.records import plain_values, write_text
 
-from .decision import Decision, weighted_interval
+from .decision import Decision
 from .evidence import Likelihoods
 from .search import Search
 
@@ -36,18 +36,17 @@ def write(search: Search, decision: Decision, folder: Path) -> None:
 
 def parameters_of(search: Search, name: str) -> dict[str, Any]:
     """Return {"profile": [...], "parameters": {...}} of an explanation."""
-    trial, found = search.trials[name], search.fits[name]
+    trial = search.trials[name]
     emulator = search.emulator(name)
-    low, high = weighted_interval(found.samples, found.weight)
+    unit, interval = search.estimate(name)
     profile, parameters, first = [], {}, 0
-    parts = trial.candidate.parts(found.unit)
+    parts = trial.candidate.parts(unit)
     for candidate, own in parts:
         inside = slice(first, first + len(own))
-        interval = np.stack([low[inside], high[inside]], axis=1)
-        estimate = candidate.estimate(own, interval, search.scales)
-        run = [candidate.physical(unit, search.scales) for unit in trial.unit[:, inside]]
+        estimate = candidate.estimate(own, interval[inside], search.scales)
+        run = [candidate.physical(place, search.scales) for place in trial.unit[:, inside]]
         for number, parameter in enumerate(candidate.effect.parameters):
-            units = np.repeat(found.unit[None], POINTS, axis=0)
+            units = np.repeat(unit[None], POINTS, axis=0)
             units[:, first + number] = np.linspace(0.0, 1.0, POINTS)
             left = Likelihoods.of(emulator, units, search.null).expected
             prefix = "" if len(parts) == 1 else f"{candidate.effect.reported}."
@@ -56,8 +55,8 @@ def parameters_of(search: Search, name: str) -> dict[str, Any]:
                     "parameter": prefix + parameter.name,
                     "unit": parameter.unit,
                     "values": [
-                        candidate.physical(unit, search.scales)[parameter.name]
-                        for unit in units[:, inside]
+                        candidate.physical(place, search.scales)[parameter.name]
+                        for place in units[:, inside]
                     ],
                     "left": (left / search.null.values).tolist(),
                     "simulated": sorted({point[parameter.name] for point in run}),

@@ -37,6 +37,6 @@ ALIKE = 0.3
 # Runs.
 NULL_DRAWS = 12  # of nuisances
 MEAN_RUNS = 12  # of the most probable ones
-LENGTHS = (0.15, 0.3, 0.6, 1.2)  # of the searched range: how far a simulated point tells
-FEW_RUNS = 4  # of an explanation, for each parameter: with fewer, the shorter half of them
-FEW_LENGTHS = LENGTHS[:2]
+LENGTHS = (0.06, 0.15, 0.3, 0.6, 1.2)  # of the searched range: how far a simulated point tells
+FEW_RUNS = 4  # of an explanation, for each parameter: with fewer, one of FEW_LENGTHS
+FEW_LENGTHS = LENGTHS[1:3]

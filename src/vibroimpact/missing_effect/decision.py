@@ -1,5 +1,6 @@
 """What is said of the probabilities: named, ambiguous, partly explained, unknown, or none."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from .evidence import Fit
 
 Chances = dict[str, float]
 Sets = list[tuple[tuple[str, ...], float]]  # ids and the probability of each set
+Estimate = Callable[[str], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -47,20 +49,26 @@ class Decision:
 
 
 def decide(
-    chances: Chances, fits: dict[str, Fit], linear: Sets, before: float, values: int
+    chances: Chances,
+    fits: dict[str, Fit],
+    estimated: Estimate,
+    linear: Sets,
+    before: float,
+    values: int,
 ) -> Decision:
     """Return the Decision of {name: log probability} (probabilities.posterior) and {name: Fit}.
 
-    before: chi-square of so many values with nothing added; linear:
-    [(ids, probability)] of what the lowest record told, the most probable first, empty
-    where it told nothing: every explanation is beside it, or in its place.
+    estimated: what returns (unit, interval) of an explanation's parameters; before: chi-square of
+    so many values with nothing added; linear: [(ids, probability)] of what the lowest record told,
+    the most probable first, empty where it told nothing: every explanation is beside it, or in its
+    place.
     """
     chances = {name: float(np.exp(chance)) for name, chance in chances.items()}
     rows = explanations(chances)
     nothing, other = chances["nothing"], chances["something else"]
     sets = ambiguity_sets(rows, nothing, linear)
     best = rows[0] if rows and rows[0][1] > nothing else None
-    chosen = None if best is None else chosen_of(best, fits)
+    chosen = None if best is None else chosen_of(best, fits, estimated)
     verdict: Conclusion
     reached, together = smallest(sets)
     if best is None or other > 0.5:
@@ -179,26 +187,10 @@ def smallest(sets: Sets) -> tuple[float, Sets]:
     return reached, out
 
 
-def chosen_of(row: tuple[str, float, float], fits: dict[str, Fit]) -> Chosen:
+def chosen_of(row: tuple[str, float, float], fits: dict[str, Fit], estimated: Estimate) -> Chosen:
     """Return the Chosen of a row of explanations."""
     name, chance, beside = row
     found = fits[name]
-    low, high = weighted_interval(found.samples, found.weight)
-    low, high = np.minimum(low, found.unit), np.maximum(high, found.unit)
     laws = np.exp(found.by_law - found.by_law.max())
     other_law = beside > 0.5 or laws[-1] > laws[:-1].sum()
-    return Chosen(
-        candidate_named(name), found.unit, np.stack([low, high], axis=1), not other_law, chance
-    )
-
-
-def weighted_interval(
-    samples: np.ndarray, weight: np.ndarray, ends: tuple[float, float] = (0.05, 0.95)
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (low, high), (parameter,) each, that hold 90 % of samples (sample, parameter)."""
-    out = np.empty((2, samples.shape[1]))
-    for number, column in enumerate(samples.T):
-        order = np.argsort(column)
-        known = np.cumsum(weight[order])
-        out[:, number] = np.interp(ends, known / known[-1], column[order])
-    return out[0], out[1]
+    return Chosen(candidate_named(name), *estimated(name), not other_law, chance)

@@ -79,6 +79,7 @@ class Engine:
         decision = decide(
             posterior(search),
             search.fits,
+            search.estimate,
             linear_sets(prepared),
             float(null.measured @ null.measured),
             null.values,

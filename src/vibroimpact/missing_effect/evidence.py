@@ -28,10 +28,10 @@ class Fit:
     even ones first, with weight (sample,): the posterior, open_weight (sample,): of where least may
     be left, and density (sample,): of the draw; mean
     (value,) the change of the run nearest to the measurement and left: chi-square that remains
-    there; unseen: by how much less remains at unit, where nothing was run; takes: chi-square that
-    is expected to be taken away there, may_take: that may be anywhere, by what the emulator does
-    not know; doubt: standard deviation of the log evidence by the scatter of the runs near the
-    nearest.
+    there; not_shown: what of the log evidence no run shows, by how much more likely the measurement
+    is at the best sample than at the best run; takes: chi-square that is expected to be taken away
+    at unit, may_take: that may be anywhere, by what the emulator does not know; doubt: standard
+    deviation of the log evidence by the scatter of the runs near the nearest.
     """
 
     promised: float
@@ -43,15 +43,10 @@ class Fit:
     density: np.ndarray
     mean: np.ndarray
     left: float
-    unseen: float
+    not_shown: float
     takes: float
     may_take: float
     doubt: float
-
-    @property
-    def not_shown(self) -> float:
-        """Return what of the log evidence no run shows."""
-        return 0.5 * self.unseen
 
     @property
     def log_evidence(self) -> float:
@@ -85,10 +80,11 @@ def fit(
     drawn = np.log(np.append(np.ones(SAMPLES), np.maximum(density, 1.0)))
     weight = chances - drawn
     open_weight = -0.5 * np.append(even.may_be_left, about.may_be_left) - drawn
-    mean, variance = emulator(np.vstack([unit, emulator.run]))
+    mean, variance = emulator(emulator.run)
     rest = null.measured - mean @ emulator.directions
     left = np.sum(rest**2, axis=1)
-    nearest = 1 + int(np.argmin(left[1:]))
+    nearest = int(np.argmin(left))
+    shown = Likelihoods.of(emulator, emulator.run, null).over_laws.max()
     chi_square = float(null.measured @ null.measured)
     least = float(min(even.may_be_left.min(), about.may_be_left.min()))
     return Fit(
@@ -101,7 +97,7 @@ def fit(
         np.append(np.ones(SAMPLES), density),
         null.measured - rest[nearest],
         float(left[nearest]),
-        max(0.0, float(left[nearest] - left[0])),
+        max(0.0, float(chances.max() - shown)),
         max(0.0, chi_square - float(expected.min())),
         max(0.0, chi_square - least),
         _doubt(emulator.directions @ rest[nearest], variance[nearest]),
@@ -179,14 +175,16 @@ def log_likelihoods(
     """Return (log likelihood against nothing, allowed, seen, chi-square that is expected to be
     left, least that may be), (point,) each, at units (point, parameter).
 
-    The covariance is that of the null, what the law may differ by, and what the emulator does not
-    know along its directions. A change that does not bring the model nearer to the measurement is
-    not allowed: it explains nothing, however wide its law is and however little is known of it.
+    The covariance is that of the null, what an explanation scatters by more, what its law may
+    differ by, and what the emulator does not know along its directions. A change that does not
+    bring the model nearer to the measurement is not allowed: it explains nothing, however wide its
+    law is and however little is known of it.
     """
     mean, variance = emulator(units)
     change = mean @ emulator.directions
     diagonal = 1.0 + (law * change) ** 2
-    parts = [np.sqrt(variance)[:, :, None] * emulator.directions]
+    scatter = np.sqrt(variance + emulator.excess)
+    parts = [scatter[:, :, None] * emulator.directions]
     for group in np.unique(null.groups):
         parts.append((constants.LAW_COMMON * law * change * (null.groups == group))[:, None])
     columns = np.concatenate(parts, axis=1)

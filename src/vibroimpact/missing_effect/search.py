@@ -14,6 +14,7 @@ from .effect_directions import EffectDirections, seen, told_of
 from .evidence import SomethingElse, fit
 from .first_points import first_points
 from .null import Null
+from .parameters import estimate
 from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 
 
@@ -55,7 +56,7 @@ class Search:
         trial = self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
         for unit in np.atleast_2d(units):
             try:
-                trial.add(unit, *self._change(candidate, unit))
+                trial.add(unit, self._changes(candidate, unit))
             except (IntegrationError, ConfigError) as error:
                 trial.failed.append((unit, str(error)))
 
@@ -76,10 +77,15 @@ class Search:
             )
             return PairEmulator(trial, first, second, self.looked)
         near = trial.drawn_in(FARTHEST * np.linalg.norm(self.null.measured))
-        return Emulator(near, neutral_unit(trial.candidate, self.scales), self.looked)
+        neutral = neutral_unit(trial.candidate, self.scales)
+        return Emulator(near, neutral, self.looked, answer=self.null.measured)
 
-    def _change(self, candidate, unit):
-        """Return (change (value,), variance of a value) of one batch of runs."""
+    def estimate(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return (unit, interval) of the parameters of an explanation: see parameters.estimate."""
+        return estimate(self.emulator(name), self.null, self.fits[name])
+
+    def _changes(self, candidate, unit):
+        """Return changes (seed, value) of one batch of runs."""
         bench, records = self.bench, self.null.records
         physical = candidate.physical(unit, self.scales)
         seeds = max(1, LANES // len(records))
@@ -92,9 +98,7 @@ class Search:
         ).reshape(len(records), seeds, -1)
         if np.isnan(features).any():
             raise IntegrationError("a run was thrown off")
-        each = np.array([self.null.change(features[:, run]) for run in range(seeds)])
-        noise = each.var(axis=0, ddof=1).mean() if seeds > 1 else 1.0
-        return self.null.change(features.mean(axis=1)), noise / seeds
+        return np.array([self.null.change(features[:, run]) for run in range(seeds)])
 
     @property
     def effects(self) -> EffectDirections:
@@ -131,6 +135,7 @@ class Search:
         self.null = told_of(self.null, self.effects)
         for trial in self.trials.values():
             trial.change = self.null.in_units(trial.change)
+            trial.deviations = [self.null.in_units(row) for row in trial.deviations]
 
     def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
@@ -144,7 +149,7 @@ class Search:
 
 
 LITTLE = 12.0  # chi-square: what takes no more away is not worth a parameter
-FARTHEST = 3.0  # times what is measured: larger changes only tell that the answer is not there
+FARTHEST = 1.2  # times what is measured: larger changes only tell that the answer is not there
 
 
 def directed(trial: Trial, rest: np.ndarray) -> np.ndarray:

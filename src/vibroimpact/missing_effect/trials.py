@@ -12,12 +12,14 @@ from .effect_directions import EffectDirections
 
 LEAST_SIGNAL = 0.1  # of the scatter: no change is known to be less
 NEGLIGIBLE = 1.0e-3  # of what the runs change: directions below it are left out
+SUPPOSED = 5.0  # seeds, of the variance of the null, that are supposed beside those run
 
 
 @dataclass
 class Trial:
     """An explanation and its runs: candidate; unit (run, parameter) from 0 to 1; change (run,
-    value) and noise (run,): variance of a value of it; failed: [(unit, sentence)];
+    value) and noise (run,): variance of a value of it; deviations [(seed, value)]: what the seeds
+    of a run differ by from their mean, none of a single seed; failed: [(unit, sentence)];
     screened: how many of the runs, the first, were placed without regard to the measurement;
     strewn: how many later ones.
     """
@@ -26,6 +28,7 @@ class Trial:
     unit: np.ndarray
     change: np.ndarray
     noise: np.ndarray
+    deviations: list = field(default_factory=list)
     failed: list = field(default_factory=list)
     screened: int = 0
     strewn: int = 0
@@ -57,11 +60,36 @@ class Trial:
         share = np.minimum(1.0, size / np.maximum(np.linalg.norm(self.change, axis=1), 1.0e-12))
         return replace(self, change=self.change * share[:, None], noise=self.noise * share**2)
 
-    def add(self, unit: np.ndarray, change: np.ndarray, noise: float) -> None:
-        """Add a run."""
+    def add(self, unit: np.ndarray, changes: np.ndarray) -> None:
+        """Add a run of changes (seed, value)."""
+        seeds, mean = len(changes), changes.mean(axis=0)
+        deviations = (changes - mean)[: seeds if seeds > 1 else 0]
+        noise = np.sum(deviations**2) / ((seeds - 1) * mean.size) if seeds > 1 else 1.0
         self.unit = np.vstack([self.unit, unit])
-        self.change = np.vstack([self.change, change])
-        self.noise = np.append(self.noise, noise)
+        self.change = np.vstack([self.change, mean])
+        self.noise = np.append(self.noise, noise / seeds)
+        self.deviations.append(deviations)
+
+    def scatter(self, along: np.ndarray, weight: np.ndarray) -> np.ndarray:
+        """Return (direction,): the variance of a single seed along orthonormal directions
+        (direction, value), of runs with weight (run,).
+
+        Hard or sticking contact may scatter several times as much as the null along what it
+        changes.
+        """
+        squares, count = np.full(len(along), SUPPOSED), SUPPOSED
+        for row, share in zip(self.deviations, weight, strict=True):
+            squares += share * np.sum((row @ along.T) ** 2, axis=0)
+            count += share * max(len(row) - 1, 0)
+        return squares / count
+
+    def scatter_of_all(self, weight: np.ndarray) -> float:
+        """Return the same, the mean of all values."""
+        squares, count = SUPPOSED, SUPPOSED
+        for row, share in zip(self.deviations, weight, strict=True):
+            squares += share * float(np.sum(row**2)) / self.change.shape[1]
+            count += share * max(len(row) - 1, 0)
+        return squares / count
 
 
 class Emulator:
@@ -70,8 +98,10 @@ class Emulator:
     from all runs the change is their mean then, 0 where it is not centred; looked: EffectDirections
     along which runs are known, None: along all.
 
-    directions (direction, value) are orthonormal: those that the runs, smoothed, lie along; run
-    (run, parameter): where it was run.
+    directions (direction, value) are orthonormal: those that the runs, smoothed, lie along; excess
+    (direction,): by how much more than the null a measurement scatters along them; run (run,
+    parameter): where it was run. answer (value,): what is looked for, None: nothing; runs near it
+    count more for what is learned.
     """
 
     def __init__(
@@ -80,23 +110,30 @@ class Emulator:
         neutral: np.ndarray | None = None,
         looked: EffectDirections | None = None,
         centred: bool = True,
+        answer: np.ndarray | None = None,
     ) -> None:
-        unit, noise, self.looked = trial.unit, trial.noise, looked
+        unit, self.looked = trial.unit, looked
         change = trial.change if looked is None else trial.change @ looked.along.T
+        if answer is not None:
+            answer = answer if looked is None else answer @ looked.along.T
         self.run = unit
         self.periodic = list(trial.candidate.periodic)
+        scatter = trial.noise * change.shape[1]
+        near = np.sqrt(_nearness(change, scatter, answer))
+        if looked is not None:
+            own = trial.scatter(looked.along, near)
+            scatter = scatter * own.mean() / trial.scatter_of_all(near)
         centre = np.zeros(change.shape[1])
         if neutral is not None:
             unit = np.vstack([unit, neutral])
             change = np.vstack([change, centre])
-            noise = np.append(noise, 0.01 * noise.min())
+            scatter = np.append(scatter, 0.01 * scatter.min())
         elif centred:
-            centre = np.average(change, axis=0, weights=1.0 / noise)
-        scatter = noise * change.shape[1]
+            centre = np.average(change, axis=0, weights=1.0 / scatter)
         size = np.sum(change**2, axis=1) - scatter
         self.size = max(float(size.mean()), float(scatter.mean()) * LEAST_SIGNAL)
         self.unit, self.ratio = unit, scatter / self.size + 1.0e-6
-        self._learn(change - centre)
+        self._learn(change - centre, _nearness(change, scatter, answer))
         smooth = self._kernel(unit, unit) @ self.inverse @ (change - centre) + centre
         _, sizes, directions = linalg.svd(smooth, full_matrices=False)
         kept = sizes**2 > NEGLIGIBLE * np.sum(sizes**2)
@@ -106,27 +143,37 @@ class Emulator:
             directions[kept] if looked is None else directions[kept] @ looked.along
         )
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
+        self.excess = np.maximum(trial.scatter(self.directions, near) - 1.0, 0.0)
 
-    def _learn(self, change):
-        """Take the length that predicts left-out runs best; of few runs, a short one: they tell of
-        no length, and a long one would tell of all that was not run.
+    def _learn(self, change, weight):
+        """Take the length along each parameter that predicts left-out runs best: a resonance turns
+        within a twentieth of a range along which a mass does little. Of few runs, a short one for
+        all: they tell of no length, and a long one would tell of all that was not run.
         """
-        best = np.inf
-        known = len(change) >= constants.FEW_RUNS * self.unit.shape[1]
-        few = constants.LENGTHS if known else constants.FEW_LENGTHS
-        for length in few:
-            self.length = length
-            inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
-            error = np.sum((inverse @ change / np.diag(inverse)[:, None]) ** 2)
-            if error < best:
-                best, found = error, (length, inverse)
-        self.length, self.inverse = found
+        count = self.unit.shape[1]
+        known = len(change) >= constants.FEW_RUNS * count
+        tried = constants.LENGTHS if known else constants.FEW_LENGTHS
+        rows = [np.full(count, length) for length in tried]
+        best = min(rows, key=lambda row: self._error(row, change, weight))
+        for number in range(count if known and count > 1 else 0):
+            rows = [np.where(np.arange(count) == number, length, best) for length in tried]
+            best = min(rows, key=lambda row: self._error(row, change, weight))
+        self._error(best, change, weight)
+
+    def _error(self, length, change, weight):
+        """Return the sum of squares by which left-out runs, with weight (run,), are missed with
+        length (parameter,), which is kept.
+        """
+        self.length = length
+        self.inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
+        missed = self.inverse @ change / np.diag(self.inverse)[:, None]
+        return np.sum(weight * np.sum(missed**2, axis=1))
 
     def _kernel(self, one, other):
         distance = one[:, None] - other[None]
         for number in self.periodic:
             distance[..., number] = np.sin(np.pi * distance[..., number]) / np.pi
-        return np.exp(-0.5 * np.sum(distance**2, axis=-1) / self.length**2)
+        return np.exp(-0.5 * np.sum((distance / self.length) ** 2, axis=-1))
 
     def __call__(self, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (mean, variance), (point, direction) each, at unit (point, parameter)."""
@@ -155,6 +202,16 @@ class Emulator:
         return self.looked.along, variance @ turned + unknown * new
 
 
+def _nearness(change, scatter, answer):
+    """Return (run,): 1 of the run of changes (run, value) nearest to an answer (value,), less of
+    others; 1 of all where it is None.
+    """
+    if answer is None:
+        return np.ones(len(change))
+    away = np.sum((change - answer) ** 2, axis=1) + scatter
+    return away.min() / away
+
+
 class PairEmulator:
     """The change of two effects at once: the sum of what each changes alone, and what runs of both
     differ from it by; first, second: Emulators; trial: of the pair; looked: see Emulator.
@@ -171,12 +228,14 @@ class PairEmulator:
         self.split = first.run.shape[1]
         sum_ = np.array([self._sum(unit) for unit in trial.unit])
         self.rest = Emulator(
-            Trial(trial.candidate, trial.unit, trial.change - sum_, trial.noise),
+            replace(trial, change=trial.change - sum_),
             looked=looked,
             centred=False,
         )
         parts = (first, second, self.rest)
         self.directions: np.ndarray = np.vstack([part.directions for part in parts])
+        own = np.zeros(len(self.rest.directions))  # it scatters as its parts do
+        self.excess: np.ndarray = np.concatenate([first.excess, second.excess, own])
 
     def _sum(self, unit):
         return sum(
