@@ -13,7 +13,6 @@ from vibroimpact.missing_effect.decision import (
     smallest,
 )
 from vibroimpact.missing_effect.evidence import Fit
-from vibroimpact.missing_effect.parameters import weighted_interval
 from vibroimpact.missing_effect.verification import Closing
 
 MASS, FRICTION, DAMPING, CROSSLEY = (
@@ -112,14 +111,6 @@ def test_linear_effect_is_beside_every_explanation():
 def test_smallest_set_reaches_the_probability_that_is_stated():
     reached, sets = smallest([("a", 0.5), ("b", 0.3), ("c", 0.15), ("d", 0.05)])
     assert reached == pytest.approx(0.95) and [name for name, _ in sets] == ["a", "b", "c"]
-
-
-def test_interval_holds_nine_tenths_of_a_normal_law():
-    random = np.random.default_rng(4)
-    samples = random.uniform(0.0, 1.0, (20000, 1))
-    weight = np.exp(-0.5 * ((samples[:, 0] - 0.5) / 0.05) ** 2)
-    low, high = weighted_interval(samples, weight)
-    assert [low[0], high[0]] == pytest.approx([0.5 - 1.645 * 0.05, 0.5 + 1.645 * 0.05], abs=0.005)
 
 
 @pytest.mark.parametrize(("share", "partial"), [(0.3, True), (0.6, False), (None, False)])
