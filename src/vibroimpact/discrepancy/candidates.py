@@ -3,9 +3,13 @@ features of a campaign.
 """
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
+from vibroimpact.effects import places as on_structure
+from vibroimpact.effects.effect import Parameter
+from vibroimpact.effects.places import ALONG
 from vibroimpact.effects.registry import EFFECTS
 
 from . import priors
@@ -22,13 +26,25 @@ AT_A_POINT = frozenset(
         "clearance",
     }
 )
+# On a tube the place of such an effect is a parameter of it, away from its ends.
+PLACE = Parameter(
+    "place",
+    "m",
+    0.03,
+    0.97,
+    None,
+    per="tube_length",
+    log=False,
+    meaning="distance along the tube from its start",
+)
 PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
 
 
 @dataclass(frozen=True)
 class Candidate:
     """An effect at a location; its name is effect@location, and effect@location@alone where it
-    stands in the place of the linear effect that was adopted.
+    stands in the place of the linear effect that was adopted. At places.ALONG its place is the last
+    of its parameters.
     """
 
     effect_id: str
@@ -43,7 +59,7 @@ class Candidate:
     @property
     def effect(self):
         """Return the Effect."""
-        return EFFECTS[self.effect_id]
+        return _along(self.effect_id) if self.location == ALONG else EFFECTS[self.effect_id]
 
     @property
     def ids(self):
@@ -65,6 +81,12 @@ class Candidate:
             parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0)
             for parameter in self.effect.parameters
         }
+
+    def located(self, unit, scales):
+        """Return the location with normalised parameters unit (parameter,)."""
+        if self.location != ALONG:
+            return self.location
+        return on_structure.between(self.physical(unit, scales)[PLACE.name])
 
     def estimate(self, unit, interval, scales):
         """Return {name: (value, low, high)} in SI of normalised parameters unit (parameter,) and
@@ -168,9 +190,12 @@ class Candidate:
         """Return the configuration in plain values with the effect; unchanged for a fault of the
         measuring chain.
         """
-        return (
-            values if self.effect.measured else self.effect.apply(values, parameters, self.location)
-        )
+        if self.effect.measured:
+            return values
+        if self.location != ALONG:
+            return self.effect.apply(values, parameters, self.location)
+        location = on_structure.between(parameters[PLACE.name])
+        return self.effect.apply(on_structure.with_place(values, location), parameters, location)
 
     def measuring(self, parameters, names):
         """Return the Measuring of a fault of the measuring chain, None for an effect of the
@@ -181,6 +206,13 @@ class Candidate:
             if self.effect.measured
             else None
         )
+
+
+@cache
+def _along(effect_id):
+    """Return the Effect with its place among its parameters."""
+    effect = EFFECTS[effect_id]
+    return replace(effect, parameters=(*effect.parameters, PLACE))
 
 
 @dataclass(frozen=True)
@@ -324,7 +356,7 @@ def other_places(candidate, values):
     locations = candidate.effect.locations(values)
     return (
         [replace(candidate, location=place) for place in locations if place != candidate.location]
-        if candidate.effect_id in AT_A_POINT
+        if candidate.effect_id in AT_A_POINT and candidate.location != ALONG
         else []
     )
 
@@ -347,7 +379,7 @@ def linear_candidates(values, names, held, modes):
 
 def local_candidates(values, held, modes=None):
     """Return the candidates that only simulation tells of, those to screen first: all supports
-    together, points up to PLACES.
+    together, a place along a tube, points of another structure up to PLACES.
 
     modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear
     structure, and linear effects are tried as the others are.
@@ -361,7 +393,8 @@ def local_candidates(values, held, modes=None):
             if effect.id == "mode_frequency_error":
                 locations = locations[:UNSEEN_MODES]
             if effect.id in AT_A_POINT:
-                locations = spread(locations)
+                on_tube = on_structure.length_m(values) is not None
+                locations = [ALONG] if on_tube else spread(locations)
             found += [Candidate(effect.id, location) for location in locations]
     return [candidate for candidate in found if modes is None or not _told(candidate, modes)]
 

@@ -40,15 +40,16 @@ def in_place(bench, candidates, gain, stiffness):
     Workbench's lowest record told, with so much gain.
 
     bench: of the bare model, with the measured fit of its modes; stiffness: scale in N/m. Of an
-    effect that is screened at some of its places each stands for those nearest to it; one that acts
-    all along the structure may always stand there.
+    effect that is screened at some of its places each stands for those nearest to it; one whose
+    place is a parameter may stand there where any place may; one that acts all along the structure
+    may always.
     """
     acting = [candidate for candidate in candidates if candidate.effect.below_contact]
     at = {
         name: np.array(bench.values["points"][name])
         for name in places.masses_and_springs(bench.values)
     }
-    if not any(candidate.location in at for candidate in acting):
+    if not any(candidate.location in {*at, places.ALONG} for candidate in acting):
         return [candidate.name for candidate in acting]
     changes = LinearChanges(bench)
     enough = [
@@ -56,6 +57,9 @@ def in_place(bench, candidates, gain, stiffness):
     ]
     kept = []
     for candidate in acting:
+        if candidate.location == places.ALONG:
+            kept += [candidate.name] if enough else []
+            continue
         own = [other.location for other in acting if other.effect_id == candidate.effect_id]
         if candidate.location not in at or candidate.location in {
             min(own, key=lambda place, name=name: np.linalg.norm(at[place] - at[name]))

@@ -13,6 +13,7 @@ from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
+from vibroimpact.effects.places import length_m
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.units import TIME_DERIVATIVES
 
@@ -238,7 +239,10 @@ def prepare(config, campaign_path, draw=0):
     out.scales = {
         name: float(value)
         for name, value in scales(
-            bench.bare, bench.signals, {"displacement": reach, "speed": reach * 2.0 * np.pi * first}
+            bench.bare,
+            bench.signals,
+            {"displacement": reach, "speed": reach * 2.0 * np.pi * first},
+            length_m(bench.values),
         ).items()
     }
     out.linear_stage = bool(bench.linear_stage)

@@ -7,9 +7,10 @@ import numpy as np
 from vibroimpact.effects.places import STOP
 
 
-def scales(model, signals, null):
+def scales(model, signals, null, tube_m):
     """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at
-    the drive of the highest fit record, m and m/s.
+    the drive of the highest fit record, m and m/s; tube_m: length of the tube, None of another
+    structure.
     """
     drive = model.drive_shapes[:, 0]
     elastic = model.omega > 0.0
@@ -52,6 +53,7 @@ def scales(model, signals, null):
         "gap_force": gap / held,
         "mass": mass,
         "mass_per_length": mass / length,
+        "tube_length": np.nan if tube_m is None else tube_m,
         "tube_translation": stiffness,
         "tube_rotation": stiffness * length**2 / 100.0,
         "tube_damping": damping,

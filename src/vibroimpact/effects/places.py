@@ -18,6 +18,7 @@ STOP = "clearance_stop"  # name of the support that the effect clearance adds
 SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is split
 # of a place on a tube that no point of it names: its arc length, arc_355_6mm is at 355.6 mm
 ARC, MILLIMETRES = "arc_", "mm"
+ALONG = "along_tube"  # of an effect whose place on the tube is one of its parameters
 TUBES: dict[str, type[UTube] | type[Path]] = {"u_tube": UTube, "path": Path}
 
 
@@ -103,7 +104,7 @@ def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
     if mass_kg == 0.0:
         return values
     entry = {"point": point, "mass_kg": mass_kg}
-    return with_entry(_with_place(values, point), "masses", name, entry)
+    return with_entry(with_place(values, point), "masses", name, entry)
 
 
 def between(arc_length_m: float) -> str:
@@ -124,7 +125,14 @@ def arc_length_m(location: str) -> float | None:
 def place_in_words(location: str) -> str:
     """Return a location as a reader is told it: a place that no point names by where it is."""
     arc_length = arc_length_m(location)
-    return location if arc_length is None else f"{arc_length:.4f} m along the tube"
+    if arc_length is None:
+        return "a place along the tube" if location == ALONG else location
+    return f"{arc_length:.4f} m along the tube"
+
+
+def length_m(values: Values) -> float | None:
+    """Return the length in m of a tube along its centreline, None of another structure."""
+    return _centreline(values).length if values["structure"]["kind"] in TUBES else None
 
 
 def arc_lengths(values: Values, points: Sequence[str]) -> list[float]:
@@ -135,7 +143,7 @@ def arc_lengths(values: Values, points: Sequence[str]) -> list[float]:
     return [line.locate(values["points"][point], point) for point in points]
 
 
-def _with_place(values: Values, location: str) -> Values:
+def with_place(values: Values, location: str) -> Values:
     """Return the configuration with a named point at a location between those that it has."""
     arc_length = arc_length_m(location)
     if location in values["points"] or arc_length is None:
@@ -156,19 +164,29 @@ def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
 
 
 def across(values: Values, point: str) -> Sequence[float]:
-    """Return the direction of an element at a point: that of the force."""
-    return values["excitation"]["direction"]
+    """Return the direction of an element at a point: that of the force, on a tube turned with its
+    section, as the motion that the force drives is.
+    """
+    if values["structure"]["kind"] not in TUBES:
+        return values["excitation"]["direction"]
+    angle = np.deg2rad(across_deg(values, point))
+    first, second = _section(values, point)
+    return [float(x) for x in np.cos(angle) * first + np.sin(angle) * second]
 
 
 def across_deg(values: Values, point: str) -> float:
-    """Return the angle in degrees, in a tube's section at a point, of the direction of the force:
-    see supports for the axes, which turn with the tube.
+    """Return the angle in degrees of the direction of the force in a tube's section at the drive
+    point, at `point` where there is none: see supports for the axes, which turn with the tube.
     """
-    line = _centreline(values)
-    first, second = transverse_directions(
-        line.direction(line.locate(values["points"][point], point))
-    ) @ np.array(across(values, point))
+    drive = values["excitation"].get("point") or point
+    first, second = _section(values, drive) @ np.array(values["excitation"]["direction"])
     return float(np.rad2deg(np.arctan2(second, first)))
+
+
+def _section(values: Values, point: str) -> np.ndarray:
+    """Return (2, 3): the axes of a tube's section at a named point."""
+    line = _centreline(values)
+    return transverse_directions(line.direction(line.locate(values["points"][point], point)))
 
 
 def stations(values: Values, count: int) -> tuple[dict[str, list[float]], float]:

@@ -10,7 +10,10 @@ from vibroimpact.discrepancy.candidates import (
     other_places,
 )
 from vibroimpact.effects.effect import Effect, Values
+from vibroimpact.effects.places import ALONG
+from vibroimpact.effects.registry import EFFECTS
 
+from .first_points import first_points
 from .search import Search
 
 
@@ -48,7 +51,7 @@ def similar_too(search: Search, name: str) -> None:
             and _similar(trial.candidate.effect, leading.effect)
             and (trial.screened > 1 or trial.candidate.location == leading.location)
         ):
-            search.run_first(other, 4)
+            search.run_first(other)
             search.fit(other)
 
 
@@ -76,5 +79,11 @@ def at_its_place(search: Search, name: str) -> None:
     }
     for effect_id in sorted(run & AT_A_POINT):
         other = replace(leading, effect_id=effect_id)
-        search.run_first(other.name, 2 * len(other.effect.parameters))
-        search.fit(other.name)
+        if leading.location == ALONG:
+            there = first_points(other)[: 2 * len(EFFECTS[effect_id].parameters)]
+            there[:, -1] = search.fits[name].unit[-1]
+            if effect_id != leading.effect_id:
+                search.run(other.name, there)
+        else:
+            search.run_first(other.name, 2 * len(other.effect.parameters))
+            search.fit(other.name)

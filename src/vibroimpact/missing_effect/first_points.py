@@ -1,8 +1,10 @@
 """Points at which an explanation is run before anything is known of it."""
 
 import numpy as np
+from scipy.stats import qmc
 
 from vibroimpact.discrepancy.candidates import Candidate
+from vibroimpact.effects.places import ALONG
 
 # By the number of parameters.
 FIRST = {
@@ -12,10 +14,13 @@ FIRST = {
 }
 # Of a vector: first as large as may be seen in both directions, then smaller.
 VECTOR = ((0.75, 0.75), (0.6, 0.4), (0.3, 0.7), (0.5, 0.35))
+EVEN = 8  # of an effect whose place is searched too
 
 
 def first_points(candidate: Candidate) -> np.ndarray:
     """Return (point, parameter): where an explanation is run first."""
     count = len(candidate.effect.parameters)
+    if candidate.location == ALONG:  # even ones, without the corner
+        return qmc.Sobol(count, scramble=False).random(EVEN)[1:]
     vector = count == 2 and len(candidate.signed) == 2
     return np.array(VECTOR if vector else FIRST[count])

@@ -27,7 +27,7 @@ def look_wider(search: Search, count: int) -> None:
     }
     idle = [name for name in alone if not seen_at_all(search.trials[name])]
     for name in idle:
-        search.run_first(name, 4)
+        search.run_first(name)
         search.fit(name)
     may = [
         name

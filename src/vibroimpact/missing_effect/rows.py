@@ -112,6 +112,6 @@ def _effect(candidate, unit, interval, sizes, model):
     return {
         "id": candidate.effect.reported,
         "family": candidate.effect.family,
-        "location": candidate.location,
+        "location": candidate.located(unit, sizes),
         "parameters": parameters,
     }

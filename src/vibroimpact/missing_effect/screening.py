@@ -31,7 +31,7 @@ def screen(search: Search, names: list[str], values: Values) -> None:
                 search.run_screened(other.name, at_all.unit[telling(at_all, search.null.measured)])
     search.learn()
     for name in may_explain(search):
-        search.run_first(name, 4)
+        search.run_first(name)
     search.look()
 
 

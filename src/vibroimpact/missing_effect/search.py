@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
 from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.effects.places import ALONG
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 
@@ -37,8 +38,10 @@ class Search:
         self._run(name, units)
         self.fit(name)
 
-    def run_first(self, name: str, points: int) -> None:
-        """Run an explanation at those of so many of its first points where it was not run."""
+    def run_first(self, name: str, points: int | None = None) -> None:
+        """Run an explanation at those of so many of its first points, all where None, where it was
+        not run.
+        """
         tried = self.trials[name].tried if name in self.trials else []
         first = first_points(candidate_named(name))[:points]
         new = [unit for unit in first if not any(np.array_equal(unit, other) for other in tried)]
@@ -169,16 +172,20 @@ def telling(trial: Trial, rest: np.ndarray) -> int:
     return int(np.lexsort((np.sum(trial.change**2, axis=1), directed(trial, rest)))[-1])
 
 
+ANYWHERE = 5  # places of an effect that is not there
 BELOW = -0.2  # of the searched range: where an effect is nothing whose size is searched in its
 # logarithm from little to much
 
 
 def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray | None:
-    """Return (parameter,) normalised where an explanation changes nothing, None where its range
-    holds no such place and does not lead to one.
+    """Return (point, parameter) normalised where an explanation changes nothing, wherever it sits;
+    None where its range holds no such place and does not lead to one.
     """
     unit = candidate.neutral_unit(scales)
     for number, parameter in enumerate(candidate.effect.parameters):
         if parameter.log and parameter.neutral == 0.0:
             unit[number] = BELOW
-    return unit if np.isfinite(unit).all() else None
+    rows = np.tile(unit, (ANYWHERE if candidate.location == ALONG else 1, 1))
+    if candidate.location == ALONG:
+        rows[:, -1] = np.linspace(0.0, 1.0, ANYWHERE)
+    return rows if np.isfinite(rows).all() else None

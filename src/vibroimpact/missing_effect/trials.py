@@ -94,9 +94,9 @@ class Trial:
 
 class Emulator:
     """The change (value,) at any parameters, by a Gaussian process that all values share, of the
-    length that predicts left-out runs best; neutral (parameter,): where nothing changes, None: far
-    from all runs the change is their mean then, 0 where it is not centred; looked: EffectDirections
-    along which runs are known, None: along all.
+    lengths that predict left-out runs best; neutral (..., parameter): where nothing changes, None:
+    far from all runs the change is their mean then, 0 where it is not centred; looked:
+    EffectDirections along which runs are known, None: along all.
 
     directions (direction, value) are orthonormal: those that the runs, smoothed, lie along; excess
     (direction,): by how much more than the null a measurement scatters along them; run (run,
@@ -125,9 +125,10 @@ class Emulator:
             scatter = scatter * own.mean() / trial.scatter_of_all(near)
         centre = np.zeros(change.shape[1])
         if neutral is not None:
+            neutral = np.atleast_2d(neutral)
             unit = np.vstack([unit, neutral])
-            change = np.vstack([change, centre])
-            scatter = np.append(scatter, 0.01 * scatter.min())
+            change = np.vstack([change, np.zeros((len(neutral), change.shape[1]))])
+            scatter = np.append(scatter, np.full(len(neutral), 0.01 * scatter.min()))
         elif centred:
             centre = np.average(change, axis=0, weights=1.0 / scatter)
         size = np.sum(change**2, axis=1) - scatter
