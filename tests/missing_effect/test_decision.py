@@ -45,7 +45,7 @@ def fit_at(laws=(0.0, -9.0, -9.0)):
     )
 
 
-def decided(linear=(), fits=None, **chances):
+def decided(linear=(), fits=None, families=None, **chances):
     names = {"friction": FRICTION, "damping": DAMPING, "crossley": CROSSLEY}
     chances = {
         names.get(name.removesuffix("_beside"), name.replace("_", " "))
@@ -53,7 +53,15 @@ def decided(linear=(), fits=None, **chances):
         for name, chance in chances.items()
     }
     known = {name: fit_at() for name in names.values()} | (fits or {})
-    return decide(chances, known, lambda _: ESTIMATE, list(linear), before=90.0, values=9)
+    return decide(
+        chances,
+        known,
+        lambda _: ESTIMATE,
+        list(linear),
+        before=90.0,
+        values=9,
+        families=families or {},
+    )
 
 
 def test_one_explanation_above_nine_in_ten_is_named():
@@ -68,6 +76,18 @@ def test_laws_that_share_the_probability_are_ambiguous():
     assert found.verdict == "ambiguous"
     assert found.ambiguity == [["contact_damping"], ["hunt_crossley"]]
     assert sum(found.probabilities) >= 0.9
+
+
+def test_family_is_named_where_none_of_its_laws_fits():
+    chances = {"nothing": 0.01, "something_else": 0.94, "damping": 0.05, "friction": 0.01}
+    families = {"friction": 0.97, "contact damping": 0.03}
+    found = decided(**chances, families=families)
+    assert (found.verdict, found.ambiguity) == ("partly_explained", [["dry_friction"]])
+    assert found.family_alone and not found.chosen.law_fits
+    assert found.probabilities == [0.97] == [found.chosen.probability]
+    nearer = {FRICTION: replace(fit_at(), left=95.0)}  # no run of it is nearer than nothing
+    assert decided(**chances, families=families, fits=nearer).verdict == "unknown"
+    assert decided(**chances, families={"friction": 0.6, "drag": 0.4}).verdict == "unknown"
 
 
 def test_nothing_and_something_else_name_nothing():

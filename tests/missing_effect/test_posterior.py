@@ -88,3 +88,12 @@ def test_two_that_only_their_scatter_tells_apart_share():
 def test_a_measurement_within_chance_needs_no_explanation():
     assert not searched(chance()).null.differs
     assert searched(chance() + 15.0 * DIRECTIONS[FRICTION]).null.differs
+
+
+def test_family_that_holds_most_is_told_though_no_law_of_it_fits():
+    measured = chance() + 40.0 * DIRECTIONS[FRICTION] + 25.0 * DIRECTIONS["none of them"]
+    families = searched(measured).of_families()
+    assert next(iter(families)) == "friction" and families["friction"] > 0.99
+    assert sum(families.values()) == pytest.approx(1.0)
+    neither = searched(chance() + 40.0 * DIRECTIONS["none of them"]).of_families()
+    assert max(neither.values()) < 0.9

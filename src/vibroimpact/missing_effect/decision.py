@@ -46,6 +46,7 @@ class Decision:
     something_else: float
     rows: list
     linear_ids: tuple = ()
+    family_alone: bool = False
 
 
 def decide(
@@ -55,13 +56,15 @@ def decide(
     linear: Sets,
     before: float,
     values: int,
+    families: Chances,
 ) -> Decision:
     """Return the Decision of {name: log probability} (probabilities.posterior) and {name: Fit}.
 
     estimated: what returns (unit, interval) of an explanation's parameters; before: chi-square of
     so many values with nothing added; linear: [(ids, probability)] of what the lowest record told,
     the most probable first, empty where it told nothing: every explanation is beside it, or in its
-    place.
+    place; families {family: probability} that what is missing is like one, the most probable
+    first.
     """
     chances = {name: float(np.exp(chance)) for name, chance in chances.items()}
     rows = explanations(chances)
@@ -86,6 +89,12 @@ def decide(
         verdict = "partly_explained"
     else:
         verdict = "named" if len(together) == 1 else "ambiguous"
+    family_alone = False
+    if verdict == "unknown" and other > 0.5:
+        chosen = of_family(rows, fits, estimated, before, families)
+        if chosen is not None:
+            family_alone, verdict = True, "partly_explained"
+            together = [(tuple(chosen.candidate.ids), chosen.probability)]
     told = verdict in ("named", "ambiguous", "partly_explained")
     return Decision(
         verdict,
@@ -96,7 +105,33 @@ def decide(
         other,
         rows,
         linear[0][0] if linear else (),
+        family_alone,
     )
+
+
+def of_family(
+    rows: list[tuple[str, float, float]],
+    fits: dict[str, Fit],
+    estimated: Estimate,
+    before: float,
+    families: Chances,
+) -> Chosen | None:
+    """Return the Chosen that stands for the family that what is missing is like: of its laws that
+    which leaves least; None where no family is probable enough, or no law of it brings the model
+    nearer.
+    """
+    family = next((name for name, chance in families.items() if chance > constants.NAMED), None)
+    own = [
+        name
+        for name, *_ in rows
+        if "+" not in name
+        and candidate_named(name).effect.family == family
+        and fits[name].left < before
+    ]
+    if not own:
+        return None
+    name = min(own, key=lambda name: fits[name].left)
+    return Chosen(candidate_named(name), *estimated(name), False, families[family])
 
 
 def withdrawn_decision(decision: Decision) -> Decision:

@@ -83,6 +83,7 @@ class Engine:
             linear_sets(prepared),
             float(null.measured @ null.measured),
             null.values,
+            search.of_families(),
         )
         with self.stage("verification"):
             given, whole = self.whole_benches(prepared)

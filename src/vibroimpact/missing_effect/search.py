@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.special import logsumexp
 
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
@@ -79,9 +80,11 @@ class Search:
                 self.emulator(part.name) for part in (trial.candidate.first, trial.candidate.second)
             )
             return PairEmulator(trial, first, second, self.looked)
-        near = trial.drawn_in(FARTHEST * np.linalg.norm(self.null.measured))
         neutral = neutral_unit(trial.candidate, self.scales)
-        return Emulator(near, neutral, self.looked, answer=self.null.measured)
+        return Emulator(self._drawn_in(trial), neutral, self.looked, answer=self.null.measured)
+
+    def _drawn_in(self, trial):
+        return trial.drawn_in(FARTHEST * float(np.linalg.norm(self.null.measured)))
 
     def estimate(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Return (unit, interval) of the parameters of an explanation: see parameters.estimate."""
@@ -117,6 +120,33 @@ class Search:
             np.concatenate([[], *(trial.noise[:count] for trial, count in trials)]),
             self.null,
         )
+
+    def of_families(self) -> dict[str, float]:
+        """Return {family: probability}, the most probable first, that what is missing looks like
+        what the runs of a family change, whatever its law; each alone, and as probable as another
+        before anything was run.
+        """
+        families: dict[str, list[Trial]] = {}
+        for trial in self.trials.values():
+            if not isinstance(trial.candidate, Pair) and len(trial.noise):
+                families.setdefault(trial.candidate.effect.family, []).append(self._drawn_in(trial))
+        found = {
+            family: EffectDirections.of(
+                np.vstack([trial.change for trial in trials]),
+                np.concatenate([trial.noise for trial in trials]),
+                self.null,
+            )
+            for family, trials in families.items()
+        }
+        nothing = np.zeros(self.null.values)
+        evidence = {
+            family: float(SomethingElse(along, self.null).log_evidence(nothing))
+            for family, along in found.items()
+            if len(along.share)
+        }
+        whole = logsumexp(list(evidence.values())) if evidence else 0.0
+        rows = {family: float(np.exp(known - whole)) for family, known in evidence.items()}
+        return dict(sorted(rows.items(), key=lambda row: -row[1]))
 
     def look(self) -> None:
         """Look along the directions of all runs so far, and fit every explanation again.

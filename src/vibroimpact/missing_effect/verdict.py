@@ -42,7 +42,7 @@ def write(
     """
     (decision, closed), bench = found, search.bench
     withdrawn = None
-    if closed.worse and decision.chosen is not None:
+    if decision.chosen is not None and (closed.worse or (decision.family_alone and closed.partial)):
         withdrawn = {
             "effects": effects_of(prepared, decision, bench.bare),
             "misfit": closed.misfit,
