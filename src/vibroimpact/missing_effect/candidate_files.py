@@ -13,25 +13,26 @@ from .evidence import Likelihoods
 from .search import Search
 
 POINTS = 41  # along a parameter
+WRITTEN = 8
 
 
 def write(search: Search, decision: Decision, folder: Path) -> None:
-    """Write the file of every explanation of a Search whose runs go beyond screening, and of the
-    one that a Decision chose.
+    """Write the files of the most probable explanations of a Search whose runs go beyond screening,
+    WRITTEN of them.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for name, chance, _ in decision.rows:
-        trial = search.trials[name]
-        if len(trial.noise) > trial.screened:
-            content = {
-                "ids": trial.candidate.ids,
-                "name": name,
-                "gain": search.fits[name].log_evidence,
-                "probability": chance,
-                **parameters_of(search, name),
-            }
-            file = f"{name.replace('@', '_at_').replace('+', '_and_')}.json"
-            write_text(json.dumps(plain_values(content), indent=1), folder / file)
+    trials = search.trials
+    raced = [row for row in decision.rows if len(trials[row[0]].noise) > trials[row[0]].screened]
+    for name, chance, _ in raced[:WRITTEN]:
+        content = {
+            "ids": trials[name].candidate.ids,
+            "name": name,
+            "gain": search.fits[name].log_evidence,
+            "probability": chance,
+            **parameters_of(search, name),
+        }
+        file = f"{name.replace('@', '_at_').replace('+', '_and_')}.json"
+        write_text(json.dumps(plain_values(content), indent=1), folder / file)
 
 
 def parameters_of(search: Search, name: str) -> dict[str, Any]:

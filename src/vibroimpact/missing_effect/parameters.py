@@ -8,8 +8,8 @@ from .evidence import Fit, Likelihoods
 from .null import Null
 from .trials import AnyEmulator
 
-DRAWS = 512
-MOVES = 4  # of every sample at each temperature
+DRAWS = 256
+MOVES = 3  # of every sample at each temperature
 
 
 def estimate(emulator: AnyEmulator, null: Null, found: Fit) -> tuple[np.ndarray, np.ndarray]:
