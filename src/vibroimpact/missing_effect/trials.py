@@ -94,7 +94,7 @@ class Trial:
 
 class Emulator:
     """The change (value,) at any parameters, by a Gaussian process that all values share, of the
-    lengths that predict left-out runs best; neutral (..., parameter): where nothing changes, None:
+    lengths that make the runs most likely; neutral (..., parameter): where nothing changes, None:
     far from all runs the change is their mean then, 0 where it is not centred; looked:
     EffectDirections along which runs are known, None: along all.
 
@@ -119,7 +119,7 @@ class Emulator:
         self.run = unit
         self.periodic = list(trial.candidate.periodic)
         scatter = trial.noise * change.shape[1]
-        near = np.sqrt(_nearness(change, scatter, answer))
+        near = _nearness(change, scatter, answer)
         if looked is not None:
             own = trial.scatter(looked.along, near)
             scatter = scatter * own.mean() / trial.scatter_of_all(near)
@@ -134,7 +134,7 @@ class Emulator:
         size = np.sum(change**2, axis=1) - scatter
         self.size = max(float(size.mean()), float(scatter.mean()) * LEAST_SIGNAL)
         self.unit, self.ratio = unit, scatter / self.size + 1.0e-6
-        self._learn(change - centre, _nearness(change, scatter, answer))
+        self._learn(change - centre)
         smooth = self._kernel(unit, unit) @ self.inverse @ (change - centre) + centre
         _, sizes, directions = linalg.svd(smooth, full_matrices=False)
         kept = sizes**2 > NEGLIGIBLE * np.sum(sizes**2)
@@ -146,29 +146,31 @@ class Emulator:
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
         self.excess = np.maximum(trial.scatter(self.directions, near) - 1.0, 0.0)
 
-    def _learn(self, change, weight):
-        """Take the length along each parameter that predicts left-out runs best: a resonance turns
-        within a twentieth of a range along which a mass does little. Of few runs, a short one for
-        all: they tell of no length, and a long one would tell of all that was not run.
+    def _learn(self, change):
+        """Take the length along each parameter that makes the runs most likely (Rasmussen and
+        Williams 2006, chapter 5): a resonance turns within a twentieth of a range along which a
+        mass does little. Of few runs, a short one for all: they tell of no length, and a long one
+        would tell of all that was not run.
         """
         count = self.unit.shape[1]
         known = len(change) >= constants.FEW_RUNS * count
         tried = constants.LENGTHS if known else constants.FEW_LENGTHS
         rows = [np.full(count, length) for length in tried]
-        best = min(rows, key=lambda row: self._error(row, change, weight))
+        best = min(rows, key=lambda row: self._unlikely(row, change))
         for number in range(count if known and count > 1 else 0):
             rows = [np.where(np.arange(count) == number, length, best) for length in tried]
-            best = min(rows, key=lambda row: self._error(row, change, weight))
-        self._error(best, change, weight)
+            best = min(rows, key=lambda row: self._unlikely(row, change))
+        self._unlikely(best, change)
 
-    def _error(self, length, change, weight):
-        """Return the sum of squares by which left-out runs, with weight (run,), are missed with
-        length (parameter,), which is kept.
+    def _unlikely(self, length, change):
+        """Return how unlikely changes (run, value) are with length (parameter,), which is kept:
+        -2 log likelihood of one of as many directions as they lie along.
         """
         self.length = length
-        self.inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
-        missed = self.inverse @ change / np.diag(self.inverse)[:, None]
-        return np.sum(weight * np.sum(missed**2, axis=1))
+        covariance = self._kernel(self.unit, self.unit) + np.diag(self.ratio)
+        self.inverse = linalg.inv(covariance)
+        square = float(np.sum(change * (self.inverse @ change)))
+        return square / self.size + np.linalg.slogdet(covariance)[1]
 
     def _kernel(self, one, other):
         distance = one[:, None] - other[None]
@@ -205,11 +207,11 @@ class Emulator:
 
 def _nearness(change, scatter, answer):
     """Return (run,): 1 of the run of changes (run, value) nearest to an answer (value,), less of
-    others; 1 of all where it is None.
+    others, by their distance; 1 of all where it is None.
     """
     if answer is None:
         return np.ones(len(change))
-    away = np.sum((change - answer) ** 2, axis=1) + scatter
+    away = np.sqrt(np.sum((change - answer) ** 2, axis=1) + scatter)
     return away.min() / away
 
 

@@ -42,7 +42,8 @@ def write(
     """
     (decision, closed), bench = found, search.bench
     withdrawn = None
-    if decision.chosen is not None and (closed.worse or (decision.family_alone and closed.partial)):
+    stands_for_family = decision.family_alone and closed.partial
+    if decision.chosen is not None and (closed.no_part or stands_for_family):
         withdrawn = {
             "effects": effects_of(prepared, decision, bench.bare),
             "misfit": closed.misfit,

@@ -100,8 +100,18 @@ class Closing:
     @property
     def partial(self) -> bool:
         """Return whether the completed model leaves most of the excess on the judged records."""
+        return self._closes_less_than(constants.CLOSED)
+
+    @property
+    def no_part(self) -> bool:
+        """Return whether the completed model leaves so much that what is added is no part of what
+        is missing.
+        """
+        return self.worse or self._closes_less_than(1.0 - constants.EXPLAINED)
+
+    def _closes_less_than(self, wanted):
         share = self.misfit[self.judged]["closed_fraction"]
-        return share is not None and share < constants.CLOSED
+        return share is not None and share < wanted
 
 
 def closing(
