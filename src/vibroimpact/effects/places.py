@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.config.structure import Path, UTube
 from vibroimpact.geometry.centreline import Centreline, build_centreline
-from vibroimpact.geometry.directions import transverse_directions
+from vibroimpact.geometry.directions import transverse_directions, unit_vector
 
 from .effect import Values
 
@@ -164,29 +164,43 @@ def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
 
 
 def across(values: Values, point: str) -> Sequence[float]:
-    """Return the direction of an element at a point: that of the force, on a tube turned with its
-    section, as the motion that the force drives is.
+    """Return the direction of an element at a point: that of the force; on a tube, as the motion
+    that the force drives there: carried from the drive point along the tube, perpendicular to it.
     """
     if values["structure"]["kind"] not in TUBES:
         return values["excitation"]["direction"]
-    angle = np.deg2rad(across_deg(values, point))
-    first, second = _section(values, point)
-    return [float(x) for x in np.cos(angle) * first + np.sin(angle) * second]
+    return [float(x) for x in _carried(values, point)]
 
 
 def across_deg(values: Values, point: str) -> float:
-    """Return the angle in degrees of the direction of the force in a tube's section at the drive
-    point, at `point` where there is none: see supports for the axes, which turn with the tube.
+    """Return the angle in degrees of that direction in a tube's section at a point: see supports
+    for the axes, which turn with the tube.
     """
-    drive = values["excitation"].get("point") or point
-    first, second = _section(values, drive) @ np.array(values["excitation"]["direction"])
+    line = _centreline(values)
+    axes = transverse_directions(line.direction(line.locate(values["points"][point], point)))
+    first, second = axes @ _carried(values, point)
     return float(np.rad2deg(np.arctan2(second, first)))
 
 
-def _section(values: Values, point: str) -> np.ndarray:
-    """Return (2, 3): the axes of a tube's section at a named point."""
+CARRIED = 200  # steps along a tube
+ALONG_IT = 1.0e-6  # sine of the angle between a force and the tube that it pulls at
+
+
+def _carried(values, point):
+    """Return (3,): the direction of the force, turned with a tube from the drive point, or from
+    `point` where there is none; of a force along the tube, the first direction across it.
+    """
     line = _centreline(values)
-    return transverse_directions(line.direction(line.locate(values["points"][point], point)))
+    drive = values["excitation"].get("point") or point
+    ends = [line.locate(values["points"][name], name) for name in (drive, point)]
+    direction = np.array(values["excitation"]["direction"], dtype=float)
+    first = line.direction(ends[0])
+    if np.linalg.norm(np.cross(direction, first)) < ALONG_IT * np.linalg.norm(direction):
+        direction = transverse_directions(first)[0]
+    for at in np.linspace(*ends, CARRIED):
+        tangent = line.direction(at)
+        direction = unit_vector(direction - (direction @ tangent) * tangent)
+    return direction
 
 
 def stations(values: Values, count: int) -> tuple[dict[str, list[float]], float]:
