@@ -66,7 +66,7 @@ def test_likelihood_is_that_of_a_normal_law(law):
     assert chance == pytest.approx(wanted - nothing, abs=1.0e-8)
 
 
-def test_what_an_explanation_scatters_by_counts_as_what_is_not_known():
+def test_own_scatter_counts_as_what_is_not_known():
     """A measurement far along the direction that its own seeds scatter along is not so unlikely."""
     null = null_with(20.0 * AXES[0])
     wanted = log_likelihoods(Known(12.0, variance=3.0), [[0.7]], null, 0.0)[0]

@@ -120,7 +120,7 @@ def of_family(
     which leaves least; None where no family is probable enough, or no law of it brings the model
     nearer.
     """
-    family = next((name for name, chance in families.items() if chance > constants.NAMED), None)
+    family = next((name for name, chance in families.items() if chance > constants.NAMED), "")
     own = [
         name
         for name, *_ in rows
