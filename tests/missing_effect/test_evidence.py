@@ -160,7 +160,7 @@ def test_length_is_that_of_each_parameter():
     units = qmc.Sobol(2, seed=1).random(32)
     changes = 30.0 * np.sin(units[:, :1] / 0.06) * AXES[0] + 5.0 * units[:, 1:] * AXES[1]
     emulator = Emulator(trial_of(units, changes, 1.0e-4), answer=changes[3])
-    assert emulator.length[0] < 0.1 < 0.5 < emulator.length[1]
+    assert emulator.length[0] < 0.2 < 0.5 < emulator.length[1]
 
 
 def test_two_effects_add_until_a_run_corrects_the_sum():

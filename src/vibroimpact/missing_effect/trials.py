@@ -119,10 +119,10 @@ class Emulator:
         self.run = unit
         self.periodic = list(trial.candidate.periodic)
         scatter = trial.noise * change.shape[1]
-        near = _nearness(change, scatter, answer)
+        counts = _nearness(change, scatter, answer)
         if looked is not None:
-            own = trial.scatter(looked.along, near)
-            scatter = scatter * own.mean() / trial.scatter_of_all(near)
+            own = trial.scatter(looked.along, counts)
+            scatter = scatter * own.mean() / trial.scatter_of_all(counts)
         centre = np.zeros(change.shape[1])
         if neutral is not None:
             neutral = np.atleast_2d(neutral)
@@ -134,7 +134,8 @@ class Emulator:
         size = np.sum(change**2, axis=1) - scatter
         self.size = max(float(size.mean()), float(scatter.mean()) * LEAST_SIGNAL)
         self.unit, self.ratio = unit, scatter / self.size + 1.0e-6
-        self._learn(change - centre)
+        near = np.argsort(-_nearness(change, scatter, answer), kind="stable")
+        self._learn(change - centre, near[: 2 * constants.FEW_RUNS * unit.shape[1]])
         smooth = self._kernel(unit, unit) @ self.inverse @ (change - centre) + centre
         _, sizes, directions = linalg.svd(smooth, full_matrices=False)
         kept = sizes**2 > NEGLIGIBLE * np.sum(sizes**2)
@@ -144,32 +145,36 @@ class Emulator:
             directions[kept] if looked is None else directions[kept] @ looked.along
         )
         self.signal = self.size * sizes[kept] ** 2 / np.sum(sizes[kept] ** 2)
-        self.excess = np.maximum(trial.scatter(self.directions, near) - 1.0, 0.0)
+        self.excess = np.maximum(trial.scatter(self.directions, counts) - 1.0, 0.0)
 
-    def _learn(self, change):
-        """Take the length along each parameter that makes the runs most likely (Rasmussen and
-        Williams 2006, chapter 5): a resonance turns within a twentieth of a range along which a
-        mass does little. Of few runs, a short one for all: they tell of no length, and a long one
-        would tell of all that was not run.
+    def _learn(self, change, near):
+        """Take the length along each parameter that makes the runs near the answer, of numbers near
+        (run,), most likely (Rasmussen and Williams 2006, chapter 5): a resonance turns within a
+        twentieth of a range along which a mass does little. Of few runs, a short one for all: they
+        tell of no length, and a long one would tell of all that was not run.
         """
         count = self.unit.shape[1]
         known = len(change) >= constants.FEW_RUNS * count
-        tried = constants.LENGTHS if known else constants.FEW_LENGTHS
+        apart = 0.5 * count / len(change)  # shorter ones would tell of nothing between the runs
+        tried = [length for length in constants.LENGTHS if length > apart]
+        if not known:
+            tried = list(constants.FEW_LENGTHS)
         rows = [np.full(count, length) for length in tried]
-        best = min(rows, key=lambda row: self._unlikely(row, change))
+        best = min(rows, key=lambda row: self._unlikely(row, change, near))
         for number in range(count if known and count > 1 else 0):
             rows = [np.where(np.arange(count) == number, length, best) for length in tried]
-            best = min(rows, key=lambda row: self._unlikely(row, change))
-        self._unlikely(best, change)
+            best = min(rows, key=lambda row: self._unlikely(row, change, near))
+        self.length = best
+        self.inverse = linalg.inv(self._kernel(self.unit, self.unit) + np.diag(self.ratio))
 
-    def _unlikely(self, length, change):
-        """Return how unlikely changes (run, value) are with length (parameter,), which is kept:
-        -2 log likelihood of one of as many directions as they lie along.
+    def _unlikely(self, length, change, near):
+        """Return how unlikely changes (run, value) of some of the runs are with length
+        (parameter,): -2 log likelihood of one of as many directions as they lie along.
         """
         self.length = length
-        covariance = self._kernel(self.unit, self.unit) + np.diag(self.ratio)
-        self.inverse = linalg.inv(covariance)
-        square = float(np.sum(change * (self.inverse @ change)))
+        unit, change = self.unit[near], change[near]
+        covariance = self._kernel(unit, unit) + np.diag(self.ratio[near])
+        square = float(np.sum(change * linalg.solve(covariance, change, assume_a="pos")))
         return square / self.size + np.linalg.slogdet(covariance)[1]
 
     def _kernel(self, one, other):
