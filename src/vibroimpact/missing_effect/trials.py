@@ -174,7 +174,7 @@ class Emulator:
         self.length = length
         unit, change = self.unit[near], change[near]
         covariance = self._kernel(unit, unit) + np.diag(self.ratio[near])
-        square = float(np.sum(change * linalg.solve(covariance, change, assume_a="pos")))
+        square = float(np.sum(change * np.linalg.solve(covariance, change)))
         return square / self.size + np.linalg.slogdet(covariance)[1]
 
     def _kernel(self, one, other):
