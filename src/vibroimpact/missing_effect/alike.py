@@ -37,41 +37,46 @@ def laws_of(search: Search, name: str) -> list[str]:
     ]
 
 
-def similar_too(search: Search, name: str) -> None:
-    """Run what has a signature like a leading explanation's at as many first points as may be: at
-    two, a law may be as good as rigid, or do nothing.
+def similar_too(search: Search, name: str) -> bool:
+    """Run what has a signature like a leading explanation's at as many first points as may be,
+    return whether there is any: at two, a law may be as good as rigid, or do nothing.
     """
     leading = candidate_named(name)
     if isinstance(leading, Pair):
-        return
-    for other, trial in search.trials.items():
-        if (
-            "+" not in other
-            and not trial.refined
-            and _similar(trial.candidate.effect, leading.effect)
-            and (trial.screened > 1 or trial.candidate.location == leading.location)
-        ):
-            search.run_first(other)
-            search.fit(other)
+        return False
+    found = [
+        other
+        for other, trial in search.trials.items()
+        if "+" not in other
+        and not trial.refined
+        and _similar(trial.candidate.effect, leading.effect)
+        and (trial.screened > 1 or trial.candidate.location == leading.location)
+    ]
+    for other in found:
+        search.run_first(other)
+        search.fit(other)
+    return bool(found)
 
 
-def elsewhere_too(search: Search, values: Values, name: str) -> None:
-    """Run a leading explanation at other places: of an effect at a point at the other points, of
-    one at all supports at each of them alone.
+def elsewhere_too(search: Search, values: Values, name: str) -> bool:
+    """Run a leading explanation at other places, return whether there are any: of an effect at a
+    point the other points, of one at all supports each of them alone.
     """
     candidate, unit = candidate_named(name), search.fits[name].unit
-    for other in [*other_places(candidate, values), *elsewhere(candidate, values)]:
-        if other.name not in search.trials:
-            search.run(other.name, unit)
+    others = [*other_places(candidate, values), *elsewhere(candidate, values)]
+    new = [other.name for other in others if other.name not in search.trials]
+    for other in new:
+        search.run(other, unit)
+    return bool(new)
 
 
-def at_its_place(search: Search, name: str) -> None:
+def at_its_place(search: Search, name: str) -> bool:
     """Run every effect at a point, of those that were run elsewhere, where a leading one is found:
-    a stop, a spring or a rubbing there may each look like another.
+    a stop, a spring or a rubbing there may each look like another. Return whether it is one.
     """
     leading = candidate_named(name)
     if isinstance(leading, Pair) or leading.effect_id not in AT_A_POINT:
-        return
+        return False
     run = {
         trial.candidate.effect_id
         for trial in search.trials.values()
@@ -87,3 +92,4 @@ def at_its_place(search: Search, name: str) -> None:
         else:
             search.run_first(other.name, 2 * len(other.effect.parameters))
             search.fit(other.name)
+    return True

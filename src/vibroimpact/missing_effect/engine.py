@@ -124,14 +124,13 @@ class Engine:
         race.race(search, self.spent)
         search.look()
         leading = race.leaders(search, LEADING)
-        for name in leading:
-            alike.similar_too(search, name)
-        for name in leading[:1]:
-            alike.elsewhere_too(search, search.bench.values, name)
+        new = [alike.similar_too(search, name) for name in leading]
+        new += [alike.elsewhere_too(search, search.bench.values, name) for name in leading[:1]]
+        if any(new):
             race.race(search, self.spent)
         for name in race.leaders(search, 1):
-            alike.at_its_place(search, name)
-            race.race(search, self.spent)
+            if alike.at_its_place(search, name):
+                race.race(search, self.spent)
         for name in race.leaders(search, 1):
             race.race(search, self.spent, laws=alike.laws_of(search, name))
 
