@@ -7,7 +7,12 @@ import pytest
 
 from tests.white_null import white_null
 from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.missing_effect.alike import at_its_place, laws_of, similar_too
+from vibroimpact.missing_effect.alike import (
+    at_its_place,
+    elsewhere_too,
+    laws_of,
+    similar_too,
+)
 from vibroimpact.missing_effect.effort import Effort
 from vibroimpact.missing_effect.first_points import first_points
 from vibroimpact.missing_effect.race import leaders, look_wider, race
@@ -18,7 +23,15 @@ VALUES, NOISE = 200, 1.0e-2
 AXES = np.linalg.qr(np.random.default_rng(9).standard_normal((VALUES, 6)))[0].T
 STOP_THERE = "clearance@span_1"
 STIFFNESS, HERTZ, FRICTION = "contact_stiffness@all", "hertz@all", "dry_friction@all"
-SCALES = ("one", "contact_stiffness", "hertz", "displacement", "tube_translation", "cubic")
+SCALES = (
+    "one",
+    "tube_length",
+    "contact_stiffness",
+    "hertz",
+    "displacement",
+    "tube_translation",
+    "cubic",
+)
 SPENT = Effort(compared_s=10.0, rounds=8, width=3, pairs=2)
 
 
@@ -111,3 +124,18 @@ def test_effects_at_a_point_are_run_where_one_leads(searched):
     }
     at_its_place(searched, STIFFNESS)
     assert "cubic_stiffness@all" not in searched.trials
+
+
+def test_an_effect_is_tried_at_the_other_end_of_a_tube(searched):
+    spring, rubbing = "cubic_stiffness@along_tube", "coulomb_friction@along_tube"
+    searched.scales |= {"load": 1.0}
+    for name in (spring, rubbing):
+        searched.run_first(name)
+        searched.fit(name)
+    known = len(searched.trials[spring].noise)
+    place = searched.fits[spring].unit[-1]
+    assert elsewhere_too(searched, {}, spring)
+    assert searched.trials[spring].unit[known, -1] == pytest.approx(1.0 - place)
+    assert at_its_place(searched, spring)  # and the other effects where this one is found
+    place = searched.fits[spring].unit[-1]
+    assert searched.trials[rubbing].unit[-2:, -1] == pytest.approx([place, place])

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from vibroimpact.discrepancy.candidates import (
     AT_A_POINT,
     Pair,
@@ -60,9 +62,13 @@ def similar_too(search: Search, name: str) -> bool:
 
 def elsewhere_too(search: Search, values: Values, name: str) -> bool:
     """Run a leading explanation at other places, return whether there are any: of an effect at a
-    point the other points, of one at all supports each of them alone.
+    point the other points, or the place that mirrors it on a tube, whose ends are mostly alike; of
+    one at all supports each of them alone.
     """
     candidate, unit = candidate_named(name), search.fits[name].unit
+    if candidate.location == ALONG:
+        search.run(name, np.append(unit[:-1], 1.0 - unit[-1]))
+        return True
     others = [*other_places(candidate, values), *elsewhere(candidate, values)]
     new = [other.name for other in others if other.name not in search.trials]
     for other in new:
