@@ -13,6 +13,7 @@ from vibroimpact.discrepancy.attach import attach, with_channel_points
 from vibroimpact.discrepancy.candidates import Candidate
 from vibroimpact.discrepancy.scales import scales
 from vibroimpact.discrepancy.signals import signals_of
+from vibroimpact.effects.places import length_m
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.random_force import band_limited_noise
 
@@ -44,12 +45,9 @@ def compared(study_config):
     )
     config = with_channel_points(study_config, campaign)
     model = attach(config, campaign)
-    return (
-        config.model_dump(mode="json"),
-        campaign,
-        model,
-        scales(model, signals_of(campaign), {"displacement": GAP, "speed": 0.03}),
-    )
+    values, moving = config.model_dump(mode="json"), {"displacement": GAP, "speed": 0.03}
+    sizes = scales(model, signals_of(campaign), moving, length_m(values))
+    return values, campaign, model, sizes
 
 
 def differing(one, other):
