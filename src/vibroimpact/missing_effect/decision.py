@@ -71,7 +71,7 @@ def decide(
     nothing, other = chances["nothing"], chances["something else"]
     sets = ambiguity_sets(rows, nothing, linear)
     best = rows[0] if rows and rows[0][1] > nothing else None
-    chosen = None if best is None else chosen_of(best, fits, estimated)
+    chosen = None if best is None or other > 0.5 else chosen_of(best, fits, estimated)
     verdict: Conclusion
     reached, together = smallest(sets)
     if best is None or other > 0.5:
@@ -81,7 +81,6 @@ def decide(
             verdict = "ambiguous" if verdict == "named" and len(together) > 1 else verdict
         else:
             verdict = "unknown" if other > nothing else "none"
-        chosen = None
     elif reached < constants.NAMED:
         verdict = "partly_explained" if rows[0][1] > 0.5 else "unknown"
         chosen = chosen if verdict == "partly_explained" else None
