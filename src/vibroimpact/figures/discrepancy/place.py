@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.effects.places import arc_length_m, place_in_words
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.figures.labels import spread_labels
 from vibroimpact.figures.sheet import Sheet
@@ -46,6 +47,11 @@ class Places:
         location, named = effect.location, self.named()
         if location in named:
             return [named[location]]
+        arc_length = arc_length_m(location)
+        if arc_length is not None and self.line is not None:
+            steps = np.linalg.norm(np.diff(self.line, axis=0), axis=1)
+            along = np.append(0.0, np.cumsum(steps))
+            return [np.array([np.interp(arc_length, along, axis) for axis in self.line.T])]
         known = EFFECTS.get(effect.id)
         if location in ("all", "") and known is not None and known.acts_on == "contact":
             return [*self.supports.values()]
@@ -201,7 +207,7 @@ def _marked(sheet, axes, places, effect, view, columns):
         axes,
         (columns[0], across),
         (columns[1], up),
-        f"{effect.id} at {effect.location or 'all'}",
+        f"{effect.id} at {place_in_words(effect.location or 'all')}",
         color=ORANGE,
         zorder=3 if whole else 5,
         **(
