@@ -123,6 +123,7 @@ def test_half_a_probability_is_part_of_an_explanation():
 def test_linear_effect_is_beside_every_explanation():
     linear = [(("added_mass",), 0.96), (("root_stiffness",), 0.04)]
     alone = decided(linear, nothing=0.97, something_else=0.02, friction=0.01)
+    assert alone.nothing == 0.0  # it is that no more is missing
     assert (alone.verdict, alone.ambiguity) == ("named", [["added_mass"]])
     both = decided(linear, nothing=0.01, something_else=0.02, friction=0.97)
     assert both.ambiguity == [["added_mass", "dry_friction"]]

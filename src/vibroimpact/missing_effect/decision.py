@@ -34,8 +34,9 @@ class Chosen:
 @dataclass(frozen=True)
 class Decision:
     """verdict; chosen: the Chosen, None; ambiguity [[id]] with probabilities (set,); nothing,
-    something_else: probabilities; rows [(name, probability, log probability)] of explanations, the
-    most probable first; linear_ids: what the lowest record told.
+    something_else: probabilities that nothing is missing, or something else; rows [(name,
+    probability, log probability)] of explanations, the most probable first; linear_ids: what the
+    lowest record told; family_alone: what is chosen stands for its family, whose laws do not fit.
     """
 
     verdict: Conclusion
@@ -100,7 +101,7 @@ def decide(
         chosen,
         [list(ids) for ids, _ in together] if told else [],
         [chance for _, chance in together] if told else [],
-        nothing,
+        0.0 if linear else nothing,  # else it is that no more is missing
         other,
         rows,
         linear[0][0] if linear else (),

@@ -32,7 +32,8 @@ def write(folder: Path, search: Search, prepared: Prepared) -> None:
     }
     if search.fits:
         chances = posterior(search)
-        content["probability_none"] = np.exp(chances["nothing"])
+        told = prepared.adopted is not None  # by the lowest record: "nothing" is that no more is
+        content["probability_none"] = 0.0 if told else np.exp(chances["nothing"])
         content["probability_something_else"] = np.exp(chances["something else"])
         content["effects"] = [
             {"ids": list(ids), "probability": chance} for ids, chance in by_effect(chances)
