@@ -77,19 +77,21 @@ class Trial:
         Hard or sticking contact may scatter several times as much as the null along what it
         changes.
         """
-        squares, count = np.full(len(along), SUPPOSED), SUPPOSED
-        for row, share in zip(self.deviations, weight, strict=True):
-            squares += share * np.sum((row @ along.T) ** 2, axis=0)
-            count += share * max(len(row) - 1, 0)
-        return squares / count
+        return self._pooled(
+            [np.sum((row @ along.T) ** 2, axis=0) for row in self.deviations], weight
+        )
 
     def scatter_of_all(self, weight: np.ndarray) -> float:
         """Return the same, the mean of all values."""
-        squares, count = SUPPOSED, SUPPOSED
-        for row, share in zip(self.deviations, weight, strict=True):
-            squares += share * float(np.sum(row**2)) / self.change.shape[1]
-            count += share * max(len(row) - 1, 0)
-        return squares / count
+        return float(
+            self._pooled([np.mean(np.sum(row**2, axis=0)) for row in self.deviations], weight)
+        )
+
+    def _pooled(self, squares, weight):
+        """Return a variance of sums of squares [of each run], pooled with what is supposed."""
+        free = np.array([max(len(row) - 1, 0) for row in self.deviations])
+        known = sum(share * row for share, row in zip(weight, squares, strict=True))
+        return (SUPPOSED + known) / (SUPPOSED + weight @ free)
 
 
 class Emulator:
