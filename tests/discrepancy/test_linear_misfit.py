@@ -10,6 +10,7 @@ import pytest
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.acting_place import acting_place
 from vibroimpact.discrepancy.drift import drift_of
 from vibroimpact.discrepancy.linear_findings import linear_findings
 from vibroimpact.discrepancy.linear_misfit import LinearMisfit
@@ -114,6 +115,21 @@ def test_second_force_is_power_that_the_first_does_not_explain(study_config, tmp
     assert apex.share == pytest.approx(power[1][inside].sum() / power[0][inside].sum(), rel=0.25)
     row = rows_of(bench, bent=True)["other source"]
     assert row["level"] == "warn" and "is no linear response to shaker" in row["message"]
+
+
+def test_force_not_measured_is_found_where_it_acts(study_config, tmp_path):
+    """In the right leg's upper part, across the plane; without it there is no place to tell."""
+    hidden = (("unmeasured_force", {"rms": 0.1}),)
+    bench = Workbench(study_config, campaign_of(tmp_path / "a.nc", 1001, hidden))
+    found, line = acting_place(bench), build_centreline(study_config.structure)
+    points = bench.campaign["channel_point"].values
+    true = line.locate(points[list(bench.signals.names).index("right_leg_upper_y")], "force")
+    assert found.low_m <= true <= found.high_m
+    assert found.high_m - found.low_m < 0.1 * line.length
+    np.testing.assert_allclose(np.abs(found.direction), (0.0, 1.0, 0.0), atol=0.3)
+    assert found.support is None and found.share > 0.9
+    quiet = Workbench(study_config, campaign_of(tmp_path / "b.nc", 1001))
+    assert acting_place(quiet) is None
 
 
 def test_modes_that_drift_within_a_record_are_told(study_config, tmp_path):

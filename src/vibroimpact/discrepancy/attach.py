@@ -35,13 +35,8 @@ def attach(config, campaign):
         *map(str, campaign["force_channel_name"].values),
     ]
     _require_directions(directions, names)
-    points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
-    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
     try:
-        model = build_model(
-            config.model_copy(update={"points": {**config.points, **points}, "record": sensors}),
-            motion_only=True,
-        )
+        model, displacements = displacement_shapes(config, places)
     except ValueError as error:
         raise CampaignError(_sentence(str(error), names)) from None
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
@@ -51,9 +46,7 @@ def attach(config, campaign):
     angle = getattr(config.excitation, "turn_deg", 0.0)
     for number in range(campaign.sizes["channel"], len(places)) if angle else ():
         acting[number] = turned_direction(along[number], angle, turn_axis(config, places[number]))
-    shapes = np.einsum(
-        "mpa,pa->mp", model.sensor_shapes.reshape(model.modes, len(places), 3), acting
-    )
+    shapes = np.einsum("mpa,pa->mp", displacements, acting)
     channels = campaign.sizes["channel"]
     shapes[:, :channels] *= moving(campaign["channel_kind"].values)
     return replace(
@@ -65,6 +58,19 @@ def attach(config, campaign):
         sensor_directions=along[:channels],
         drive_shapes=shapes[:, channels:],
     )
+
+
+def displacement_shapes(config, places):
+    """Return (ModalModel, (mode, place, 3)): the displacements of a configuration's structure at
+    places (place, 3) m. Raises ValueError for one that is farther than 5 mm from it.
+    """
+    points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
+    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
+    model = build_model(
+        config.model_copy(update={"points": {**config.points, **points}, "record": sensors}),
+        motion_only=True,
+    )
+    return model, model.sensor_shapes.reshape(model.modes, len(places), 3)
 
 
 def with_channel_points(config, campaign):

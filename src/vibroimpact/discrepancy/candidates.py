@@ -312,6 +312,12 @@ class Pair:
         )
 
 
+def searched_places(acting, length_m):
+    """Return (low, high): the normalised places of an ActingPlace on a tube, from 0 to 1."""
+    ends = np.array([acting.low_m, acting.high_m]) / length_m
+    return tuple(map(float, np.clip((ends - PLACE.low) / (PLACE.high - PLACE.low), 0.0, 1.0)))
+
+
 def unit_grid(count, points):
     """Return (points**count, count): normalised parameters, evenly from 0 to 1 along each of
     `count`.

@@ -17,11 +17,11 @@ NO_EFFECT = ("frequencies", "section", "length", "place", "direction")
 SHOWN = 3  # changes that do as well
 
 
-def linear_findings(bench, fresh, adopted, bent):
+def linear_findings(bench, fresh, adopted, bent, acting=None):
     """Return rows of checks on the lowest record of a Workbench that holds what was adopted.
 
     fresh() gives a Workbench without it; adopted: row of linear_rows, None for nothing; bent:
-    whether the record is not that of a linear structure.
+    whether the record is not that of a linear structure; acting: see source_rows.
     """
     given = bench
     if adopted is not None:
@@ -29,10 +29,10 @@ def linear_findings(bench, fresh, adopted, bent):
         given.measured_fit = translated(bench.measured_fit, bench.bare, given.bare)
     record = bench.signals.record_names[bench.signals.lowest]
     if bent:
-        return bent_row(given, record) or source_rows(bench, record)
+        return bent_row(given, record) or source_rows(bench, record, acting)
     return (
         misfit_row(bench, given, adopted, record)
-        + source_rows(bench, record)
+        + source_rows(bench, record, acting)
         + drift_rows(bench, record)
     )
 
@@ -97,9 +97,9 @@ def bent_row(bench, record):
     ]
 
 
-def source_rows(bench, record):
+def source_rows(bench, record, acting=None):
     """Return [row] where the measured force does not explain the record, or a row that says that
-    it does.
+    it does. acting: the ActingPlace of what else acts, None where it is not known.
     """
     found, signals = other_sources(bench), bench.signals
     force = str(bench.campaign["force_channel_name"].values[0])
@@ -125,11 +125,25 @@ def source_rows(bench, record):
             f" {first.band_Hz[0]:.3g} and {first.band_Hz[1]:.3g} Hz at"
             f" {signals.load[signals.lowest]:.3g} N is no linear response to {force},"
             f" {first.factor:.0f} times what noise explains{beside}: something else"
-            " drives the structure, or it is not linear at this load.",
+            f" drives the structure, or it is not linear at this load.{_acts(acting)}",
             record,
             signals.names[first.channel],
         )
     ]
+
+
+def _acts(acting):
+    """Return a sentence on an ActingPlace, none where it is None."""
+    if acting is None:
+        return ""
+    along = ", ".join(f"{component:+.2f}" for component in acting.direction)
+    touched = acting.support
+    where = f", where {touched} is: the structure touches it already" if touched else ""
+    return (
+        f" A force between {acting.low_m:.3g} and {acting.high_m:.3g} m along the tube, most likely"
+        f" at {acting.arc_length_m:.3g} m in direction ({along}), explains"
+        f" {acting.share:.0%} of it{where}."
+    )
 
 
 def drift_rows(bench, record):

@@ -40,13 +40,9 @@ def other_sources(bench):
     """Return [OtherSource] of the lowest record of a Workbench, what is
     farthest beyond noise first."""
     record, signals = bench.linear_record, bench.signals
-    responses = bench.valid(signals.response[signals.lowest])
-    measured, rest = unexplained_lines(
-        record, responses, bench.bare, bench.measured_fit, signals.kinds
-    )
-    force = record.spectra(bench.valid(signals.force[signals.lowest])[0])
-    left = np.sum(np.abs(incoherent(force, rest)) ** 2, axis=-1)
-    power = np.sum(np.abs(blocks(measured)) ** 2, axis=-1)
+    measured, rest = _lines(bench)
+    left = np.sum(np.abs(rest) ** 2, axis=-1)
+    power = np.sum(np.abs(measured) ** 2, axis=-1)
     edges = np.geomspace(*signals.band_Hz, BANDS + 1)
     band = np.digitize(blocks(record.frequency).mean(axis=-1), edges[1:-1])
     inside = (band == np.arange(BANDS)[:, None]).astype(float).T
@@ -71,6 +67,29 @@ def other_sources(bench):
                     )
                 )
     return sorted(found, key=lambda row: -row.factor)
+
+
+def incoherent_rest(bench):
+    """Return ((channel, block, BLOCK), (channel, block)): what is no linear response to the force
+    in the lowest record of a Workbench, and the RMS that noise and two codes leave of a line.
+    """
+    measured, rest = _lines(bench)
+    noise = bench.signals.noise_in_band[:, None] ** 2 / len(bench.linear_record.lines)
+    power = np.mean(np.abs(measured) ** 2, axis=-1)
+    return rest, np.sqrt(noise + RESIDUAL_SHARE**2 * power + 1.0e-300)
+
+
+def _lines(bench):
+    """Return (measured, rest), each (channel, block, BLOCK): the lines of the lowest record, and
+    what of them is no linear response to the force.
+    """
+    record, signals = bench.linear_record, bench.signals
+    responses = bench.valid(signals.response[signals.lowest])
+    measured, rest = unexplained_lines(
+        record, responses, bench.bare, bench.measured_fit, signals.kinds
+    )
+    force = record.spectra(bench.valid(signals.force[signals.lowest])[0])
+    return blocks(measured), incoherent(force, rest)
 
 
 def blocks(lines):

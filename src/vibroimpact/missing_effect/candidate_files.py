@@ -55,6 +55,7 @@ def parameters_of(search: Search, name: str) -> dict[str, Any]:
                 {
                     "parameter": prefix + parameter.name,
                     "unit": parameter.unit,
+                    "log": parameter.log,
                     "values": [
                         candidate.physical(place, search.scales)[parameter.name]
                         for place in units[:, inside]

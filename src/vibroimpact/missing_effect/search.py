@@ -23,7 +23,8 @@ from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 @dataclass
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
-    Fits {name: Fit}. looked: see look; None: all that runs change is known.
+    Fits {name: Fit}. looked: see look; None: all that runs change is known. acting: see
+    first_points.
     """
 
     bench: Workbench
@@ -33,6 +34,7 @@ class Search:
     fits: dict = field(default_factory=dict)
     seed: int = 1000
     looked: EffectDirections | None = None
+    acting: tuple[float, float] = (0.0, 1.0)
 
     def run(self, name: str, units: np.ndarray) -> None:
         """Run an explanation at units (point, parameter) and fit it again."""
@@ -44,7 +46,7 @@ class Search:
         not run.
         """
         tried = self.trials[name].tried if name in self.trials else []
-        first = first_points(candidate_named(name))[:points]
+        first = first_points(candidate_named(name), self.acting)[:points]
         new = [unit for unit in first if not any(np.array_equal(unit, other) for other in tried)]
         if new:
             self.run_screened(name, np.array(new))

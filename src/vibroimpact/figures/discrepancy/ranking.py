@@ -119,7 +119,7 @@ def profiles_figure(candidates, effects):
     record have no profile.
 
     candidates: contents of candidates/*.json, best first: {ids, parameters: {name: {value}},
-    profile: [{parameter, unit, values, left, simulated}]}.
+    profile: [{parameter, unit, log, values, left, simulated}]}.
     effects: those of verdict.json.
     """
     shown = named_of(candidates, effects)
@@ -139,13 +139,17 @@ def profiles_figure(candidates, effects):
         )
         sheet.note(sheet.axes["main"], why, "parameter", "left")
         return [sheet]
+    title = "How well the parameters are known"
+    if not effects:
+        ids = " + ".join(name.replace("_", " ") for name in shown[0]["ids"])
+        title = f"What comes nearest, {ids}: how well its parameters are known"
     across = min(3, len(curves))
     keys = [f"{index} {curve['parameter']}" for index, curve in enumerate(curves)]
     padded = keys + ["."] * (-len(keys) % across)
     mosaic = [padded[row : row + across] for row in range(0, len(padded), across)]
     sheet = Sheet(
         "discrepancy_profiles",
-        "How well the parameters are known",
+        title,
         caption,
         mosaic,
         size=(1.0 + 3.4 * across, 0.9 + 2.8 * len(mosaic)),
@@ -230,7 +234,7 @@ def _profile(sheet, axes, curve, effects):
             f"{number(factor * found.value)} ({number(factor * found.low)} to"
             f" {number(factor * found.high)}) {'' if unit in NO_UNIT else unit}"
         )
-    if values.min() > 0.0 and values.max() > 30.0 * values.min():
+    if curve.get("log", True) and values.min() > 0.0 and values.max() > 30.0 * values.min():
         axes.set_xscale("log")
     axes.set_xlabel(axis_label(curve["parameter"], unit))
     axes.set_ylabel(label_of("left"))
