@@ -138,7 +138,7 @@ def _acts(acting):
         return ""
     along = ", ".join(f"{component:+.2f}" for component in acting.direction)
     touched = acting.support
-    where = f", where {touched} is: the structure touches it already" if touched else ""
+    where = f" (support {touched} is there: it may touch that already)" if touched else ""
     return (
         f" A force between {acting.low_m:.3g} and {acting.high_m:.3g} m along the tube, most likely"
         f" at {acting.arc_length_m:.3g} m in direction ({along}), explains"

@@ -385,7 +385,7 @@ def read_lowest(bench, fresh, out):
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
     acting = acting_place(bench) if bench.measured_fit is not None else None
-    if acting is not None and acting.support is None:
+    if acting is not None:
         out.acting = searched_places(acting, length_m(bench.values))
     out.checks += linear_findings(bench, fresh, out.adopted, out.nonlinear_low, acting)
     out.fit = (
