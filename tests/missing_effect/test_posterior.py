@@ -69,6 +69,20 @@ def test_effect_beside_another_is_half_of_the_story():
     assert max(explains, key=lambda name: explains[name] * (name != FRICTION)) == DAMPING
 
 
+@pytest.mark.parametrize("second", [0.0, 15.0])
+def test_second_effect_is_believed_where_a_run_shows_it(second):
+    """A pair was run once; beside friction alone it leaves less only where damping is there."""
+    search = searched(chance() + 30.0 * DIRECTIONS[FRICTION] + second * DIRECTIONS[DAMPING])
+    pair, own = f"{FRICTION}+{DAMPING}", SIZE * (0.5 * DIRECTIONS[FRICTION])
+    search.trials[pair] = Trial.empty(candidate_named(pair), VALUES)
+    changes = own + SIZE * 0.25 * DIRECTIONS[DAMPING] + 0.03 * np.array([[1.0], [-1.0]])
+    search.trials[pair].add(np.array([0.5, 0.25]), changes)
+    search.fit(pair)
+    found = posterior(search)
+    assert (pair in found) == (second > 0.0)
+    assert next(iter(found)) == (pair if second else FRICTION)
+
+
 def test_race_leaves_out_what_is_known_to_be_worse():
     search = searched(chance() + 30.0 * DIRECTIONS[FRICTION])
     left = contenders(search)

@@ -37,7 +37,7 @@ EFFECT = Effect(
             "limit",
             "N",
             0.02,
-            10.0,
+            50.0,
             0.0,
             per="load",
             gain_power=1.0,

@@ -34,6 +34,8 @@ def posterior(search: Search) -> dict[str, float]:
         for name in names:
             known = np.log(rest * share / len(names))
             found = search.fits[name]
+            if family in pairs and found.left >= least_left_alone(search, name):
+                continue
             out[name] = known + found.log_evidence
             # none where all runs are farther from the measurement than nothing is; nor beside a
             # pair: that three are missing is not believed, and where a law does not fit, any
@@ -46,6 +48,15 @@ def posterior(search: Search) -> dict[str, float]:
                 + else_.beside(found, search.emulator(name))
             )
     return averaged(out, {name: found.doubt for name, found in search.fits.items()})
+
+
+def least_left_alone(search: Search, name: str) -> float:
+    """Return the least chi-square that a run of one part of a pair leaves: a pair of which none
+    leaves less shows nothing of its second effect.
+    """
+    pair = candidate_named(name)
+    alone = (search.fits.get(part.name) for part in (pair.first, pair.second))
+    return min((found.left for found in alone if found is not None), default=np.inf)
 
 
 DRAWS = 400  # of what emulators do not know
