@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.candidates import PLACE, Candidate, local_candidates
+from vibroimpact.discrepancy.candidates import Candidate, local_candidates
+from vibroimpact.discrepancy.scales import searched
 from vibroimpact.effects import places
 from vibroimpact.effects.places import ALONG
 from vibroimpact.missing_effect.first_points import first_points
@@ -21,18 +22,17 @@ def values(study_config):
 @pytest.fixture
 def scales(values):
     sizes = {"cubic": 1.0e10, "displacement": 1.0e-3, "tube_translation": 1.0e4}
-    return sizes | {"tube_length": places.length_m(values)}
+    return sizes | searched((0.1, 1.1))
 
 
 def test_the_place_is_the_last_parameter(scales):
-    length = scales["tube_length"]
     physical = SPRING.physical(np.array([0.5, 0.0]), scales)
     assert list(physical) == ["coefficient", "place"]
-    assert physical["place"] == pytest.approx(PLACE.low * length)
+    assert physical["place"] == pytest.approx(0.1)
     assert SPRING.normalised(physical, scales) == pytest.approx([0.5, 0.0])
     interval = np.array([[0.4, 0.6], [0.45, 0.55]])
     value, low, high = SPRING.estimate(np.array([0.5, 0.5]), interval, scales)["place"]
-    assert (value, high - low) == pytest.approx((0.5 * length, 0.094 * length))
+    assert (value, high - low) == pytest.approx((0.6, 0.1))
 
 
 def test_the_effect_sits_there(values, scales):
@@ -40,7 +40,7 @@ def test_the_effect_sits_there(values, scales):
     unit = np.array([0.6, 0.3])
     location = SPRING.located(unit, scales)
     at = places.arc_length_m(location)
-    assert at == pytest.approx((0.03 + 0.3 * 0.94) * scales["tube_length"], abs=1.0e-4)
+    assert at == pytest.approx(0.4, abs=1.0e-4)
     changed = SPRING.variant(values, SPRING.physical(unit, scales))
     (element,) = [row for row in changed["elements"] if row not in values["elements"]]
     assert element["point"] == location and element["cubic_N_per_m3"] > 0.0

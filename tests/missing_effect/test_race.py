@@ -25,7 +25,8 @@ STOP_THERE = "clearance@span_1"
 STIFFNESS, HERTZ, FRICTION = "contact_stiffness@all", "hertz@all", "dry_friction@all"
 SCALES = (
     "one",
-    "tube_length",
+    "searched_from",
+    "searched_length",
     "contact_stiffness",
     "hertz",
     "displacement",

@@ -65,7 +65,8 @@ def acting_place(bench):
     known = max(1.0, left / values) * priors.LINEAR_GAIN + priors.GAIN_SD**2 * power
     likely = np.flatnonzero(by_place > by_place[best] - known)
     step = length / PLACES
-    low, high = likely[0] * step, (likely[-1] + 1) * step
+    low = max(likely[0] - 1, 0) * step  # one more on either side
+    high = min(likely[-1] + 2, PLACES) * step
     if by_place[best] < EXPLAINED * power or high - low > TOLD * length:
         return None
     angle = ANGLES[np.argmax(explained[best])]

@@ -26,17 +26,18 @@ AT_A_POINT = frozenset(
         "clearance",
     }
 )
-# On a tube the place of such an effect is a parameter of it, away from its ends.
+# On a tube the place of such an effect is a parameter of it, from the scale SEARCHED_FROM on.
 PLACE = Parameter(
     "place",
     "m",
-    0.03,
-    0.97,
+    0.0,
+    1.0,
     None,
-    per="tube_length",
+    per="searched_length",
     log=False,
     meaning="distance along the tube from its start",
 )
+SEARCHED_FROM = "searched_from"
 PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
 
 
@@ -77,10 +78,13 @@ class Candidate:
             parameter.name: out[parameter.name] / scales[parameter.per]
             for parameter in self.effect.parameters
         }
-        return {
+        out = {
             parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0)
             for parameter in self.effect.parameters
         }
+        if self.location == ALONG:
+            out[PLACE.name] += scales[SEARCHED_FROM]
+        return out
 
     def located(self, unit, scales):
         """Return the location with normalised parameters unit (parameter,)."""
@@ -113,7 +117,10 @@ class Candidate:
         """Return (parameter,) from 0 to 1 of {name: value in SI}."""
         out = []
         for parameter in self.effect.parameters:
-            value = physical[parameter.name] / scales[parameter.per]
+            value = physical[parameter.name]
+            if self.location == ALONG and parameter is self.effect.parameters[-1]:
+                value -= scales[SEARCHED_FROM]
+            value = value / scales[parameter.per]
             low = parameter.low
             high = parameter.high
             if parameter.over:
@@ -310,12 +317,6 @@ class Pair:
             ),
             None,
         )
-
-
-def searched_places(acting, length_m):
-    """Return (low, high): the normalised places of an ActingPlace on a tube, from 0 to 1."""
-    ends = np.array([acting.low_m, acting.high_m]) / length_m
-    return tuple(map(float, np.clip((ends - PLACE.low) / (PLACE.high - PLACE.low), 0.0, 1.0)))
 
 
 def unit_grid(count, points):

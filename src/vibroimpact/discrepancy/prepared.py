@@ -19,7 +19,7 @@ from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
 from .acting_place import acting_place
-from .candidates import candidate_named, local_candidates, not_testable, searched_places
+from .candidates import candidate_named, local_candidates, not_testable
 from .comparable import (
     LEFT_OUT,
     campaign_problems,
@@ -39,7 +39,7 @@ from .measuring import Measuring
 from .modal_fit import ModalFit
 from .nearest_model import fit_from_nearest, translated
 from .nuisance import neutral, plausible
-from .scales import scales
+from .scales import scales, searched
 from .sensed import differentiated, kind_groups
 from .slower import slower
 from .workbench import Workbench, corrected_nuisance
@@ -57,9 +57,7 @@ class Prepared:
     whether the lowest record tells of the linear structure; still_linear: whether it does with what
     is adopted, or touches then; nonlinear_low: the lowest record is not that of a linear structure;
     chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; fit: the
-    ModalFit of the lowest record on the model with what was adopted; acting: normalised
-    places along a tube between which an effect at a point acts in it, all where that is not told;
-    draw: see prepare.
+    ModalFit of the lowest record on the model with what was adopted; draw: see prepare.
     """
 
     checks: list
@@ -77,7 +75,6 @@ class Prepared:
     delays: dict = field(default_factory=dict)
     not_testable: list = field(default_factory=list)
     fit: dict | None = None
-    acting: tuple[float, float] = (0.0, 1.0)
     draw: int = 0
 
     def room(self, candidate):
@@ -386,7 +383,7 @@ def read_lowest(bench, fresh, out):
         bench.measured_fit = fit
     acting = acting_place(bench) if bench.measured_fit is not None else None
     if acting is not None:
-        out.acting = searched_places(acting, length_m(bench.values))
+        out.scales |= searched((acting.low_m, acting.high_m))
     out.checks += linear_findings(bench, fresh, out.adopted, out.nonlinear_low, acting)
     out.fit = (
         {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()}

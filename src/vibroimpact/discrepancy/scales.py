@@ -6,6 +6,8 @@ import numpy as np
 
 from vibroimpact.effects.places import STOP
 
+SEARCHED = (0.03, 0.97)  # of a tube: at its ends nothing moves
+
 
 def scales(model, signals, null, tube_m):
     """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at
@@ -53,7 +55,7 @@ def scales(model, signals, null, tube_m):
         "gap_force": gap / held,
         "mass": mass,
         "mass_per_length": mass / length,
-        "tube_length": np.nan if tube_m is None else tube_m,
+        **searched(np.array(SEARCHED) * (np.nan if tube_m is None else tube_m)),
         "tube_translation": stiffness,
         "tube_rotation": stiffness * length**2 / 100.0,
         "tube_damping": damping,
@@ -62,6 +64,12 @@ def scales(model, signals, null, tube_m):
         "quadratic": stiffness / displacement,
         "drag": damping / length / speed,
     }
+
+
+def searched(ends_m):
+    """Return the scales of a place that is searched between two arc lengths (2,) in m."""
+    low, high = map(float, ends_m)
+    return {"searched_from": low, "searched_length": high - low}
 
 
 def clearance(model, gap, location):

@@ -30,7 +30,7 @@ SCALES = {
     "gap_force": "the force that closes the clearance",
     "mass": "the modal mass of the first mode at the drive point",
     "mass_per_length": "that modal mass over the length of the structure",
-    "tube_length": "the length of the tube",
+    "searched_length": "the part of the tube where it is searched",
     "tube_translation": "the static stiffness at the drive point",
     "tube_rotation": "that stiffness times a hundredth of the squared length",
     "tube_damping": "the modal damping constant of the first mode at the drive point",

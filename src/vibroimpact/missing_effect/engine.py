@@ -115,7 +115,7 @@ class Engine:
             if bench.reads_lowest:
                 records = records[records != bench.signals.lowest]
             null = null_of(bench, records, 0)
-        return Search(bench, null, prepared.scales, acting=prepared.acting)
+        return Search(bench, null, prepared.scales)
 
     def refine(self, search: Search) -> None:
         """Run what may be the answer until it is known, its other places, what is like it and the

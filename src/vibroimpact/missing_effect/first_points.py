@@ -17,14 +17,10 @@ VECTOR = ((0.75, 0.75), (0.6, 0.4), (0.3, 0.7), (0.5, 0.35))
 EVEN = 8  # of an effect whose place is searched too
 
 
-def first_points(candidate: Candidate, acting: tuple[float, float] = (0.0, 1.0)) -> np.ndarray:
-    """Return (point, parameter): where an explanation is run first; acting: normalised places along
-    a tube between which an effect at a point acts.
-    """
+def first_points(candidate: Candidate) -> np.ndarray:
+    """Return (point, parameter): where an explanation is run first."""
     count = len(candidate.effect.parameters)
     if candidate.location == ALONG:  # even ones, without the corner
-        points = qmc.Sobol(count, scramble=False).random(EVEN)[1:]
-        points[:, -1] = acting[0] + (acting[1] - acting[0]) * points[:, -1]
-        return points
+        return qmc.Sobol(count, scramble=False).random(EVEN)[1:]
     vector = count == 2 and len(candidate.signed) == 2
     return np.array(VECTOR if vector else FIRST[count])

@@ -23,8 +23,7 @@ from .trials import AnyEmulator, Emulator, PairEmulator, Trial
 @dataclass
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
-    Fits {name: Fit}. looked: see look; None: all that runs change is known. acting: see
-    first_points.
+    Fits {name: Fit}. looked: see look; None: all that runs change is known.
     """
 
     bench: Workbench
@@ -34,7 +33,6 @@ class Search:
     fits: dict = field(default_factory=dict)
     seed: int = 1000
     looked: EffectDirections | None = None
-    acting: tuple[float, float] = (0.0, 1.0)
 
     def run(self, name: str, units: np.ndarray) -> None:
         """Run an explanation at units (point, parameter) and fit it again."""
@@ -46,7 +44,7 @@ class Search:
         not run.
         """
         tried = self.trials[name].tried if name in self.trials else []
-        first = first_points(candidate_named(name), self.acting)[:points]
+        first = first_points(candidate_named(name))[:points]
         new = [unit for unit in first if not any(np.array_equal(unit, other) for other in tried)]
         if new:
             self.run_screened(name, np.array(new))
