@@ -16,7 +16,7 @@ from .study import row_of
 from .trial import Fit, Records, Term, Trial, with_offsets
 
 PASSES = 9
-FIRST_PASSES = 2  # after which the better of two starts is taken
+FIRST_PASSES = 2  # after which the best of the starts is taken
 FREE_STARTS = 6  # drawn participations of a place that no channel shows
 SEED = 2012
 
@@ -153,48 +153,46 @@ def _alone(base, joint, records, law, place, row):
 
 
 def _added(first, base, records, law, place, row):
-    """The start of a law beside fitted ones, on their modes or on those of the lowest level; at a
-    place that no channel shows participations are drawn.
+    """The start of a law beside fitted ones: on their modes or those of the lowest level, or, at a
+    place that no channel shows, with one of some drawn participations.
     """
     if row is not None:
-        motion = [
-            _rms_of(first.modes, level, records, first.modes.shapes @ np.array(row))
-            for level in records.levels
-        ]
-        strength = _strength(first.modes, first.modes.shapes @ np.array(row))
-        scales = Scales(strength, min(motion), max(motion), _middle(records))
-        starts = [
-            _best(
-                [
-                    replace(first, modes=modes, terms=(*first.terms, Term(law, place, row, values)))
-                    for values in LAWS[law].starts(scales)
-                ],
-                records,
-            )
+        along = first.modes.shapes @ np.array(row)
+        scales = _scales(first.modes, records, along)
+        groups = [
+            [
+                replace(first, modes=modes, terms=(*first.terms, Term(law, place, row, values)))
+                for values in LAWS[law].starts(scales)
+            ]
             for modes in (first.modes, base)
         ]
-        # which modes lead further shows after a few passes only: those of the first law have
-        # taken in what the second one would explain
-        tried = [Fit(start, records).run(FIRST_PASSES) for start in starts if start is not None]
-        return min(tried, key=lambda found: found[1].cost)[0] if tried else None
-    drawn, trials = np.random.default_rng(SEED), []
-    spread = np.where(first.modes.residual, 0.0, 1.0)
-    for _ in range(FREE_STARTS):
-        # A participation proportional to the frequency makes the same relative change of every
-        # frequency, of either sign.
-        along = (
-            spread
-            * drawn.choice([-1.0, 1.0], spread.size)
-            * first.modes.omega
-            / np.median(first.modes.omega)
-        )
-        motion = [_rms_of(first.modes, level, records, along) for level in records.levels]
-        scales = Scales(_strength(first.modes, along), min(motion), max(motion), _middle(records))
-        trials += [
-            replace(first, terms=(*first.terms, Term(law, place, None, values, along)))
-            for values in LAWS[law].starts(scales)[:2]
+    else:
+        groups = [
+            [
+                replace(first, terms=(*first.terms, Term(law, place, None, values, along)))
+                for values in LAWS[law].starts(_scales(first.modes, records, along))[:2]
+            ]
+            for along in _drawn_participations(first.modes)
         ]
-    return _best(trials, records)
+    starts = [_best(group, records) for group in groups]
+    # which of them leads further shows after a few passes only
+    tried = [Fit(start, records).run(FIRST_PASSES) for start in starts if start is not None]
+    return min(tried, key=lambda found: found[1].cost)[0] if tried else None
+
+
+def _scales(modes, records, along):
+    """The Scales of a relative displacement per unit modal amplitude (mode,)."""
+    motion = [_rms_of(modes, level, records, along) for level in records.levels]
+    return Scales(_strength(modes, along), min(motion), max(motion), _middle(records))
+
+
+def _drawn_participations(modes):
+    """[(mode,)] of either sign, in proportion to the frequency: a spring there makes the same
+    relative change of every frequency.
+    """
+    drawn = np.random.default_rng(SEED)
+    size = np.where(modes.residual, 0.0, modes.omega / np.median(modes.omega))
+    return [size * drawn.choice([-1.0, 1.0], size.size) for _ in range(FREE_STARTS)]
 
 
 def _best(trials, records):
