@@ -1,8 +1,11 @@
 """Which candidate is named, when a set is told instead, and when nothing or no law is."""
 
+from types import SimpleNamespace
+
 import pytest
 
-from vibroimpact.completion.naming import believed, choose, score
+from vibroimpact.completion.levels import naming_split
+from vibroimpact.completion.naming import believed, choose, completed_furthest, score
 
 LINEAR, JOINT, AGAIN = {"one": [1.0, 1.2]}, {"one": [0.8, 0.9]}, {"one": [0.1, 0.1]}
 
@@ -77,6 +80,24 @@ def test_second_effect_needs_a_clear_gain():
     assert choice.chosen == "a+b" and choice.ambiguity == [
         ["cubic_stiffness", "quadratic_stiffness"]
     ]
+
+
+def test_laws_are_added_while_each_gains():
+    """A third law is tried beside the second one; what gains too little ends it."""
+    first = candidate("a", ["cubic_stiffness"], 0.05)
+    laws = {"a+b": 0.02, "a+c": 0.04, "a+b+c": 0.01, "a+b+c+d": 0.0099}
+    more = [candidate(name, [*name.split("+")], error) for name, error in laws.items()]
+    errors = {"one": LINEAR["one"]}
+    assert completed_furthest([first], more, errors)["name"] == "a+b+c"
+    assert completed_furthest([first], more[1:], errors)["name"] == "a+c"
+
+
+def test_held_out_levels_choose_nothing():
+    """The fitted level below the highest tells the name; held-out ones where two are fitted."""
+    records = [("fit", 1.0), ("fit", 2.0), ("holdout", 3.0), ("fit", 4.0)]
+    levels = [SimpleNamespace(split=split, load_rms=load) for split, load in records]
+    assert naming_split(levels) == ([levels[0], levels[3]], [levels[1]])
+    assert naming_split(levels[1:]) == ([levels[1], levels[3]], [levels[2]])
 
 
 def test_useless_second_effect_does_not_join_the_set():

@@ -32,6 +32,7 @@ MODELS = {
     "cubic": ({}, {"cubic_N_per_m3": 1.0e12}, 0.0, False),
     "quadratic": ({}, {"quadratic_N_per_m2": 1.0e7}, 0.0, False),
     "drag": ({}, {"drag_N_s2_per_m2": 50.0}, 0.0, False),
+    "damper limit": ({}, {"damping_N_s_per_m": 50.0, "damping_limit_N": 2.0}, 0.0, False),
     "slider": ({}, {"slip_limit_N": 2.0, "stick_stiffness_N_per_m": 1.0e5}, 0.0, False),
     "saturation": (
         {},

@@ -371,6 +371,23 @@ def test_saturating_spring_is_linear_then_constant():
     )
 
 
+def test_damper_with_a_limit_is_linear_then_dry_friction():
+    """Beyond its limit it takes 4 f a per cycle, and successive extremes fall by 2 f/k."""
+    run = trace(
+        oscillator(
+            1.0,
+            1e4,
+            displacement=(10e-3, 0.0),
+            element={"damping": 1e3, "damping_limit": 1.0},
+        ),
+        0.2,
+    )
+    f = run.element_force[0, 0]
+    at = [run.element_displacement[0, 0, round(n * np.pi / 100 * RATE)] for n in range(1, 6)]
+    assert np.abs(f).max() == pytest.approx(1.0)
+    assert np.abs(at) == pytest.approx([9.8e-3, 9.6e-3, 9.4e-3, 9.2e-3, 9.0e-3], abs=1e-5)
+
+
 def test_laws_refuse_impossible_contacts():
     with pytest.raises(
         ValueError, match="stick_stiffness must be positive where there is friction"

@@ -10,12 +10,13 @@ from .family import fit_family
 from .levels import levels_of, naming_split
 from .linear_models import base_of, linear_errors
 from .local_laws import LAWS, Scales
-from .naming import leading
+from .naming import completed_furthest, leading
 from .store import modes_of, trial_of, trial_values
 from .study import row_of
 from .trial import Fit, Records, Term, Trial, with_offsets
 
 PASSES = 9
+FIRST_PASSES = 2  # after which the best of the starts is taken
 FREE_STARTS = 6  # drawn participations of a place that no channel shows
 SEED = 2012
 
@@ -41,7 +42,14 @@ def run_candidate(campaign, study, linear, name, first=None, told=print):
             row_of(study, place, names),
         )
     else:
-        start = _added(trial_of(first["trial"]), records, law, place, row_of(study, place, names))
+        start = _added(
+            trial_of(first["trial"]),
+            modes_of(linear["base"]),
+            records,
+            law,
+            place,
+            row_of(study, place, names),
+        )
     if start is None:
         told("no start value of this law leaves the motion bounded: the candidate is out")
         return _without_fit(base_of(linear), name, first, [*fitted], [*tried], names, law)
@@ -90,10 +98,37 @@ def run_addition(campaign, study, linear, name, singles):
     """Return the values of "law.place" beside the best of `singles` by the levels they were tried
     on.
     """
-    levels, _, _ = levels_of(campaign)
+    best = leading(singles, _reference(campaign, study, linear))[0]
+    return run_candidate(campaign, study, linear, name, best)
+
+
+def further_additions(campaign, study, linear, singles, additions, told=print):
+    """Return the additions, and the study's other laws beside each addition that is chosen.
+
+    A law that hides behind a stronger one shows once that one is there.
+    """
+    reference, additions = _reference(campaign, study, linear), list(additions)
+    while True:
+        chosen = completed_furthest(singles, additions, reference)
+        if chosen in singles:
+            return additions
+        tried = {each["name"] for each in additions}
+        names = [
+            name
+            for name in study.additions
+            if name not in chosen["name"].split("+") and f"{chosen['name']}+{name}" not in tried
+        ]
+        if not names:
+            return additions
+        additions += [run_candidate(campaign, study, linear, name, chosen, told) for name in names]
+
+
+def _reference(campaign, study, linear):
+    """{level name: (channel,)} errors of the linear model of the lowest level."""
     base = modes_of(linear["base"])
-    reference = {level.name: linear_errors(base, level, study.band_Hz) for level in levels}
-    return run_candidate(campaign, study, linear, name, leading(singles, reference)[0])
+    return {
+        level.name: linear_errors(base, level, study.band_Hz) for level in levels_of(campaign)[0]
+    }
 
 
 def _alone(base, joint, records, law, place, row):
@@ -117,42 +152,47 @@ def _alone(base, joint, records, law, place, row):
     return _best(trials, records)
 
 
-def _added(first, records, law, place, row):
-    """The start of a second law beside a fitted first one; at a place that no channel shows
-    participations are drawn.
+def _added(first, base, records, law, place, row):
+    """The start of a law beside fitted ones: on their modes or those of the lowest level, or, at a
+    place that no channel shows, with one of some drawn participations.
     """
     if row is not None:
-        motion = [
-            _rms_of(first.modes, level, records, first.modes.shapes @ np.array(row))
-            for level in records.levels
-        ]
-        strength = _strength(first.modes, first.modes.shapes @ np.array(row))
-        scales = Scales(strength, min(motion), max(motion), _middle(records))
-        return _best(
+        along = first.modes.shapes @ np.array(row)
+        scales = _scales(first.modes, records, along)
+        groups = [
             [
-                replace(first, terms=(*first.terms, Term(law, place, row, values)))
+                replace(first, modes=modes, terms=(*first.terms, Term(law, place, row, values)))
                 for values in LAWS[law].starts(scales)
-            ],
-            records,
-        )
-    drawn, trials = np.random.default_rng(SEED), []
-    spread = np.where(first.modes.residual, 0.0, 1.0)
-    for _ in range(FREE_STARTS):
-        # A participation proportional to the frequency makes the same relative change of every
-        # frequency, of either sign.
-        along = (
-            spread
-            * drawn.choice([-1.0, 1.0], spread.size)
-            * first.modes.omega
-            / np.median(first.modes.omega)
-        )
-        motion = [_rms_of(first.modes, level, records, along) for level in records.levels]
-        scales = Scales(_strength(first.modes, along), min(motion), max(motion), _middle(records))
-        trials += [
-            replace(first, terms=(*first.terms, Term(law, place, None, values, along)))
-            for values in LAWS[law].starts(scales)[:2]
+            ]
+            for modes in (first.modes, base)
         ]
-    return _best(trials, records)
+    else:
+        groups = [
+            [
+                replace(first, terms=(*first.terms, Term(law, place, None, values, along)))
+                for values in LAWS[law].starts(_scales(first.modes, records, along))[:2]
+            ]
+            for along in _drawn_participations(first.modes)
+        ]
+    starts = [_best(group, records) for group in groups]
+    # which of them leads further shows after a few passes only
+    tried = [Fit(start, records).run(FIRST_PASSES) for start in starts if start is not None]
+    return min(tried, key=lambda found: found[1].cost)[0] if tried else None
+
+
+def _scales(modes, records, along):
+    """The Scales of a relative displacement per unit modal amplitude (mode,)."""
+    motion = [_rms_of(modes, level, records, along) for level in records.levels]
+    return Scales(_strength(modes, along), min(motion), max(motion), _middle(records))
+
+
+def _drawn_participations(modes):
+    """[(mode,)] of either sign, in proportion to the frequency: a spring there makes the same
+    relative change of every frequency.
+    """
+    drawn = np.random.default_rng(SEED)
+    size = np.where(modes.residual, 0.0, modes.omega / np.median(modes.omega))
+    return [size * drawn.choice([-1.0, 1.0], size.size) for _ in range(FREE_STARTS)]
 
 
 def _best(trials, records):
@@ -160,7 +200,7 @@ def _best(trials, records):
     costs = []
     for trial in trials:
         predicted = records.predict(trial)
-        costs.append(np.inf if predicted is None else float(np.sum(records.errors(predicted) ** 2)))
+        costs.append(np.inf if predicted is None else records.cost(predicted))
     return trials[int(np.argmin(costs))] if np.isfinite(min(costs)) else None
 
 

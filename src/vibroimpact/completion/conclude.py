@@ -11,6 +11,7 @@ from vibroimpact.discrepancy.misfit import makes_worse
 from vibroimpact.spectra.periodic_lines import line_power
 from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
 
+from .candidate import further_additions
 from .intervals import told_parameters
 from .levels import levels_of
 from .linear_models import linear_errors
@@ -43,6 +44,7 @@ def conclude(campaign, study, linear, singles, additions, told=print, checks=(),
         }
         for which in ("base", "joint", "refitted")
     )
+    additions = further_additions(campaign, study, linear, singles, additions, told)
     choice = choose(singles, additions, reference, joint, again)
     chosen = next(each for each in (*singles, *additions) if each["name"] == choice.chosen)
     fitted = Records(
@@ -325,7 +327,7 @@ def _broken(records, before, trial):
     )
     broken += (
         ["T5 power balance: more power is taken at higher levels"]
-        if laws & {"coulomb_friction", "quadratic_drag"}
+        if laws & {"coulomb_friction", "quadratic_drag", "saturation_damping"}
         else []
     )
     return broken

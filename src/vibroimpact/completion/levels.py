@@ -47,9 +47,9 @@ def naming_split(levels):
     """Return (fitted, tried): the levels that candidates are fitted to, and those that their names
     are tried on.
 
-    Held-out levels are tried where there are any. Otherwise the fitted level below the highest one
-    is set aside for the name, with all records of its load, and is fitted once the name stands.
-    Raises ValueError when there are too few.
+    The fitted level below the highest one is set aside for the name, with all records of its load,
+    and is fitted once the name stands, so that held-out levels choose nothing. Where only two
+    levels are fitted, the held-out ones are tried. Raises ValueError when there are too few.
     """
     fitted = [level for level in levels if level.split == "fit"]
     held = [level for level in levels if level.split != "fit"]
@@ -57,10 +57,10 @@ def naming_split(levels):
         raise ValueError(
             f"{len(fitted)} levels are to be fitted: two are the least, of different load"
         )
-    if held:
-        return fitted, held
     loads = _distinct([level.load_rms for level in fitted])
     if len(loads) < FEWEST_FITTED:
+        if held:
+            return fitted, held
         raise ValueError(
             "two levels to fit and none held out: a name could only be tried on what it was fitted"
             " to; record a third level"

@@ -123,6 +123,28 @@ def _coulomb(count):
     )
 
 
+def _saturation_damping():
+    """A damper that stops at the force it has at a speed, less the same damper without a limit: the
+    damping falls beyond that speed, or rises where its coefficient is negative.
+    """
+    parameters = (Parameter("damping", "N s/m", False), Parameter("speed", "m/s"))
+
+    def columns(values):
+        damping, speed = values
+        return {
+            "damping": np.array([-damping, damping]),
+            "damping_limit": np.array([0.0, abs(damping) * speed]),
+        }
+
+    def starts(scales):
+        speeds = scales.omega * np.geomspace(scales.low, scales.high, 3)
+        dampings = _signed(scales.stiffness / scales.omega, (0.1, 0.4))
+        return [np.array([damping, speed]) for (damping,) in dampings for speed in speeds]
+
+    words = "a damper whose force stops at a limit"
+    return LocalLaw("saturation_damping", words, parameters, columns, starts, _told(*parameters), 2)
+
+
 LAWS = {
     "cubic_stiffness": _simple(
         "cubic_stiffness",
@@ -158,6 +180,7 @@ LAWS = {
             for w in (s.low, 0.5 * s.high, 2.0 * s.high)
         ],
     ),
+    "saturation_damping": _saturation_damping(),
     "clearance": _simple(
         "clearance",
         "a stop behind a clearance",

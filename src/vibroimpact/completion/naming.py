@@ -84,18 +84,37 @@ def leading(candidates, reference):
     return max(candidates, key=lambda each: scores[each["name"]]), scores
 
 
+def completed_furthest(singles, additions, reference):
+    """Return the values of the best single candidate, or of the last of its additions: one law is
+    added after the other while it gains more than MARGIN_DB on the records that were tried.
+    """
+    chosen, scores = leading(singles, reference)
+    best = scores[chosen["name"]]
+    while True:
+        further = [each for each in additions if parent(each["name"]) == chosen["name"]]
+        if not further:
+            return chosen
+        added, scores = leading(further, reference)
+        if not scores[added["name"]] > best + MARGIN_DB:
+            return chosen
+        chosen, best = added, scores[added["name"]]
+
+
+def parent(name):
+    """Return the name of the candidate that an addition "candidate+law.place" was added to."""
+    return name.rpartition("+")[0]
+
+
 def choose(singles, additions, reference, joint, refitted):
     """Return the Choice among single candidates and additions to the best of them.
 
     reference, joint, refitted {level name: (channel,)}: errors of the linear model of the lowest
-    level, of the one fitted to all levels, and of those identified again at every level. An
-    addition is chosen when it gains more than MARGIN_DB.
+    level, of the one fitted to all levels, and of those identified again at every level.
     """
-    best, scores = leading(singles, reference)
+    best = leading(singles, reference)[0]
     tried = best["tried"]
-    added, more = leading(additions, reference) if additions else (best, {})
-    chosen = added if more and more[added["name"]] > scores[best["name"]] + MARGIN_DB else best
-    scores |= more
+    chosen = completed_furthest(singles, additions, reference)
+    scores = leading([*singles, *additions], reference)[1]
     ids = {each["name"]: each["ids"] for each in (*singles, *additions)}
     costs = {
         each["name"]: each["cost"] for each in (*singles, *additions) if each["cost"] is not None

@@ -155,6 +155,8 @@ def _units(campaign, drive):
             "N/m": "1",
             "N/m2": f"{force}-1",
             "N/m3": f"{force}-2",
+            "N s/m": "s",
+            "m/s": f"{force} s-1",
             "N s2/m2": f"s2 {force}-1",
         }
     return {
@@ -163,5 +165,7 @@ def _units(campaign, drive):
         "N/m": f"{force}/({moved})",
         "N/m2": f"{force}/({moved})2",
         "N/m3": f"{force}/({moved})3",
+        "N s/m": f"{force} s/({moved})",
+        "m/s": f"({moved})/s",
         "N s2/m2": f"{force} s2/({moved})2",
     }

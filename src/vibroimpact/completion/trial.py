@@ -21,7 +21,9 @@ from .local_laws import LAWS
 
 STEPS_PER_CYCLE = 66  # of the highest frequency of the band
 DRIVEN_TO = 2.0  # lines of the force that are kept, times the highest frequency of the band
-LAW_RIDGE = 0.005  # of the relative error, per factor of e of a law's positive value from its start
+# of the error at the start, per factor of e of a law's positive value from its start: relative,
+# because a fixed one holds a law where it began once the error is as small as the ridge
+LAW_RIDGE = 0.015
 PARTICIPATION_RIDGE = 0.003
 SETTLINGS = 4  # steps in which the offsets of levels that were not fitted are found
 
@@ -168,6 +170,15 @@ class Records:
         samples[:, 0, : len(part)] += offset
         return replace(drive, lines=lines), samples
 
+    def cost(self, predicted):
+        """Return the sum of squares that a fit lowers, without its ridges."""
+        return float(
+            sum(
+                np.sum(np.abs((lines - level.response[:, self.kept(level)]) / scale) ** 2)
+                for level, lines, scale in zip(self.levels, predicted, self.scales(), strict=True)
+            )
+        )
+
     def errors(self, predicted):
         """Return (level, channel) RMS of measured minus predicted over the RMS measured, over the
         kept lines.
@@ -224,6 +235,8 @@ class Fit:
         self.counted = records.levels if records.mean else ()
         self.unit = max(abs(level.force[0]) for level in records.levels)
         self.scale = records.scales()
+        predicted = records.predict(start)
+        self.law_ridge = LAW_RIDGE * (np.sqrt(records.cost(predicted)) if predicted else 1.0)
         self.wanted = [
             level.response[:, records.kept(level)] / scale
             for level, scale in zip(records.levels, self.scale, strict=True)
@@ -318,7 +331,7 @@ class Fit:
             if term.row is None:
                 free = slice(place.start - self.start.modes.modes, place.start)
                 own.append(PARTICIPATION_RIDGE * values[free] / np.linalg.norm(term.participation))
-            own.append(LAW_RIDGE * (values[place] - begin[place]) * self._positive(term))
+            own.append(self.law_ridge * (values[place] - begin[place]) * self._positive(term))
         return np.concatenate([*own, np.zeros(0)])
 
     def _steps(self):

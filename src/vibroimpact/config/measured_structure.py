@@ -165,13 +165,15 @@ class MeasuredStructure(Section):
         description="Laws that are tried, each at a place: `law.place`. Laws: `cubic_stiffness`,"
         " `quadratic_stiffness`, `quadratic_drag`, `saturation_stiffness`, `clearance`,"
         " `single_friction`, `coulomb_friction` (sliders of several limits), `few_frictions` (three"
-        " sliders). Default: all but the last, at the place where the response changes with the"
-        " level and at others that explain it nearly as well.",
+        " sliders), `saturation_damping` (a damper whose force stops at a limit). Default: all but"
+        " the last two, at the place where the response changes with the level and at others that"
+        " explain it nearly as well.",
         examples=[["cubic_stiffness.joint", "clearance.joint"]],
     )
     additions: Laws_or_none | None = Field(
         None,
-        description="Laws that are tried as second effect beside the best candidate; an empty list"
+        description="Laws that are added to the best candidate, one after the other as long as each"
+        " explains more; an empty list"
         f" for none. The place `{ELSEWHERE}` stands for one that no channel shows. Default: four"
         " laws at the best place.",
         examples=[["quadratic_stiffness.joint"]],

@@ -192,7 +192,8 @@ class LocalElement(Section):
 
     With u the displacement of point along the direction (relative to other_point where there is
     one) and v its rate, the force on the point is -(k u + q u² + c u³ + d v + e |v| v) minus the
-    forces of the slider and of the saturating spring. Terms that are 0 are left out.
+    forces of the slider and of the saturating spring; d v may have a limit. Terms that are 0 are
+    left out.
     """
 
     name: Name = Field(description="Name of the element.", examples=["joint"])
@@ -210,6 +211,11 @@ class LocalElement(Section):
     quadratic_N_per_m2: Number = Field(0.0, description="Quadratic stiffness q.", examples=[1.0e6])
     cubic_N_per_m3: Number = Field(0.0, description="Cubic stiffness c.", examples=[1.0e9])
     damping_N_s_per_m: Number = Field(0.0, description="Damping coefficient d.", examples=[5.0])
+    damping_limit_N: Non_negative = Field(
+        0.0,
+        description="Largest force of the damper, whose force is d v below it; 0 for no limit.",
+        examples=[2.0],
+    )
     drag_N_s2_per_m2: Non_negative = Field(
         0.0, description="Coefficient e of quadratic drag.", examples=[10.0]
     )

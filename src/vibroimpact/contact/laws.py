@@ -122,7 +122,9 @@ class LocalLaws:
     With u the displacement along the element (relative where it has two ends) and v its rate, the
     force on the structure is
 
-        -(stiffness u + quadratic u² + cubic u³ + damping v + drag |v| v + slider + saturation).
+        -(stiffness u + quadratic u² + cubic u³ + damper + drag |v| v + slider + saturation).
+
+    The damper is damping v, held within ±damping_limit where that is not 0.
 
     The slider is an elastic stick spring of stick_stiffness that slips at slip_limit. The
     saturation is clip(saturation_stiffness u, ±saturation_limit).
@@ -132,7 +134,7 @@ class LocalLaws:
     cubic: N/m³.
     damping: N s/m.
     drag: N s²/m².
-    slip_limit, saturation_limit: N.
+    damping_limit, slip_limit, saturation_limit: N.
     drag_partner: int, number of the element whose rate w adds to the speed, |v| = sqrt(v² + w²); -1
         for none. A fluid brakes a motion in its plane, not along each axis separately.
 
@@ -143,6 +145,7 @@ class LocalLaws:
     quadratic: np.ndarray
     cubic: np.ndarray
     damping: np.ndarray
+    damping_limit: np.ndarray
     drag: np.ndarray
     stick_stiffness: np.ndarray
     slip_limit: np.ndarray

@@ -17,6 +17,7 @@ COLUMNS = {
     "quadratic": "quadratic_N_per_m2",
     "cubic": "cubic_N_per_m3",
     "damping": "damping_N_s_per_m",
+    "damping_limit": "damping_limit_N",
     "drag": "drag_N_s2_per_m2",
     "stick_stiffness": "stick_stiffness_N_per_m",
     "slip_limit": "slip_limit_N",

@@ -21,6 +21,7 @@ CONTACT_TERMS = {
 ELEMENT_TERMS = {
     "quadratic": "quadratic stiffness",
     "cubic": "cubic stiffness",
+    "damping_limit": "a damper that stops at a fixed force",
     "drag": "quadratic drag",
     "slip_limit": "a slider of fixed force",
     "saturation_limit": "a spring that saturates at a fixed force",

@@ -404,6 +404,7 @@ def _element_columns(model: ModalModel) -> dict[str, np.ndarray]:
         "quadratic": laws.quadratic,
         "cubic": laws.cubic,
         "element_damping": laws.damping,
+        "damping_limit": np.where(laws.damping_limit != 0.0, laws.damping_limit, np.inf),
         "drag": laws.drag,
         "slider_stiffness": slider,
         "slider_flexibility": _inverse(slider),

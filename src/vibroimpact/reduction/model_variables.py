@@ -53,6 +53,7 @@ MODEL_VARIABLES: dict[str, tuple[str | None, str, str]] = {
     "local_laws_quadratic": ("N m-2", "quadratic stiffness of the local element", ""),
     "local_laws_cubic": ("N m-3", "cubic stiffness of the local element", ""),
     "local_laws_damping": ("N s m-1", "damping of the local element", ""),
+    "local_laws_damping_limit": ("N", "largest force of the damper, 0 for no limit", ""),
     "local_laws_drag": ("N s2 m-2", "quadratic drag of the local element", ""),
     "local_laws_stick_stiffness": ("N m-1", "stiffness of the slider while it sticks", ""),
     "local_laws_slip_limit": ("N", "force at which the slider slips, 0 for no slider", ""),

@@ -108,9 +108,10 @@ def element_force(laws, state, e, u, du, v, speed):
     stiffness = fma(
         u, fma(u, load(laws.cubic, e), load(laws.quadratic, e)), load(laws.element_stiffness, e)
     )
-    damping = fma(load(laws.drag, e), speed, load(laws.element_damping, e))
+    damper = clip(load(laws.element_damping, e) * v, load(laws.damping_limit, e))
+    braking = fma(load(laws.drag, e) * speed, v, damper)
     saturating = clip(load(laws.saturation_stiffness, e) * u, load(laws.saturation_limit, e))
-    return slider - fma(stiffness, u, damping * v) - saturating, slider
+    return slider - fma(stiffness, u, braking) - saturating, slider
 
 
 @inlined

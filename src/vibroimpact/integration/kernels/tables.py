@@ -84,6 +84,7 @@ class Laws(NamedTuple):
     quadratic: np.ndarray  # (element, lane) N/m²
     cubic: np.ndarray  # (element, lane) N/m³
     element_damping: np.ndarray  # (element, lane) N s/m
+    damping_limit: np.ndarray  # (element, lane) N, infinite for a damper without a limit
     drag: np.ndarray  # (element, lane) N s²/m²
     partner_row: np.ndarray  # (element,) row whose velocity counts in the drag too, -1: none
     slider_stiffness: np.ndarray  # (element, lane) N/m
