@@ -22,7 +22,10 @@ def driven_by_base(config, campaign):
     if not base_channels(campaign).any():
         return config
     direction = base_directions(campaign)[0]
-    return config.model_copy(update={"excitation": _along(config.excitation, direction)})
+    # what a study identifies from its force it does not from a motion of the base
+    return config.model_copy(
+        update={"excitation": _along(config.excitation, direction), "identification": None}
+    )
 
 
 def base_directions(campaign):

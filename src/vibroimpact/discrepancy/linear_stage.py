@@ -201,14 +201,16 @@ def _lags(lines_at, delay, seen, noise, model, start):
     Between its resonances no phase of each mode stands for milliseconds: a channel so late spoils
     the fit, and is turned back by what its lines tell first.
     """
-    first = free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
+    lines = lines_at(delay)
+    first = free = lines.fit(seen, noise, delay, start, phases=True)
     if left(free, model) >= LOST:
         before, delay = delay, from_phases(lines_at(np.zeros_like(delay)), noise)
         if delay.any():
             free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
         if left(free, model) >= LOST:
             return before, first.log_frequency
-    return delay + lags(free, model), free.log_frequency
+    # a base drives few modes, and a change of the structure turns the sense of one of them
+    return delay + lags(free, model, lines.record.base is None), free.log_frequency
 
 
 def _told(lag):

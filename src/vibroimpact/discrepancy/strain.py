@@ -21,7 +21,7 @@ STRAIN = "strain"
 class GaugedModel(ModalModel):
     """A ModalModel some of whose sensors are strain gauges: gauges (sensor,) bool says which."""
 
-    gauges: np.ndarray = None
+    gauges: np.ndarray | None = None
 
 
 def gauged_model(model, gauged):
