@@ -30,6 +30,9 @@ LEAST_LAG_S = 2.0e-5
 # the model
 SILENT = 1.0e-4
 BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
+# of the mode that a base drives most: a base drives the others by what is left of a sum over the
+# whole structure that all but cancels, of which no model tells the rest
+HARDLY = 0.02
 AT_ONCE = 32  # modes, so that their lines fit into little memory
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
 
@@ -108,6 +111,9 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     near = np.flatnonzero(
         (model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1])
     )
+    if record.base is not None:
+        drive = np.abs(model.drive_shapes[near]).max(axis=1)
+        near = near[drive > HARDLY * drive.max(initial=0.0)]
     expected = responses_of(
         record, model.omega[near], model.damping[near], model.drive_shapes[near], kinds
     )
