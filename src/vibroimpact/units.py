@@ -19,7 +19,9 @@ SI_OF_KIND = {
     "velocity": "m s-1",
     "displacement": "m",
     "contact_force": "N",
+    "strain": "1",
     "force": "N",
+    "base_acceleration": "m s-2",
     "voltage": "V",
     "time": "s",
 }
@@ -28,7 +30,9 @@ EXAMPLES = {
     "velocity": "m s-1 or mm s-1",
     "displacement": "m, mm or um",
     "contact_force": "N, kN or lbf",
+    "strain": "1, um/m or microstrain",
     "force": "N, kN or lbf",
+    "base_acceleration": "m s-2, mm s-2 or g",
     "voltage": "V or mV",
     "time": "s or ms",
 }
@@ -45,7 +49,7 @@ COMMON = {
     "N": ("force", 1.0),
     "V": ("voltage", 1.0),
 }
-SAME_DIMENSION = {"contact_force": "force"}
+SAME_DIMENSION = {"contact_force": "force", "base_acceleration": "acceleration"}
 # Names of UDUNITS that pint lacks; its mil is an angle.
 ALIASES = {
     "gn": "standard_gravity",
@@ -54,6 +58,10 @@ ALIASES = {
     "standard_free_fall": "standard_gravity",
     "mil": "thou",
     "mils": "thou",
+    "strain": "m/m",
+    "microstrain": "um/m",
+    "µstrain": "um/m",
+    "ustrain": "um/m",
 }
 SHARE_OF_G = re.compile(r"(milli|m|µ|u)?[gG](?:'?s)?")
 # A number before the unit, as in 0.001 m.
@@ -76,8 +84,8 @@ def si_factor(units: str, kind: str) -> float:
     """Return SI units per unit of a channel: multiply its values by it.
 
     units: UDUNITS text such as m s-2, mm/s², ft/s^2, g, lbf.
-    kind: acceleration, velocity, displacement, contact_force, force, voltage or time; "generic"
-        takes any unit, "excitation" takes forces and volts.
+    kind: acceleration, velocity, displacement, contact_force, strain, force, base_acceleration,
+        voltage or time; "generic" takes any unit, "excitation" takes forces and volts.
 
     For an acceleration "g" is standard gravity, not the gram. Raises UnitError for an empty or
     unknown unit, for one of another dimension, and for one that is no factor (degC, dB).
@@ -90,7 +98,7 @@ def si_factor(units: str, kind: str) -> float:
         )
     if text in COMMON and _fits(COMMON[text][0], kind):
         return COMMON[text][1]
-    gravity = SHARE_OF_G.fullmatch(text) if kind == "acceleration" else None
+    gravity = SHARE_OF_G.fullmatch(text) if "acceleration" in _kinds(kind) else None
     if gravity:
         return STANDARD_GRAVITY * PREFIX[gravity[1]]
     dimension, factor = _parsed(text)
@@ -187,7 +195,7 @@ def _parsed(text: str) -> tuple[Any, float]:
 
 def _translated(text: str) -> str:
     """Return a UDUNITS text in pint's notation: products as *, powers as **."""
-    text = ALIASES.get(text.strip(), text.strip())
-    text = text.replace("·", "*").replace("⋅", "*").replace("μ", "µ")
+    text = text.replace("·", "*").replace("⋅", "*").replace("μ", "µ").strip()
+    text = ALIASES.get(text, text)
     text = re.sub(r"(?<=[A-Za-zµ])\.(?=[A-Za-zµ])", "*", text)
     return re.sub(r"(?<=[A-Za-zµ])\s*(?:\^|\*\*)?\s*(-?\d+)", r"**\1", text)

@@ -47,7 +47,10 @@ class Plan:
     length [m], a direction an axis or a vector.
     levels: (N RMS, gap in % of the diameter, "fit" or "holdout") each.
     duration: s of a record. sampling: Hz. start_up: "rest" or "stationary".
-    band: Hz, of the force. drive_direction: (3,) across the beam.
+    band: Hz, of the force. drive_direction: (3,) across the beam. on_base: no force acts; all that
+    holds the beam has an acceleration of the RMS of the levels, in m/s² along drive_direction, and
+    accelerations and velocities of channels are absolute. What an effect adds beside the beam, such
+    as a loose mass or the mass of a plate, is not driven by it.
     *_scatter: one sigma, relative; scatter_law: "normal", "uniform" or "laplace".
     force_gain: of the measured force over the true one.
     noise: RMS relative to the largest channel RMS of the lowest level, among channels of a kind.
@@ -66,6 +69,7 @@ class Plan:
     start_up: str = "rest"
     band: tuple = BAND
     drive_direction: tuple = UNIT["y"]
+    on_base: bool = False
     steps_per_second: int = 163840
     gain_scatter: float = 0.02
     frequency_scatter: float = 0.003
@@ -135,7 +139,7 @@ def forces(plan):
 def build_rig(plan, hidden=True):
     """The Rig of a plan, with its effects where `hidden`."""
     rig = Rig.bare(plan.beam)
-    rig.drive_direction = plan.drive_direction
+    rig.drive_direction, rig.on_base = plan.drive_direction, plan.on_base
     for name, parameters in plan.effects if hidden else ():
         if name not in INSTRUMENTS:
             IN_RIG[name](rig, **parameters)
@@ -187,10 +191,32 @@ def simulate_records(plan, force, hidden=True, start_stream=0, only=None):
             number * force.shape[1] / plan.sampling,
         )
         motion = [getattr(record, kind)[row] for row, (*_, kind) in enumerate(sensors)]
+        if plan.on_base:
+            motion = [
+                own
+                + np.dot(direction, plan.drive_direction) * base_motion(plan, force[number], kind)
+                for own, (_, direction, kind) in zip(motion, sensors, strict=True)
+            ]
         plates = record.reaction.reshape(-1, force.shape[1]) if plan.contact_force else []
         found.append(np.array([*motion, *plates]))
         contact.append(record.contact)
     return np.array(found), np.array(contact)
+
+
+def base_motion(plan, acceleration, kind):
+    """(time,) what a sensor of a kind shows of an acceleration (time,) of the base from rest: none
+    of it for a displacement, which is measured from the base.
+    """
+    if kind == "displacement":
+        return np.zeros_like(acceleration)
+    if kind == "acceleration":
+        return acceleration
+    spectrum = np.fft.rfft(acceleration)
+    omega = 2.0 * np.pi * np.fft.rfftfreq(acceleration.size, 1.0 / plan.sampling)
+    spectrum[1:] /= 1j * omega[1:]
+    spectrum[0] = 0.0
+    velocity = np.fft.irfft(spectrum, acceleration.size)
+    return velocity - velocity[0]
 
 
 def channels_of(plan):
@@ -225,6 +251,8 @@ def channels_of(plan):
         "point": beam.position(places["drive"]),
         "direction": plan.drive_direction,
     }
+    if plan.on_base:
+        drive |= {"name": "table", "kind": "base_acceleration", "units": "m s-2"}
     return channels, drive
 
 

@@ -69,6 +69,21 @@ class Planes:
             zip(("y", "x"), self.mesh.direction_rows(self.arc(place), direction), strict=True)
         )
 
+    def carried(self, direction):
+        """{plane: (dof,)} kg: the mass that moves with all that holds the tube along a direction
+        (3,), of the tube and of what is fixed to it; a fluid beside it stays where it is.
+        """
+        x, y, z = direction
+        out = {}
+        for plane, along in (("y", (y, 0.0, 0.0)), ("x", (x, z, 0.0))):
+            mass = self.mesh.matrices(plane)[1]
+            out[plane] = mass @ np.tile(along, self.mesh.nodes)
+        for place, value in self.rig.masses:
+            for axis, component in zip(np.eye(3), direction, strict=True):
+                for plane, row in self.rows(place, axis).items():
+                    out[plane] += value * component * row
+        return out
+
     def _bending(self, s, plane):
         """{plane: (dof,)} bending angle over BEND m about s [m]."""
         rows = {"y": np.zeros(3 * self.mesh.nodes), "x": np.zeros(3 * self.mesh.nodes)}

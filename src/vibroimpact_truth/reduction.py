@@ -131,8 +131,11 @@ def _damping(rig, frequency, real):
 
 
 def _drive_rows(planes):
-    """Rows of the force: along its direction, turned by drive_angle about the tube's axis."""
+    """Rows of the force: along its direction, turned by drive_angle about the tube's axis. Of a
+    moving base those of the inertia of what it carries, per m/s²."""
     rig = planes.rig
+    if rig.on_base:
+        return {plane: -row for plane, row in planes.carried(rig.drive_direction).items()}
     tx, tz = rig.tube.tangent(planes.places["drive"])
     axis, force = np.array([tx, 0.0, tz]), np.array(rig.drive_direction)
     angle = rig.drive_angle

@@ -125,7 +125,8 @@ class Rig:
     fluid: (kg/m, N s/m²). drag: N s²/m² per metre.
     mode_factor: {mode number from 1: factor of its frequency}.
     drive_direction: (3,) of the force; drive_angle: rad, by which it is turned about the tube's
-    axis.
+    axis. on_base: whether no force drives the tube, but an acceleration of all that holds it, along
+    drive_direction.
     frequency_drift: relative change of all modal frequencies per s of the campaign.
     unmeasured: (place, direction, RMS relative to the drive) of a second force.
     """
@@ -144,6 +145,7 @@ class Rig:
     mode_factor: dict = field(default_factory=dict)
     drive_direction: tuple = (0.0, 1.0, 0.0)
     drive_angle: float = 0.0
+    on_base: bool = False
     frequency_drift: float = 0.0
     unmeasured: tuple | None = None
 

@@ -10,9 +10,10 @@ import numpy as np
 def write_campaign(path, force, response, channels, drive, records, stated, noise=None):
     """Write a campaign file, under a temporary name until it is complete.
 
-    force (record, time): N.
+    force (record, time): N, or the unit of the drive.
     response (record, channel, time): in the units of the channels.
-    channels: {name, units, kind, point (3,) m, direction (3,)} each; drive: the same.
+    channels: {name, units, kind, point (3,) m, direction (3,)} each; drive: the same, without
+    units and kind where it is a force in N.
     records: {name, gap m, repeat, split} each.
     stated: {sampling_frequency Hz, start_up "rest" or "stationary"}.
     noise: (channel,) RMS, or None.
@@ -40,17 +41,23 @@ def write_campaign(path, force, response, channels, drive, records, stated, nois
             ("xyz", 3),
         ):
             file.createDimension(name, size)
-        _series(file, "force", ("record", "force_channel", "time"), force[:, None], units="N")
+        _series(
+            file,
+            "force",
+            ("record", "force_channel", "time"),
+            force[:, None],
+            units=drive.get("units", "N"),
+        )
         _series(file, "response", ("record", "channel", "time"), response)
         _described(file, "channel", channels, ("units", "kind"))
-        _described(file, "force_channel", [drive], ())
+        _described(file, "force_channel", [drive], ("units", "kind") if "kind" in drive else ())
         _text(file, "record_name", "record", [record["name"] for record in records])
         _numbers(
             file,
             "load_rms",
             ("record",),
             np.sqrt(np.mean(np.square(force.astype(np.float32), dtype=float), axis=-1)),
-            units="N",
+            units=drive.get("units", "N"),
         )
         _numbers(file, "gap", ("record",), [record["gap"] for record in records], units="m")
         _numbers(file, "repeat", ("record",), [record["repeat"] for record in records], kind="i8")

@@ -38,6 +38,7 @@ OPTIONAL = {
     "noise_floor_rms": ("channel",),
     "valid_samples": ("record",),
     "force_channel_units": ("force_channel",),
+    "force_channel_kind": ("force_channel",),
     "time": ("time",),
 }
 TEXTS = (
@@ -46,6 +47,7 @@ TEXTS = (
     "channel_name",
     "force_channel_name",
     "force_channel_units",
+    "force_channel_kind",
     "record_name",
     "split",
 )

@@ -4,10 +4,13 @@ Dimensions: record, channel, force_channel, time; xyz and support where used.
 
 Required variables:
 
-- force (record, force_channel, time): N, or force_channel_units (force_channel)
+- force (record, force_channel, time): N, or force_channel_units (force_channel); an acceleration
+  where force_channel_kind says base_acceleration
 - response (record, channel, time): channel_units (channel), any UDUNITS text
 - channel_kind (channel): acceleration, velocity, displacement, contact_force (of the support at
-  channel_point on the structure, the sum over its contact points) or generic
+  channel_point on the structure, the sum over its contact points), strain (along a tube, by its
+  bending, of the outer fibre at channel_point; channel_direction is the outward normal there) or
+  generic
 - channel_name (channel), channel_point (channel, xyz) m
 - channel_direction (channel, xyz): unit vector of the positive sense
 - force_channel_name, force_channel_point, force_channel_direction: the same for forces
@@ -16,10 +19,13 @@ Required variables:
 Variables filled in where they are missing (see fill_missing):
 
 - record_name (record), repeat (record), split (record): fit or holdout
-- load_rms (record): N, RMS of force channel 0 over the valid samples
+- load_rms (record): N, or m s-2 where that is a base acceleration: RMS of force channel 0 over the
+  valid samples
 
 Optional variables:
 
+- force_channel_kind (force_channel): force, or base_acceleration of all that holds the structure,
+  positive along force_channel_direction; force_channel_point is of no account then
 - support_gap (record, support): m
 - voltage (record, time): V
 - noise_floor_rms (channel): in the unit of the channel
@@ -43,6 +49,7 @@ from vibroimpact.records import read_given_dataset, write_record
 from vibroimpact.units import UnitError, si_factor
 
 from .contract import OPTIONAL, SERIES, contract_problems
+from .force_kinds import BASE, FORCE, load_unit, unit_kinds
 from .stated_values import KINDS as KINDS
 from .stated_values import Kind as Kind
 
@@ -57,6 +64,7 @@ ABOUT = {
     "channel_direction": ("1", "unit vector of the positive sense of the channel"),
     "force_channel_name": ("", "name of the force channel"),
     "force_channel_units": ("", "unit of the force channel"),
+    "force_channel_kind": ("", "what the force channel measures: a force, or the base"),
     "force_channel_point": ("m", "position of the force"),
     "force_channel_direction": ("1", "unit vector of the positive sense of the force"),
     "gap": ("m", "radial gap of the record"),
@@ -127,13 +135,19 @@ def campaign_dataset(
 
     force (record, force_channel, time): in the units of the drives.
     response (record, channel, time): in the units of the channels.
-    channels, drives: lists of Channel.
+    channels, drives: lists of Channel; a drive is a force where its kind is not base_acceleration.
     levels: list of Level, one per record.
     sampling_frequency: Hz.
     optional: {name: values} of optional variables.
     attributes: source, antialias, start_up, period_samples, transient_periods.
     """
-    factor = [_factor(f"force channel {drive.name}", drive.units, "excitation") for drive in drives]
+    kinds = [BASE if drive.kind == BASE else FORCE for drive in drives]
+    factor = [
+        _factor(f"force channel {drive.name}", drive.units, BASE if kind == BASE else "excitation")
+        for drive, kind in zip(drives, kinds, strict=True)
+    ]
+    if BASE in kinds:
+        optional = {"force_channel_kind": np.array(kinds, dtype=object), **(optional or {})}
     data: dict[str, tuple] = {
         "force": (
             ("record", "force_channel", "time"),
@@ -160,7 +174,7 @@ def campaign_dataset(
         "load_rms": (
             "record",
             factor[0] * np.sqrt(np.nanmean(np.square(np.asarray(force, float)[:, 0]), axis=-1)),
-            {"units": "N"},
+            {"units": "m s-2" if kinds[0] == BASE else "N"},
         ),
         "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
         "repeat": ("record", np.array([level.repeat for level in levels], np.int64)),
@@ -284,7 +298,7 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     whole = campaign.assign(new)
     if "load_rms" not in campaign:
         rms = [_rms(force_signal(whole, record)) for record in range(count)]
-        new["load_rms"] = ("record", np.array(rms), {"units": "N"})
+        new["load_rms"] = ("record", np.array(rms), {"units": load_unit(campaign)})
         assumed.append("load_rms is missing: it was computed from force channel 0")
     loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
     if "repeat" not in campaign:
@@ -411,7 +425,8 @@ def channel_factor(campaign: xr.Dataset, channel: int) -> float:
 
 
 def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> np.ndarray:
-    """Return (time,) the valid samples of a force of a record, in N (V where volts were recorded).
+    """Return (time,) the valid samples of a force of a record, in N (V where volts were recorded,
+    m/s² for an acceleration of the base).
 
     Raises CampaignError for an unknown unit.
     """
@@ -430,14 +445,15 @@ def measured_values(campaign: xr.Dataset, name: str, record: int) -> np.ndarray:
 
 
 def force_factor(campaign: xr.Dataset, force_channel: int) -> float:
-    """Return N per stored unit of a force channel (V per unit where volts were recorded).
+    """Return N per stored unit of a force channel (V per unit where volts were recorded, m/s² for
+    an acceleration of the base).
 
     Raises CampaignError for an unknown unit.
     """
     return _factor(
         f"force channel {campaign['force_channel_name'].values[force_channel]}",
         force_units(campaign, force_channel),
-        "excitation",
+        unit_kinds(campaign)[force_channel],
     )
 
 

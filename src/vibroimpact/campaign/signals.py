@@ -16,6 +16,7 @@ from vibroimpact.spectra.periodic_lines import PeriodError, find_period
 from vibroimpact.spectra.welch import segment_spectra
 
 from .file import CampaignError, channel_factor, force_factor, measured_values
+from .force_kinds import force_kinds
 
 SEGMENT_S = 8.0
 FEWEST_SEGMENTS = 12
@@ -43,8 +44,9 @@ class CampaignSignals:
     """A campaign in SI units.
 
     rate: sampling frequency, Hz.
-    records, channels, forces: names. kinds (channel,). splits (record,): "fit" or "holdout".
-    load_rms (record,): N, as stated, or that of the force where it differs.
+    records, channels, forces: names. kinds (channel,). force_kinds (force_channel,), see
+    campaign.force_kinds. splits (record,): "fit" or "holdout".
+    load_rms (record,): N, or m/s² of a base, as stated, or that of the force where it differs.
     gap (record,): m, NaN where there is none.
     points (channel, xyz): m.
     directions (channel, xyz), force_directions (force_channel, xyz): unit vectors.
@@ -63,6 +65,7 @@ class CampaignSignals:
     channels: list[str]
     forces: list[str]
     kinds: list[str]
+    force_kinds: list[str]
     load_rms: np.ndarray
     gap: np.ndarray
     splits: list[str]
@@ -147,6 +150,7 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         channels=texts["channel_name"],
         forces=texts["force_channel_name"],
         kinds=texts["channel_kind"],
+        force_kinds=force_kinds(campaign),
         load_rms=_loads(campaign["load_rms"].values.astype(float), force),
         gap=campaign["gap"].values.astype(float),
         splits=(

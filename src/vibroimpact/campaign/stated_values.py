@@ -16,7 +16,9 @@ import xarray as xr
 from vibroimpact.spectra.periodic_lines import SHORTEST_PERIOD
 from vibroimpact.units import UnitError, si_factor
 
-Kind = Literal["acceleration", "velocity", "displacement", "contact_force", "generic"]
+from .force_kinds import FORCE_KINDS, unit_kinds
+
+Kind = Literal["acceleration", "velocity", "displacement", "contact_force", "strain", "generic"]
 KINDS = get_args(Kind)
 SPLITS = ("fit", "holdout")
 START_UPS = ("rest", "stationary")
@@ -87,10 +89,15 @@ def stated_value_problems(campaign: xr.Dataset, sound: set[str]) -> Iterator[str
     yield from _name_problems(campaign, sound)
     if "force" in sound and "force_channel_units" not in campaign:
         try:
-            si_factor(str(campaign["force"].attrs.get("units", "N")), "excitation")
+            for kind in unit_kinds(campaign):
+                si_factor(str(campaign["force"].attrs.get("units", "N")), kind)
         except UnitError as error:
             yield f"'force' {error}"
-    for name, known in (("channel_kind", KINDS), ("split", SPLITS)):
+    for name, known in (
+        ("channel_kind", KINDS),
+        ("force_channel_kind", FORCE_KINDS),
+        ("split", SPLITS),
+    ):
         if name in sound:
             for text in sorted({str(value) for value in campaign[name].values} - set(known)):
                 yield f"{name} '{text}' is unknown: use one of {', '.join(known)}"

@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.campaign.checks.file_checks import check_file, usable_signals
 from vibroimpact.campaign.file import PARALLEL, SAME_POINT_M, valid_count
+from vibroimpact.campaign.force_kinds import BASE, base_channels
 from vibroimpact.campaign.signals import campaign_signals, common_period, transfer_band
 
 from .long_records import mean_coherences, quick_length
@@ -20,6 +21,11 @@ COHERENT = 0.7  # mean coherence below which a record without period earns a war
 # holds the transient
 SETTLED = 2.0
 UNSEEN = 0.005
+# Kinds of channels that are left out, and why.
+NO_MOTION = {
+    "contact_force": "a contact force is no motion",
+    "strain": "measured modes do not tell how a strain follows from motions",
+}
 
 
 class Unusable(ValueError):
@@ -30,25 +36,30 @@ def own_records(path):
     """Return (campaign Dataset with what is usable, rows of checks, measured signals) of a campaign
     file of any state.
 
-    Channels that are unusable in some record, contact forces, and records without a usable force
-    are left out. Attributes of the Dataset: period_samples (0: each record has a period of its own,
-    or whole_records says that they have none and are cut to their last stretch), transient_periods.
-    Raises Unusable; its argument `rows` are the checks.
+    Channels that are unusable in some record, contact forces, strains, and records without a usable
+    force are left out. Attributes of the Dataset: period_samples (0: each record has a period of
+    its own, or whole_records says that they have none and are cut to their last stretch),
+    transient_periods.
+    Raises Unusable, also where the base moved; its argument `rows` are the checks.
     """
     campaign, rows = check_file(path)
     refusals = [row["message"] for row in rows if row["level"] == "refuse"]
     if refusals:
         raise Unusable(" ".join(refusals), rows)
+    if base_channels(campaign).any():
+        channel = int(np.argmax(base_channels(campaign)))
+        message = (
+            f"force_channel_kind[{channel}] = '{BASE}': a structure without a model is scaled by"
+            " the response at a measured force, which a moving base has not: give a model of the"
+            " structure, or measure a force."
+        )
+        raise Unusable(message, [*rows, _row("content", "refuse", message)])
     force, response = usable_signals(campaign, rows)
     kinds = [str(kind) for kind in campaign["channel_kind"].values]
     force &= response.any(axis=1)
-    shown = response[force].all(axis=0) & (np.array(kinds) != "contact_force")
+    shown = response[force].all(axis=0) & ~np.isin(kinds, list(NO_MOTION))
     for channel in np.flatnonzero(~shown):
-        why = (
-            "a contact force is no motion"
-            if kinds[channel] == "contact_force"
-            else "it can not be used in every record"
-        )
+        why = NO_MOTION.get(kinds[channel], "it can not be used in every record")
         name = str(campaign["channel_name"].values[channel])
         rows.append(_row("channels", "warn", f"{name} is left out of the completion: {why}.", name))
     if not shown.any():

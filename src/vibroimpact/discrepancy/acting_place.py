@@ -17,6 +17,7 @@ from . import priors
 from .attach import displacement_shapes
 from .other_source import BLOCK, FREE, incoherent_rest
 from .sensed import differentiated
+from .strain import STRAIN
 
 PLACES = 64  # along the tube
 ANGLES = np.deg2rad(np.arange(0.0, 180.0, 15.0))  # of the force across the tube
@@ -45,10 +46,10 @@ def acting_place(bench):
     """Return the ActingPlace of the lowest record of a Workbench; None where its structure is no
     tube, noise explains the record, or the channels do not tell one place from most others.
     """
-    length, kinds = length_m(bench.values), bench.signals.kinds
-    if length is None or len(kinds) < LEAST_CHANNELS:
+    length, read = length_m(bench.values), bench.signals.kinds != STRAIN
+    if length is None or read.sum() < LEAST_CHANNELS:
         return None
-    rest, noise = incoherent_rest(bench)
+    rest, noise = (rows[read] for rows in incoherent_rest(bench))
     rest = rest / noise[..., None]
     power = np.sum(np.abs(rest) ** 2)
     values = rest.size * (1.0 - FREE / BLOCK)
@@ -93,20 +94,21 @@ def _support(model, places, within):
 def _explained(bench, rest, noise, places, axes):
     """Return (place, angle): the power of rest (channel, block, BLOCK), over noise (channel,
     block), that one force at each of places (place, 3) at each angle between axes (place, 2, 3)
-    explains.
+    explains; strains are not read, whose shapes are not among displacements.
     """
+    read = bench.signals.kinds != STRAIN
     model, shapes = displacement_shapes(
-        bench.config, np.vstack([bench.campaign["channel_point"].values, places])
+        bench.config, np.vstack([bench.campaign["channel_point"].values[read], places])
     )
     channels = len(rest)
-    sensed = np.einsum("mca,ca->cm", shapes[:, :channels], bench.bare.sensor_directions)
+    sensed = np.einsum("mca,ca->cm", shapes[:, :channels], bench.bare.sensor_directions[read])
     driven = np.einsum("mpa,pia->ipm", shapes[:, channels:], axes)
     lines = np.arange(rest[0].size)
     omega = 2.0 * np.pi * bench.linear_record.frequency[lines]
     receptance = 1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega)
     along = np.zeros((2, len(places), len(lines)), complex)  # transfer functions with the rest
     own = np.zeros((2, 2, len(places), len(lines)))  # and with each other
-    for channel, kind in enumerate(bench.signals.kinds):
+    for channel, kind in enumerate(bench.signals.kinds[read]):
         weight = differentiated(omega, kind) / np.repeat(noise[channel], BLOCK)
         transfer = (driven * sensed[channel]) @ receptance * weight
         along += transfer.conj() * rest[channel].ravel()

@@ -4,15 +4,19 @@ drives in place of the study's.
 
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from vibroimpact.campaign.file import CampaignError, support_ratios
+from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.config.schema import Sensors
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.reduced_model import build_model
 
-from .sensed import moving
+from .base_driven import driven_by_base, further_drive_shapes
+from .sensed import moving, of_modes
+from .strain import STRAIN, gauged_model
 
 SAME_POINT_M = 1.0e-3
 
@@ -22,21 +26,30 @@ def attach(config, campaign):
     as drives, and nothing else to keep.
 
     config: a checked Config or StageSettings of a tube. Sensors are the displacements along
-    channel_direction, positive in its sense, in the order of the channels; none of it, zero, for a
-    channel that measures no motion. Raises CampaignError
+    channel_direction, positive in its sense, in the order of the channels; the strain of the outer
+    fibre there for a strain gauge; none of it, zero, for a contact force. A campaign on a moving
+    base has as drives the accelerations of the base, in the place of those of the configuration.
+    Raises CampaignError
     when a channel or force is farther than 5 mm from the structure; the message lists all of them.
     """
-    places = np.vstack([campaign["channel_point"].values, campaign["force_channel_point"].values])
-    directions = np.vstack(
-        [campaign["channel_direction"].values, campaign["force_channel_direction"].values]
-    ).astype(float)
-    names = [
-        *map(str, campaign["channel_name"].values),
-        *map(str, campaign["force_channel_name"].values),
-    ]
+    forces = ~base_channels(campaign)
+    places, directions, names = (
+        np.concatenate([campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values])
+        for key in ("point", "direction", "name")
+    )
+    directions, names = directions.astype(float), [*map(str, names)]
     _require_directions(directions, names)
+    channels = campaign.sizes["channel"]
+    bases = directions[channels:][~forces]
+    on_structure = np.concatenate([np.ones(channels, bool), forces])
+    places, directions = places[on_structure], directions[on_structure]
+    names = [name for name, kept in zip(names, on_structure, strict=True) if kept]
+    gauged = np.flatnonzero(campaign["channel_kind"].values == STRAIN)
+    config = driven_by_base(config, campaign)
     try:
-        model, displacements = displacement_shapes(config, places)
+        model, displacements = displacement_shapes(
+            config, places, {number: directions[number] for number in gauged}
+        )
     except ValueError as error:
         raise CampaignError(_sentence(str(error), names)) from None
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
@@ -44,33 +57,43 @@ def attach(config, campaign):
         along.copy()
     )  # a force may act beside its stated direction, a sensor's direction is what it is
     angle = getattr(config.excitation, "turn_deg", 0.0)
-    for number in range(campaign.sizes["channel"], len(places)) if angle else ():
+    for number in range(channels, len(places)) if angle else ():
         acting[number] = turned_direction(along[number], angle, turn_axis(config, places[number]))
     shapes = np.einsum("mpa,pa->mp", displacements, acting)
-    channels = campaign.sizes["channel"]
-    shapes[:, :channels] *= moving(campaign["channel_kind"].values)
-    return replace(
+    shapes[:, :channels] *= of_modes(campaign["channel_kind"].values)
+    shapes[:, gauged] = model.sensor_shapes[:, 3 * len(places) :]
+    drive_shapes = shapes[:, channels:]
+    if len(bases):
+        others = further_drive_shapes(config, bases[1:], partial(build_model, motion_only=True))
+        drive_shapes = np.concatenate([model.drive_shapes, *others], axis=1)
+    attached = replace(
         model,
         gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
         sensor_shapes=shapes[:, :channels],
         sensor_names=tuple(names[:channels]),
         sensor_positions=places[:channels],
         sensor_directions=along[:channels],
-        drive_shapes=shapes[:, channels:],
+        drive_shapes=drive_shapes,
     )
+    return gauged_model(attached, gauged) if len(gauged) else attached
 
 
-def displacement_shapes(config, places):
+def displacement_shapes(config, places, normals=None):
     """Return (ModalModel, (mode, place, 3)): the displacements of a configuration's structure at
     places (place, 3) m. Raises ValueError for one that is farther than 5 mm from it.
+
+    normals: {number of a place: outward normal (3,)} of strain gauges there, whose shapes are the
+    last of the model's sensors.
     """
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
     sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
     model = build_model(
         config.model_copy(update={"points": {**config.points, **points}, "record": sensors}),
         motion_only=True,
+        gauges=[(f"place_{number}", normal) for number, normal in (normals or {}).items()],
     )
-    return model, model.sensor_shapes.reshape(model.modes, len(places), 3)
+    moved = model.sensor_shapes[:, : 3 * len(places)]
+    return model, moved.reshape(model.modes, len(places), 3)
 
 
 def with_channel_points(config, campaign):

@@ -1,8 +1,8 @@
 """What of a campaign is compared with a model, and why a campaign and a model can not be compared.
 
-Simulated are motions of a tube under forces in N, and the forces of its supports on it. Nothing
-else is simulated in their place: other channels are left out, and what leaves too little is
-refused, both with a sentence.
+Simulated are motions of a tube under forces in N or on a moving base, strains of its outer fibre,
+and the forces of its supports on it. Nothing else is simulated in their place: other channels are
+left out, and what leaves too little is refused, both with a sentence.
 """
 
 from __future__ import annotations
@@ -14,17 +14,25 @@ import xarray as xr
 
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, force_units, support_ratios
+from vibroimpact.campaign.force_kinds import BASE, FORCE, base_channels
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.geometry.centreline import Centreline, build_centreline
+from vibroimpact.geometry.directions import unit_vector
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.structure.tube import build_structure
 from vibroimpact.units import UnitError, si_factor
 
 from .measuring import NO_CHANNELS
 from .sensed import CONTACT_FORCE, SENSED, across, support_at
+from .strain import STRAIN
 
 READ = ", ".join(SENSED).replace("_", " ")
 LEFT_OUT = "channels"  # name of the check
 ACROSS = 0.1  # cosine between a contact force and the directions in which its support acts
+# Cosine between the outward normal at a gauge and the tube: what is more along it is no normal. A
+# chord of a bend is off its tangent by less.
+LEANS = 0.2
+ON_AXIS = 0.99  # least |cosine| of that normal with an axis of a section that is not round
 NO_DIRECTION = 1.0e-6  # length below which a vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
@@ -81,6 +89,44 @@ def contact_force_rows(model: Any, signals: Any) -> list[dict]:
     return rows
 
 
+def strain_rows(config: Any, campaign: xr.Dataset) -> list[dict]:
+    """Return the rows of checks that tell which strains are left out beside a model of a tube."""
+    rows = []
+    for channel in np.flatnonzero(campaign["channel_kind"].values == STRAIN):
+        normal, point = (
+            campaign[f"channel_{key}"].values[channel].astype(float)
+            for key in ("direction", "point")
+        )
+        why = _no_gauge(build_structure(config), point, unit_vector(normal))
+        if why:
+            name = str(campaign["channel_name"].values[channel])
+            rows.append(_left_out(name, f"{name} is a strain {why}"))
+    return rows
+
+
+def _no_gauge(structure, point, normal):
+    """Return why a gauge at a point (3,) of a TubeStructure, with an outward normal (3,), tells no
+    bending strain of it, None where it does.
+    """
+    place = structure.centreline.locate(point, "the gauge")
+    along = abs(structure.centreline.direction(place) @ normal)
+    if along > LEANS:
+        return (
+            f"whose channel_direction is along the tube (cosine {along:.2f}): it is left out; give"
+            " the outward normal of the tube where the gauge is glued"
+        )
+    if structure.first_axis is None:
+        return None
+    nearest = np.abs(structure.section_axes(place) @ normal).max()
+    if nearest < ON_AXIS:
+        return (
+            "between the axes of a section that is not round (cosine"
+            f" {nearest:.2f} with the nearest axis), where the model does not say how far off the"
+            " centre the surface is: it is left out; glue gauges on an axis of the section"
+        )
+    return None
+
+
 def _not_a_support(model, channel):
     """Return why a channel can be no force of a support of the model, None where it can."""
     support = support_at(model, model.sensor_positions[channel])
@@ -106,8 +152,11 @@ def _left_out(name: str, sentence: str) -> dict:
     return check_row(LEFT_OUT, "warn", f"{sentence}.", channel=name)
 
 
-def model_problems(config: Any) -> list[str]:
-    """Return sentences on why no campaign can be compared with a model."""
+def model_problems(config: Any, on_base: bool = False) -> list[str]:
+    """Return sentences on why no campaign can be compared with a model.
+
+    on_base: whether the campaign measured the motion of the base in the place of a force.
+    """
     problems = []
     if config.structure.kind not in TUBES:
         problems.append(
@@ -115,7 +164,13 @@ def model_problems(config: Any) -> list[str]:
             f" a model of kind {' or '.join(TUBES)}; {IDENTIFIED}"
         )
     force = config.excitation
-    if not (hasattr(force, "point") and hasattr(force, "direction")):
+    if on_base:
+        if force.kind == "base_motion" and force.obstacles == "fixed":
+            problems.append(
+                "excitation.obstacles = 'fixed', but a campaign on a moving base is compared with"
+                " supports that ride on the base: give obstacles: moving"
+            )
+    elif not (hasattr(force, "point") and hasattr(force, "direction")):
         problems.append(
             f"excitation.kind = '{force.kind}' has no point at which the measured force acts: give"
             " a model with excitation.kind: band_limited, and its point and direction"
@@ -142,7 +197,16 @@ def campaign_problems(campaign: xr.Dataset) -> list[str]:
                 f"channel_name[{channel}] = '{name}' stands for several channels in a verdict: give"
                 " the channel another name"
             )
+    bases = base_channels(campaign)
+    problems += _mixed_problems(campaign, bases)
     for channel, name in enumerate(campaign["force_channel_name"].values):
+        if bases[channel]:
+            if not _length_of(campaign, channel) > NO_DIRECTION:
+                problems.append(
+                    f"base acceleration {name} has no known direction, but drives the model: give"
+                    f" force_channel_direction[{channel}]"
+                )
+            continue
         if _nowhere(campaign, "force_channel", channel):
             problems.append(
                 f"force channel {name} has no known place and direction, but drives the model: give"
@@ -165,10 +229,29 @@ def comparison_problems(config: Any, campaign: xr.Dataset) -> list[str]:
     config: a checked Config.
     campaign: as in campaign_problems.
     """
-    problems = [*model_problems(config), *campaign_problems(campaign)]
+    on_base = bool(base_channels(campaign).any())
+    problems = [*model_problems(config, on_base), *campaign_problems(campaign)]
     if config.structure.kind in TUBES:
         problems += [*_gap_problems(config, campaign), *_place_problems(config, campaign)]
     return problems
+
+
+def _mixed_problems(campaign, bases):
+    """Yield a sentence where the base moved and forces acted as well."""
+    if bases.any() and not bases.all():
+        force, base = int(np.argmin(bases)), int(np.argmax(bases))
+        names = campaign["force_channel_name"].values
+        yield (
+            f"force_channel_kind[{force}] = '{FORCE}' ({names[force]}) beside"
+            f" force_channel_kind[{base}] = '{BASE}' ({names[base]}): a comparison reads forces or"
+            " the motion of the base, not both at once; give a campaign for each, with records in"
+            " which the other was still"
+        )
+
+
+def _length_of(campaign, channel):
+    """Return the length of the stated direction of a force channel, NaN where it is not known."""
+    return float(np.linalg.norm(campaign["force_channel_direction"].values[channel].astype(float)))
 
 
 def _nowhere(campaign: xr.Dataset, what: str, channel: int) -> bool:
@@ -200,7 +283,7 @@ def _place_problems(config, campaign):
     line = build_centreline(config.structure)
     kept = {
         "channel": compared_channels(campaign),
-        "force_channel": np.ones(campaign.sizes["force_channel"], bool),
+        "force_channel": ~base_channels(campaign),
     }
     for what, chosen in kept.items():
         for channel in np.flatnonzero(chosen):

@@ -32,7 +32,11 @@ def drift_of(bench):
     fit, signals, lowest = bench.measured_fit, bench.signals, bench.signals.lowest
     force, responses = (bench.valid(series[lowest]) for series in (signals.force, signals.response))
     late = Measuring(np.ones(len(fit.delay)), -fit.delay)
+    base = None if signals.base is None else bench.valid(signals.base[lowest])
+    # what is late is the absolute motion
+    responses = responses if base is None else responses + base
     responses = late.delayed(responses, signals.rate)
+    responses = responses if base is None else responses - base
     # from where the whole record has the modes: halves differ from it by little
     there = linear.corrected(
         bench.bare,
@@ -43,7 +47,12 @@ def drift_of(bench):
     halves = []
     for end, begin in ((middle, start), (force.shape[-1], 0.5)):
         record = LinearRecord(
-            force[..., :end], signals.rate, signals.band_Hz, signals.from_rest, begin
+            force[..., :end],
+            signals.rate,
+            signals.band_Hz,
+            signals.from_rest,
+            begin,
+            None if base is None else base[:, :end],
         )
         found = fit_modes(
             record,

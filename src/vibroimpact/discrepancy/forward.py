@@ -15,7 +15,7 @@ from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
 
-from .sensed import force_weights, moving, orders
+from .sensed import force_weights, of_modes, orders
 
 # Of the gap: how far off its place an obstacle is, drawn for every run. No plate is centred better.
 # From 1e-6 a tube that is driven in one plane takes most of a record to leave it: 12 dB too little
@@ -75,7 +75,7 @@ def simulate_records(model, schedule, forces, runs, kinds):
     the small offset of the obstacles that makes two runs of an impacting tube differ.
     """
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
-    moves, weights = moving(kinds), force_weights(model, kinds)
+    moves, weights = of_modes(kinds), force_weights(model, kinds)
     schedule = replace(schedule, derivatives=tuple(map(int, orders(kinds))))
     for first in range(0, len(runs), LANES):
         batch = runs[first : first + LANES]

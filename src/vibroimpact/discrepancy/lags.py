@@ -9,15 +9,18 @@ HEARD, FEWEST = 3.0, 50  # times the noise of a line, and so many lines
 EXCITED = 1.0e-3  # of the strongest line of the force
 REAL_ENOUGH = 0.6  # least agreement of twice the phase once the delay is taken out
 SEEN_S = 3.0e-4  # less is told by the phases of modes
+SIGNED = 3  # modes that move a channel
 DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
 
 
-def lags(found, model):
+def lags(found, model, signs_told=True):
     """Return (channel,) s: by how much each channel lags, from the phases of its participations in
     a fit that leaves them free.
 
     Modes damped in proportion move in phase or against it, as the model says; what turns with the
-    frequency is a delay, the same for all modes.
+    frequency is a delay, the same for all modes. signs_told: whether the model tells the sense of
+    each mode there. Where it does not, two modes, one with the other sense, look like a delay of
+    half a period: from fewer than SIGNED modes no more than a quarter of one is believed.
     """
     frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
@@ -29,6 +32,8 @@ def lags(found, model):
         weight = np.where(driven & (np.abs(own) > 0.05 * np.abs(own).max()), 1.0, 0.0)
         if found.share[channel] > DEAF or not weight.any():
             continue  # a channel of noise, or of motion of which the model does not tell the sense
+        there = frequency[weight > 0.0]
+        reach = np.inf if signs_told or len(there) >= SIGNED else 0.25 / there.max()
         unit = weight * shape * np.sign(own) / np.maximum(np.abs(shape), 1.0e-300)
         match = np.real(np.exp(2j * np.pi * np.outer(tried, frequency)) @ unit)
         best = tried[np.argmax(match - 1.0e-3 * np.abs(tried) / LONGEST_LAG_S)]
@@ -37,7 +42,7 @@ def lags(found, model):
             best -= np.sum(frequency * turned.imag) / max(
                 2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300
             )
-        out[channel] = best
+        out[channel] = best if np.abs(best) <= reach else 0.0
     return out
 
 

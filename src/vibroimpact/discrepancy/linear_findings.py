@@ -123,7 +123,8 @@ def source_rows(bench, record, acting=None):
             "warn",
             f"{first.share:.1%} of the power of {signals.names[first.channel]} between"
             f" {first.band_Hz[0]:.3g} and {first.band_Hz[1]:.3g} Hz at"
-            f" {signals.load[signals.lowest]:.3g} N is no linear response to {force},"
+            f" {signals.load[signals.lowest]:.3g} {signals.load_unit} is no linear response to"
+            f" {force},"
             f" {first.factor:.0f} times what noise explains{beside}: something else"
             f" drives the structure, or it is not linear at this load.{_acts(acting)}",
             record,

@@ -24,6 +24,7 @@ from .linear_fit import REACH, coarse, descended, moved
 from .linear_stage import fit_modes, left, modelled_lines
 from .linearised import linearised, matched, same_modes
 from .other_lengths import Moved, parts, scaled
+from .strain import gauges_of
 
 ALONG = 97  # places along the tube at which shapes are computed; between them splines
 TRIED = 241  # places along the tube that a channel is tried at
@@ -104,7 +105,7 @@ class LinearMisfit:
                 *map(self._mode, range(self.modes)),
                 *map(self._channel, channels),
                 *map(self._gain, channels),
-                *filter(None, map(self._direction, channels)),
+                *filter(None, map(self._direction, channels[~self._gauges[channels]])),
                 *self.places,
             ],
             key=lambda mend: mend.score,
@@ -113,8 +114,14 @@ class LinearMisfit:
     @cached_property
     def places(self):
         """Return the Mends by another place of the channels that disagree most."""
-        suspects = sorted(self._channels, key=lambda channel: self._channel(channel).chi_square)
+        channels = self._channels[~self._gauges[self._channels]]
+        suspects = sorted(channels, key=lambda channel: self._channel(channel).chi_square)
         return [self._place(channel) for channel in suspects[:SUSPECTS]]
+
+    @property
+    def _gauges(self):
+        """Return (channel,) bool: those of a strain, whose place and direction are not tried."""
+        return gauges_of(self.bench.bare)
 
     @property
     def _channels(self):
@@ -173,7 +180,7 @@ class LinearMisfit:
         """Return (value, row): what participations (row, mode) of a channel are among the
         values.
         """
-        scale = np.abs(self.measured.participation).max(axis=0)
+        scale = self.measured.scale[channel]
         out = np.zeros((self.count, len(participations)))
         out[self._rows(channel)] = (participations / scale)[:, self.seen[channel]].T
         return out
@@ -346,7 +353,7 @@ def _farness(bench, channel, shapes):
     model, record, signals = bench.bare, bench.linear_record, bench.signals
     responses = bench.valid(signals.response[signals.lowest])
     found = fit_modes(
-        record,
+        record.of(others),
         responses[others],
         _seen_through(model, model.sensor_shapes[:, others]),
         signals.kinds[others],
@@ -364,9 +371,11 @@ def _seen_through(model, shapes):
     """Return a ModalModel with sensors of shapes (mode, sensor) alone; where they are plays no
     part.
     """
-    count = shapes.shape[1]
+    count, gauges = shapes.shape[1], gauges_of(model)
+    kept = {"gauges": np.zeros(count, bool)} if gauges.any() else {}
     return replace(
         model,
+        **kept,
         sensor_shapes=shapes,
         sensor_names=tuple(f"sensor_{number}" for number in range(count)),
         sensor_positions=np.zeros((count, 3)),

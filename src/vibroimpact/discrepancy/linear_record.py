@@ -1,5 +1,7 @@
 """A force record and the responses of single modes to it, as Fourier lines of what was recorded."""
 
+from copy import copy
+
 import numpy as np
 from scipy import fft
 
@@ -14,10 +16,11 @@ class LinearRecord:
 
     force (force_channel, sample) N at rate Hz; band_Hz: lines that are compared; from_rest: False
     for a record that was under way; begin: share of the record that is not compared, None for that
-    of the start alone.
+    of the start alone. base (channel, sample): the base's own motion that was taken out of the
+    responses, None for none; as lines in the band it is kept in base (channel, line).
     """
 
-    def __init__(self, force, rate, band_Hz, from_rest=True, begin=None):
+    def __init__(self, force, rate, band_Hz, from_rest=True, begin=None, base=None):
         # responses are needed at a fraction of the rate only: the force holds nothing above the
         # band
         self.every = max(1, int(rate / (RATE_PER_BAND * band_Hz[1])))
@@ -33,6 +36,15 @@ class LinearRecord:
         frequency = fft.rfftfreq(samples - self.first, 1.0 / rate)
         self.lines = np.flatnonzero((frequency >= band_Hz[0]) & (frequency <= band_Hz[1]))
         self.frequency = frequency[self.lines]
+        self.base = None if base is None else self.spectra(base)
+
+    def of(self, channels):
+        """Return the LinearRecord for the responses of some channels alone, a mask or indices."""
+        if self.base is None:
+            return self
+        out = copy(self)
+        out.base = self.base[channels]
+        return out
 
     def spectra(self, responses):
         """Return (..., line) complex: the Fourier lines in the band of series (..., sample)."""

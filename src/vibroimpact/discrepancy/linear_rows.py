@@ -4,6 +4,8 @@ and whether it may be named.
 
 import numpy as np
 
+from vibroimpact.campaign.force_kinds import FORCE, base_channels
+
 from . import priors
 from .candidates import Candidate, candidate_named, linear_candidates
 from .linear_fit import LinearChanges, fitted
@@ -118,5 +120,8 @@ def nearest_linear(rows):
 
 
 def held(campaign):
-    """Return what a campaign holds beyond force and response."""
-    return [name for name in ("voltage",) if name in campaign]
+    """Return what a campaign holds beyond response: a force, which a moving base is not, and the
+    voltage of the shaker.
+    """
+    forces = [] if base_channels(campaign).any() else [FORCE]
+    return [*forces, *(name for name in ("voltage",) if name in campaign)]

@@ -10,9 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from .lags import driven_modes, from_phases, lags
-from .modal_fit import LARGEST_LOG_DAMPING, ModalLines, combined, responses_of
+from .modal_fit import LARGEST_LOG_DAMPING, ModalLines, combined, responses_of, without_base
 from .pursuit import assigned, pursued
-from .sensed import differentiated, kind_groups, moving, orders
+from .sensed import differentiated, kind_groups, of_modes, orders
+from .strain import STRAIN, as_displacements, gauges_of
 
 MODEL_ERROR = (
     3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
@@ -29,6 +30,9 @@ LEAST_LAG_S = 2.0e-5
 # the model
 SILENT = 1.0e-4
 BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
+# of the mode that a base drives most: a base drives the others by what is left of a sum over the
+# whole structure that all but cancels, of which no model tells the rest
+HARDLY = 0.02
 AT_ONCE = 32  # modes, so that their lines fit into little memory
 LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
 
@@ -39,15 +43,15 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=T
     model: ModalModel attached to the campaign; kinds (channel,), see sensed.SENSED; noise_rms
     (channel,) in the band. visible: the modes to fit, as another fit had them; chosen by their
     predicted share where it is None; search: where the model's frequencies lead nowhere, look for
-    resonances without it. Channels that measure no motion take no part: participation, delay and
+    resonances without it. Contact forces take no part: participation, delay and
     share are 0 and the residual is 1, that of noise. Returns None where no mode is visible.
     """
-    moves, kinds = moving(kinds), np.asarray(kinds)
+    moves, kinds = of_modes(kinds), np.asarray(kinds)
     if not moves.any():
         return None
     if not moves.all():
         responses, noise_rms, kinds = responses[moves], noise_rms[moves], kinds[moves]
-        model = with_sensors(model, moves)
+        model, record = with_sensors(model, moves), record.of(moves)
     found = _fit(record, responses, model, kinds, noise_rms, visible)
     if found is not None and visible is None and search and left(found, model) >= LOST:
         found = min(
@@ -60,21 +64,24 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=T
 
 def _largest(record, measured, kinds):
     """Return (channel,): the largest RMS of measured (channel, line) among all channels, read as
-    motion of its kind.
+    motion of its kind; of a strain among the strains.
     """
-    order = orders(kinds)
+    order, gauges = orders(kinds), np.asarray(kinds) == STRAIN
     omega = 2.0 * np.pi * np.maximum(record.frequency, record.frequency[record.frequency > 0].min())
     power = [
         np.sum(np.abs(measured) ** 2 * omega ** (2.0 * (own - order[:, None])), axis=-1)
-        for own in order
+        * (gauges == gauge)
+        for own, gauge in zip(order, gauges, strict=True)
     ]
     return np.sqrt(np.max(power, axis=-1))
 
 
 def with_sensors(model, chosen):
     """Return the ModalModel with the sensors chosen (sensor,) bool alone."""
+    gauges = gauges_of(model)
     return replace(
         model,
+        **({"gauges": gauges[chosen]} if gauges.any() else {}),
         sensor_shapes=model.sensor_shapes[:, chosen],
         sensor_names=tuple(np.array(model.sensor_names, dtype=object)[chosen]),
         sensor_positions=model.sensor_positions[chosen],
@@ -104,6 +111,9 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     near = np.flatnonzero(
         (model.omega > 0.0) & (model.omega < 1.3 * 2.0 * np.pi * record.frequency[-1])
     )
+    if record.base is not None:
+        drive = np.abs(model.drive_shapes[near]).max(axis=1)
+        near = near[drive > HARDLY * drive.max(initial=0.0)]
     expected = responses_of(
         record, model.omega[near], model.damping[near], model.drive_shapes[near], kinds
     )
@@ -180,8 +190,13 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
 
 
 def _turned_back(measured, record, delay):
-    """Return (channel, line) measured lines without delays (channel,) s."""
-    return measured * np.exp(2j * np.pi * record.frequency * delay[:, None])
+    """Return (channel, line) measured lines without delays (channel,) s; what is late is the
+    absolute motion of a structure on a moving base.
+    """
+    turn = np.exp(2j * np.pi * record.frequency * delay[:, None])
+    if record.base is None:
+        return measured * turn
+    return (measured + record.base) * turn - record.base
 
 
 def _lags(lines_at, delay, seen, noise, model, start):
@@ -192,14 +207,16 @@ def _lags(lines_at, delay, seen, noise, model, start):
     Between its resonances no phase of each mode stands for milliseconds: a channel so late spoils
     the fit, and is turned back by what its lines tell first.
     """
-    first = free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
+    lines = lines_at(delay)
+    first = free = lines.fit(seen, noise, delay, start, phases=True)
     if left(free, model) >= LOST:
         before, delay = delay, from_phases(lines_at(np.zeros_like(delay)), noise)
         if delay.any():
             free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
         if left(free, model) >= LOST:
             return before, first.log_frequency
-    return delay + lags(free, model), free.log_frequency
+    # a base drives few modes, and a change of the structure turns the sense of one of them
+    return delay + lags(free, model, lines.record.base is None), free.log_frequency
 
 
 def _told(lag):
@@ -219,7 +236,7 @@ def left(found, model):
     """Return the largest residual over noise of a ModalFit among the channels that the force drives
     in the model.
     """
-    driven = np.abs(model.sensor_shapes[found.modes].T) @ np.abs(
+    driven = np.abs(as_displacements(model)[found.modes].T) @ np.abs(
         model.drive_shapes[found.modes]
     ).max(axis=1)
     return found.residual[driven > 1.0e-3 * driven.max()].max()
@@ -248,7 +265,7 @@ def unexplained_lines(record, responses, model, found, kinds):
     """Return (measured, rest), each (channel, line): the lines of responses (channel, sample) of
     kinds (channel,), and what a ModalFit of them leaves; NaN of what measures no motion.
     """
-    kinds = np.where(moving(kinds), kinds, "displacement")
+    kinds = np.where(of_modes(kinds), kinds, "displacement")
     measured = _turned_back(record.spectra(np.asarray(responses, float)), record, found.delay)
     fitted = _fitted(record, found, found.drive, model, kinds)
     return measured, measured - fitted - _rest(record, model, found.modes, kinds)
@@ -267,7 +284,7 @@ def _seen(model, modes, strict):
 
     Of two modes side by side, one along and one across, a channel would take any mixture.
     """
-    own = np.abs(model.sensor_shapes[modes].T)
+    own = np.abs(as_displacements(model)[modes].T)
     shown, logs = own > SILENT * own.max(axis=0), np.log(model.omega[modes])
     beside = np.abs(logs[:, None] - logs) < BESIDE
     return shown if strict else shown | ~(shown.astype(int) @ beside.astype(int) > 0)
@@ -280,16 +297,15 @@ def _unexpected(record, measured, found, weights, drive, model, near, kinds):
         - _fitted(record, found, drive, model, kinds)
         - _rest(record, model, found.modes, kinds)
     )
-    extra = []
+    residual = without_base(residual, record, weights)
+    size, extra = np.abs(as_displacements(model)), []
     for mode in np.setdiff1d(near, found.modes):
         if model.omega[mode] > 2.0 * np.pi * record.frequency[-1]:
             continue
         drive = np.eye(1, model.drive_shapes.shape[1])
         basis = responses_of(record, model.omega[[mode]], model.damping[[mode]], drive, kinds)
         gain = 0.0
-        for channel in np.flatnonzero(
-            np.abs(model.sensor_shapes[mode]) > 1.0e-6 * np.abs(model.sensor_shapes).max()
-        ):
+        for channel in np.flatnonzero(size[mode] > 1.0e-6 * size.max()):
             y, b = weights[channel] * residual[channel], weights[channel] * basis[kinds[channel]][0]
             gain += np.vdot(b, y).real ** 2 / np.vdot(b, b).real
         if gain > UNEXPECTED and not _covered(model, mode, found):
@@ -301,9 +317,10 @@ def _covered(model, mode, found):
     """True where the fitted modes have the shape and place of another one: its remainder is
     theirs.
     """
-    shape = model.sensor_shapes[mode]
+    shapes = as_displacements(model)
+    shape = shapes[mode]
     for other in found.modes:
-        against = model.sensor_shapes[other]
+        against = shapes[other]
         alike = (shape @ against) ** 2 / max((shape @ shape) * (against @ against), 1.0e-300)
         if alike > 0.5 and abs(np.log(model.omega[mode] / model.omega[other])) < 0.2:
             return True

@@ -6,6 +6,9 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
+from vibroimpact.campaign.force_kinds import base_channels, load_unit
+from vibroimpact.units import SI_OF_KIND
+
 from . import priors
 from .covariance import feature_sd, free_directions
 from .driven import driven_channels
@@ -153,6 +156,7 @@ MAP_ABOUT = {
     "gap": _about("radial gap of the record", "m"),
     "split": _about("use of the record: fit or holdout"),
     "channel_name": _about("name of the channel"),
+    "channel_unit": _about("SI unit of the channel"),
     "channel_point": _about("place of the channel", "m"),
     "channel_direction": _about("positive sense of the channel", "1"),
     "force_channel_point": _about("place of the force", "m"),
@@ -189,6 +193,10 @@ def map_dataset(bench, compared, seeds, responses):
         "gap": ("record", signals.gap),
         "split": ("record", signals.split.astype(object)),
         "channel_name": ("channel", np.array(signals.names, dtype=object)),
+        "channel_unit": (
+            "channel",
+            np.array([SI_OF_KIND[str(kind)] for kind in signals.kinds], dtype=object),
+        ),
         "psd_frequency": ("frequency", frequency),
         "psd_measured": (line, measured),
         "psd_simulated_mean": (line, shown.mean(axis=0)),
@@ -199,7 +207,11 @@ def map_dataset(bench, compared, seeds, responses):
         for part in ("point", "direction"):
             values = bench.campaign[f"{role}_{part}"].values.astype(float)
             data[f"{role}_{part}"] = ((role, "xyz"), values)
-    described = {name: (*variable, MAP_ABOUT[name]) for name, variable in data.items()}
+    bases = base_channels(bench.campaign)
+    # the place of an acceleration of the base is of no account, and not drawn
+    data["force_channel_point"][1][bases] = np.nan
+    about = MAP_ABOUT | {"load_rms": MAP_ABOUT["load_rms"] | {"units": load_unit(bench.campaign)}}
+    described = {name: (*variable, about[name]) for name, variable in data.items()}
     return xr.Dataset(described, attrs={"title": "vibroimpact map of the discrepancy"})
 
 

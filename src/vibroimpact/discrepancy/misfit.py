@@ -8,6 +8,7 @@ import numpy as np
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
+from .strain import STRAIN
 
 ABOVE_NOISE_DB = 6.0
 # A channel answers to motion across its direction too, by 1 % at best (transverse sensitivity, ISO
@@ -17,7 +18,8 @@ BELOW_STRONGEST_DB = 40.0
 
 def counted(bench):
     """Return (record, channel, band) bool: where the measurement is 6 dB above the noise, and no
-    farther than 40 dB below the strongest channel of its record and band, all as displacements.
+    farther than 40 dB below the strongest channel of its record and band, all as displacements;
+    strains beside strains.
     """
     layout, signals = bench.layout, bench.signals
     power = layout.power(bench.measured_features)
@@ -28,9 +30,11 @@ def counted(bench):
     middle = np.pi * (layout.edges[1:] + layout.edges[:-1])  # rad/s
     derivatives = np.array([TIME_DERIVATIVES.get(kind, 0) for kind in signals.kinds])
     moved = power - 20.0 * derivatives[:, None] * np.log10(middle)
-    motion = np.isin(signals.kinds, list(TIME_DERIVATIVES))[:, None]
-    strongest = np.max(moved, axis=1, keepdims=True, where=motion, initial=-np.inf)
-    strong = ~motion | (moved > strongest - BELOW_STRONGEST_DB)
+    strong = np.ones(power.shape, bool)
+    for family in (list(TIME_DERIVATIVES), [STRAIN]):
+        own = np.isin(signals.kinds, family)[:, None]
+        strongest = np.max(moved, axis=1, keepdims=True, where=own, initial=-np.inf)
+        strong &= ~own | (moved > strongest - BELOW_STRONGEST_DB)
     return (power > noise + ABOVE_NOISE_DB) & strong
 
 

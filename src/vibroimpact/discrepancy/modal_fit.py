@@ -50,7 +50,10 @@ class ModalLines:
 
     record: LinearRecord; measured, weights: (channel, line); model: ModalModel; modes (fitted,):
     indices of its modes that are fitted; drive (fitted, force_channel); kinds (channel,): of
-    motion.
+    motion or strain.
+
+    A channel that is off by a share of its gain has the base's own motion taken out by that share
+    too little. So beside the modes each channel may show any amount of it (LinearRecord.base).
     """
 
     def __init__(self, record, measured, weights, model, modes, drive, kinds):
@@ -84,7 +87,7 @@ class ModalLines:
         for _ in range(ITERATIONS):
             basis = self._basis(logs)
             shapes = self._participations(basis, seen, phases)
-            residual = self.weights * (self.measured - combined(shapes, basis, self.kinds))
+            residual = self._left(shapes, basis)
             cost = np.sum(np.abs(residual) ** 2)
             if cost < best_cost:
                 converged = best is not None and best_cost - cost < SETTLED * cost
@@ -126,16 +129,7 @@ class ModalLines:
         """
         basis = self._basis(np.concatenate([found.log_frequency, found.log_damping]))
         one, other = (
-            np.sum(
-                np.abs(
-                    self.weights
-                    * (
-                        self.measured
-                        - combined(self._participations(basis, which), basis, self.kinds)
-                    )
-                )
-                ** 2
-            )
+            np.sum(np.abs(self._left(self._participations(basis, which), basis)) ** 2)
             for which in (seen, more)
         )
         return other < (1.0 - SETTLED) * one
@@ -149,17 +143,33 @@ class ModalLines:
         """Return {kind: (fitted, line)}: the response of each mode alone."""
         return responses_of(self.record, *self._at(logs), self.drive, self.kinds)
 
+    def _left(self, shapes, basis):
+        """Return (channel, line), weighted: what participations (channel, fitted) leave."""
+        left = self.measured - combined(shapes, basis, self.kinds)
+        return self.weights * without_base(left, self.record, self.weights)
+
+    def _beside_base(self, rows, channel):
+        """Return weighted rows (row, line) of a channel, with the base's own motion in it as one
+        more where it has any.
+        """
+        base = self.record.base
+        if base is None or not base[channel].any():
+            return rows
+        return np.concatenate([rows, (self.weights[channel] * base[channel])[None]])
+
     def _participations(self, basis, seen, phases=False):
         """Return (channel, fitted): those with which the modes leave least."""
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
             rows = self.weights[c] * basis[self.kinds[c]][seen[c]]
+            rows = self._beside_base(rows, c)
             target = self.weights[c] * self.measured[c]
-            shapes[c, seen[c]] = (
+            found = (
                 linalg.lstsq(rows.T, target)[0]
                 if phases
                 else linalg.lstsq(_real(rows).T, _real(target), lapack_driver="gelsy")[0]
             )
+            shapes[c, seen[c]] = found[: seen[c].sum()]
         return shapes
 
     def _slopes(self, best, seen):
@@ -180,6 +190,7 @@ class ModalLines:
                 (np.tile(shapes[channel], 2)[:, None] * self.weights[channel]) * change[kind]
             ).T
             known = self.weights[channel] * basis[kind][seen[channel]]
+            known = self._beside_base(known, channel)
             columns = [_real(known)] + [_real(1j * known)] * np.iscomplexobj(shapes)
             span, _ = np.linalg.qr(np.vstack(columns).T)
             slopes[channel] = own - span @ (span.T @ own)
@@ -248,6 +259,18 @@ def combined(shapes, basis, kinds):
     for kind, own in kind_groups(kinds).items():
         out[own] = shapes[own] @ basis[kind]
     return out
+
+
+def without_base(lines, record, weights):
+    """Return lines (channel, line) less as much of the base's own motion in each channel as leaves
+    least of them by weights (channel, line); record: LinearRecord.
+    """
+    if record.base is None:
+        return lines
+    base = weights**2 * record.base
+    size = np.sum(np.abs(weights * record.base) ** 2, axis=-1)
+    share = np.sum((base.conj() * lines).real, axis=-1) / np.where(size > 0.0, size, 1.0)
+    return lines - share[:, None] * record.base
 
 
 def _real(values):

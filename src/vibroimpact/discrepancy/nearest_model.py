@@ -13,7 +13,7 @@ from . import priors
 from .candidates import Pair, linear_candidates, unit_grid
 from .linear_stage import fit_modes, left
 from .linearised import matched
-from .sensed import moving, orders
+from .sensed import of_modes, orders
 
 BANDS_PER_OCTAVE = 8
 # a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however
@@ -131,7 +131,7 @@ class BandSpectra:
 
     def __init__(self, bench):
         record, lowest = bench.linear_record, bench.signals.lowest
-        self.moves = moving(bench.signals.kinds)
+        self.moves = of_modes(bench.signals.kinds)
         self.frequency, self.force = (
             record.frequency,
             record.spectra(bench.valid(bench.signals.force[lowest])),

@@ -14,6 +14,7 @@ from vibroimpact.reduction.modal_model import NEAR
 
 from . import priors
 from .linearised import same_modes
+from .strain import by_family, gauges_of
 
 # of a mode's largest participation among the channels: below it a channel says nothing of the mode
 SEEN = 0.05
@@ -22,7 +23,8 @@ SEEN = 0.05
 @dataclass(frozen=True)
 class Reading:
     """What a fit of the lowest record reads: ln frequency and ln damping (mode,), participation
-    (channel, mode), residual over noise (channel,).
+    (channel, mode), residual over noise (channel,); gauges (channel,) bool: those that read a
+    strain, None where none does.
     """
 
     modes: np.ndarray
@@ -30,6 +32,14 @@ class Reading:
     log_damping: np.ndarray
     participation: np.ndarray
     residual: np.ndarray
+    gauges: np.ndarray | None = None
+
+    @property
+    def scale(self):
+        """Return (channel, mode): a mode's largest participation among the channels that read the
+        same, a motion or a strain.
+        """
+        return by_family(np.abs(self.participation), self.gauges)
 
 
 @dataclass(frozen=True)
@@ -53,6 +63,7 @@ def reading_of_fit(fit, model):
         np.log(damping / (2.0 * omega)) + fit.log_damping,
         fit.participation * driven(fit.drive),
         fit.residual,
+        gauges_of(model),
     )
 
 
@@ -66,6 +77,7 @@ def reading_of_model(model, modes):
         np.log(model.damping[modes] / (2.0 * omega)),
         participation,
         np.ones(participation.shape[0]),
+        gauges_of(model),
     )
 
 
@@ -100,7 +112,7 @@ def seen_by(measured, simulated):
     least.
     """
     size = np.maximum(np.abs(simulated.participation), np.abs(measured.participation))
-    return size > SEEN * size.max(axis=0)
+    return size > SEEN * by_family(size, measured.gauges)
 
 
 def difference(measured, simulated, error, seen=None, bare=None):
@@ -113,13 +125,10 @@ def difference(measured, simulated, error, seen=None, bare=None):
     Reading without the effect, of whose change of the shapes two codes differ by a share.
     """
     count, channels = len(measured.log_frequency), len(measured.participation)
-    scale = np.abs(measured.participation).max(
-        axis=0
-    )  # of the measured alone: a gain that inflates what is simulated must not shrink its errors
+    # of the measured alone: a gain that inflates what is simulated must not shrink its errors
+    scale = measured.scale
     seen = seen_by(measured, simulated) if seen is None else seen
-    ratio = (measured.participation - simulated.participation)[seen] / np.broadcast_to(
-        scale, seen.shape
-    )[seen]
+    ratio = (measured.participation - simulated.participation)[seen] / scale[seen]
     level = (simulated.participation / scale)[seen]
     residual = np.log(np.hypot(1.0, measured.residual)) - np.log(np.hypot(1.0, simulated.residual))
     values = np.concatenate(

@@ -4,6 +4,7 @@ channel sits at the drive and looks along the force.
 
 import numpy as np
 
+from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
@@ -16,8 +17,10 @@ POWER_Z = 4.0
 
 def drive_channel(campaign):
     """Return (channel, sense 1 or -1) of a motion at the first force and along it, None where there
-    is none.
+    is none; a moving base acts at no point.
     """
+    if base_channels(campaign).any():
+        return None
     away = np.linalg.norm(
         campaign["channel_point"].values - campaign["force_channel_point"].values[0], axis=1
     )

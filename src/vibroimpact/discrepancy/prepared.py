@@ -8,6 +8,7 @@ from math import ceil
 
 import numpy as np
 
+from vibroimpact.campaign.base_motion import relative_to_base
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
@@ -28,6 +29,7 @@ from .comparable import (
     comparison_problems,
     contact_force_rows,
     left_out,
+    strain_rows,
 )
 from .driven import driven_channels
 from .in_place import in_place
@@ -42,6 +44,7 @@ from .nuisance import neutral, plausible
 from .scales import scales, searched
 from .sensed import differentiated, kind_groups
 from .slower import slower
+from .strain import STRAIN, speed_per_strain
 from .workbench import Workbench, corrected_nuisance
 
 
@@ -209,7 +212,11 @@ def prepare(config, campaign_path, draw=0):
             whole_s = campaign.sizes["time"] / float(campaign.attrs["sampling_frequency"])
             seconds = read_s(campaign.sizes["record"], whole_s)
             bench = Workbench(config, campaign, seconds)
-            mixed = [*mixed_up(bench), *contact_force_rows(bench.bare, bench.signals)]
+            mixed = [
+                *strain_rows(config, campaign),
+                *mixed_up(bench),
+                *contact_force_rows(bench.bare, bench.signals),
+            ]
             if mixed:
                 before, checks = campaign.sizes, [*checks, *mixed]
                 campaign, refusal = usable_campaign(campaign_path, checks, config.integration)
@@ -235,7 +242,10 @@ def prepare(config, campaign_path, draw=0):
         draw=draw,
     )
     gap = bench.signals.gap[np.isfinite(bench.signals.gap)]
-    reach = float(gap.max()) if len(gap) else largest_motion(bench.signals)
+    moved = largest_motion(bench.signals) or motion_of_strains(
+        bench.signals, bench.config.structure
+    )
+    reach = float(gap.max()) if len(gap) else moved
     first = bench.bare.frequencies[bench.bare.omega > 0.0][0]
     out.scales = {
         name: float(value)
@@ -282,6 +292,17 @@ def largest_motion(signals):
         ),
         default=0.0,
     )
+
+
+def motion_of_strains(signals, structure):
+    """Return m, the same of the speed that goes with the strains of a tube (section of a
+    configuration); 0 where no channel measures one.
+    """
+    gauges = signals.kinds == STRAIN
+    if not gauges.any():
+        return 0.0
+    strain = float(np.nanstd(signals.response[signals.load.argmax()][gauges]))
+    return strain * speed_per_strain(structure) / (2.0 * np.pi * signals.band_Hz[0])
 
 
 def taken_for_linear(bench, fresh, prepared, candidates):
@@ -436,7 +457,7 @@ def mixed_up(bench):
     """
     if not bench.linear_stage:
         return []
-    measured = campaign_signals(bench.campaign)
+    measured = relative_to_base(campaign_signals(bench.campaign))
     spectra = transfer(measured, bench.signals.lowest)
     if spectra is None:
         return []

@@ -1,13 +1,16 @@
 """What each channel of a campaign measures, in terms of what a simulation gives: the displacement
-of a point differentiated in time, or the force of a support on the structure.
+of a point differentiated in time, the strain of an outer fibre, or the force of a support on the
+structure.
 """
 
 import numpy as np
 
 from vibroimpact.units import TIME_DERIVATIVES
 
+from .strain import STRAIN, as_displacements
+
 CONTACT_FORCE = "contact_force"
-SENSED = ("acceleration", "velocity", "displacement", CONTACT_FORCE)
+SENSED = ("acceleration", "velocity", "displacement", STRAIN, CONTACT_FORCE)
 AT_SUPPORT_M = 5.0e-3  # from the line through a support's contact points
 
 
@@ -16,17 +19,26 @@ def moving(kinds):
     return np.array([kind in TIME_DERIVATIVES for kind in kinds], bool)
 
 
+def of_modes(kinds):
+    """Return (channel,) bool: whether channels of kinds (channel,) show the modes by themselves, a
+    motion or a strain; a contact force does not, which there is none of until a support is touched.
+    """
+    return moving(kinds) | np.array([kind == STRAIN for kind in kinds], bool)
+
+
 def orders(kinds):
     """Return (channel,) int: how often each channel's displacement is differentiated; 0 for a
-    contact force.
+    strain, which is in phase with displacements, and for a contact force.
     """
     return np.array([TIME_DERIVATIVES.get(kind, 0) for kind in kinds], int)
 
 
 def differentiated(omega, kind):
-    """Return (line,) the factor from displacement to what a channel of a kind measures at omega
-    (line,) in rad/s; 0 for a contact force, which a linear structure has none of.
+    """Return (line,) the factor from displacement, or strain, to what a channel of a kind measures
+    at omega (line,) in rad/s; 0 for a contact force, which a linear structure has none of.
     """
+    if kind == STRAIN:
+        return np.ones_like(omega)
     if kind not in TIME_DERIVATIVES:
         return 0.0 * omega
     order = TIME_DERIVATIVES[kind]
@@ -65,14 +77,15 @@ def force_weights(model, kinds):
     model: attached to the campaign, whose sensors are the channels. Raises ValueError for a channel
     that is at no support.
     """
-    pressed = np.flatnonzero(~moving(kinds))
+    pressed = np.flatnonzero(~of_modes(kinds))
     weights = np.zeros((len(pressed), 2 * len(model.support_names)))
     for row, channel in zip(weights, pressed, strict=True):
         support = support_at(model, model.sensor_positions[channel])
         if kinds[channel] != CONTACT_FORCE or support is None:
             raise ValueError(
                 f"channel {model.sensor_names[channel]} of kind {kinds[channel]} can not be"
-                f" simulated: give {', '.join(TIME_DERIVATIVES)}, or {CONTACT_FORCE} at a support"
+                f" simulated: give {', '.join(TIME_DERIVATIVES)}, {STRAIN}, or {CONTACT_FORCE} at a"
+                " support"
             )
         row[2 * support : 2 * support + 2] = (
             across(model, support) @ model.sensor_directions[channel]
@@ -81,11 +94,12 @@ def force_weights(model, kinds):
 
 
 def motion_there(model, kinds):
-    """Return (mode, channel): the displacement that each channel measures, and for a contact force
-    that of its support's points along it, which is what the force answers to.
+    """Return (mode, channel): the displacement that each channel measures, for a strain one that is
+    as large (see strain.as_displacements), and for a contact force that of its support's points
+    along it, which is what the force answers to.
     """
-    shapes = model.sensor_shapes.copy()
-    pressed = np.flatnonzero(~moving(kinds))
+    shapes = as_displacements(model).copy()
+    pressed = np.flatnonzero(~of_modes(kinds))
     resultants = np.zeros((model.modes, 2 * len(model.support_names)))
     for support in range(len(model.support_names)):
         own = model.support_of_point == support

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.campaign.base_motion import base_motion, relative_to_base
+from vibroimpact.campaign.force_kinds import shown_load_unit
 from vibroimpact.campaign.signals import campaign_signals, excited_band
 
 BANDS = 24
@@ -30,12 +32,14 @@ ALIKE = (
 
 @dataclass(frozen=True)
 class Signals:
-    """force (record, force_channel, sample) N and response (record, channel, sample) SI, NaN beyond
-    a record's valid samples.
+    """force (record, force_channel, sample) N, or m/s² of a base, response (record, channel,
+    sample) SI, relative to the base, NaN beyond a record's valid samples.
 
-    rate Hz; band_Hz: excited; kinds, names (channel,); gap (record,) m; load (record,) N RMS;
-    split, record_names (record,); noise (channel,): RMS of white measuring noise over the whole
-    range to half the sampling frequency; from_rest; sources: attributes of the file.
+    rate Hz; band_Hz: excited; kinds, names (channel,); gap (record,) m; load (record,) RMS in
+    load_unit; split, record_names (record,); noise (channel,): RMS of white measuring noise over
+    the whole range to half the sampling frequency; from_rest; sources: attributes of the file;
+    base (record, channel, sample): the base's own motion that was taken out of each channel, None
+    where the structure was driven by forces.
     """
 
     force: np.ndarray
@@ -50,6 +54,8 @@ class Signals:
     record_names: tuple[str, ...]
     noise: np.ndarray
     from_rest: bool
+    load_unit: str = "N"
+    base: np.ndarray | None = None
 
     @property
     def lowest(self):
@@ -81,7 +87,8 @@ def signals_of(campaign, longest_s=None):
     """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given;
     band, noise and loads are those of whole records.
     """
-    measured = campaign_signals(campaign).require_units()
+    absolute = campaign_signals(campaign).require_units()
+    measured = relative_to_base(absolute)
     rate, samples = measured.rate, campaign.sizes["time"]
     kept = samples if longest_s is None else min(samples, round(longest_s * rate))
     force, response = measured.padded(samples)
@@ -110,7 +117,22 @@ def signals_of(campaign, longest_s=None):
         record_names=tuple(measured.records),
         noise=noise,
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
+        load_unit=shown_load_unit(campaign),
+        base=_base_of(absolute, valid, kept),
     )
+
+
+def _base_of(absolute, valid, kept):
+    """Return the `base` of Signals of CampaignSignals as measured, NaN where valid (record, sample)
+    is not; kept: samples.
+    """
+    motions = base_motion(absolute)
+    if motions is None:
+        return None
+    out = np.full((len(motions), len(absolute.channels), valid.shape[-1]), np.nan)
+    for own, motion in zip(out, motions, strict=True):
+        own[:, : motion.shape[-1]] = motion
+    return np.where(valid[:, None], out, np.nan)[..., :kept]
 
 
 def noise_of(campaign, lowest, rate, band, factors=1.0):

@@ -14,6 +14,7 @@ from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
 
 from . import nuisance as linear
 from .attach import attach, with_channel_points
+from .base_driven import driven_by_base
 from .cost import count_simulated
 from .features import feature_layout, record_features
 from .forward import Forces, schedule_of, simulate_records
@@ -36,7 +37,7 @@ class Workbench:
     """
 
     def __init__(self, config, campaign, longest_s=None, draw=0):
-        config = with_channel_points(config, campaign)
+        config = driven_by_base(with_channel_points(config, campaign), campaign)
         self.config, self.campaign, self.draw = config, campaign, draw
         self.longest_s = longest_s
         self.signals = signals_of(campaign, longest_s)
@@ -136,6 +137,7 @@ class Workbench:
             self.signals.rate,
             self.signals.band_Hz,
             self.signals.from_rest,
+            base=None if self.signals.base is None else self.valid(self.signals.base[record]),
         )
 
     @cached_property
@@ -271,7 +273,10 @@ class Workbench:
 
     def respond(self, model, runs, measuring=None):
         """Return (run, channel, sample) responses with the gains of the nuisance and the faults of
-        the measuring chain (Measuring).
+        the measuring chain (Measuring), relative to the base.
+
+        The measuring chain shows the absolute motion of a structure on a moving base, from which
+        the base's measured motion is taken out as it is from the measurement.
         """
         schedule, forces = self.stepped(model)
         chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
@@ -279,11 +284,25 @@ class Workbench:
         forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
         responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)
         count_simulated(len(runs))
+        base = self._base_of(runs, responses.shape[-1])
+        if base is not None:
+            responses = responses + base / np.float32(factor)
         gain = self.gains
         for fault in chain:
             gain = gain * fault.gain
             responses = fault.delayed(responses, self.signals.rate)
-        return responses * gain[:, None].astype(np.float32)
+        responses = responses * gain[:, None].astype(np.float32)
+        return responses if base is None else responses - base
+
+    def _base_of(self, runs, samples):
+        """Return (run, channel, sample) float32: the base's measured motion in every channel, 0
+        beyond a record's valid samples; None where the structure was driven by forces.
+        """
+        if self.signals.base is None:
+            return None
+        own = np.nan_to_num(self.signals.base[[record for record, _, _ in runs]])
+        short = max(samples - own.shape[-1], 0)
+        return np.pad(own[..., :samples], ((0, 0), (0, 0), (0, short))).astype(np.float32)
 
     def features(self, model, runs, measuring=None):
         """Return (run, feature): the features of runs with the measuring noise, each cut to the

@@ -98,7 +98,7 @@ class Effect:
     linear: it changes the linear structure, also below contact.
     below_contact: it is nonlinear and acts without contact, so that it resembles a linear effect.
     measured: it changes the measurement, not the model.
-    needs: variables that the campaign must hold.
+    needs: what the campaign must hold: "force", measured at a point of the structure, "voltage".
     law_of: id of the effect under which this one is reported, where it is another law of it.
     """
 

@@ -32,6 +32,7 @@ EFFECT = Effect(
     apply=apply,
     linear=True,
     broken=("T1", "T4"),
+    needs=("force",),
     locations=lambda values: (
         ["about_z", "about_tube"] if values["structure"]["kind"] in places.TUBES else ["about_z"]
     ),

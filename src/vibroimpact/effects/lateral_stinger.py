@@ -50,5 +50,6 @@ EFFECT = Effect(
     apply=apply,
     linear=True,
     broken=("T1",),
+    needs=("force",),
     locations=lambda values: list(DIRECTIONS),
 )

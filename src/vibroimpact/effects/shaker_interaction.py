@@ -47,7 +47,7 @@ EFFECT = Effect(
     apply=apply,
     linear=True,
     broken=("T1",),
-    needs=("voltage",),
+    needs=("force", "voltage"),
     aliases=("added_mass", "lateral_stinger"),
     locations=places.driven,
 )

@@ -66,6 +66,7 @@ def write(
         "seconds": cost["cpu_seconds"],
         "simulations": cost["simulations"],
         "withdrawn": withdrawn,
+        "load_unit": bench.signals.load_unit,
         "provenance": provenance,
     }
     write_verdict(Verdict.from_values(content), folder / "verdict.json")

@@ -43,12 +43,16 @@ UNHELD = 1.0e-6  # of the largest modal force: more than this on a mode without 
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is rigid-body motion
 
 
-def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
+def build_model(
+    config: ConfigPart, motion_only: bool = False, gauges: Sequence[tuple[str, np.ndarray]] = ()
+) -> ModalModel:
     """Return the ModalModel of a configuration.
 
     config: parts structure, supports, elements, masses, initial, damping, points, excitation, basis
         and record.
     motion_only: leave out the shape line and the stresses.
+    gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
+        behind those of record.sensors, its shape a strain per unit amplitude.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
     unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload
@@ -74,13 +78,13 @@ def build_model(config: ConfigPart, motion_only: bool = False) -> ModalModel:
         **_contact_fields(structure, shapes, config),
         **_force_fields(structure, omega, shapes, config, point_rows),
         **initial_state(structure, shapes, len(full_frequencies), config.initial, point_rows),
-        **_sensor_fields(structure, shapes, config, point_rows),
+        **_sensor_fields(structure, shapes, config, point_rows, gauges),
         **_line_fields(structure, shapes, config, tube and not motion_only),
         **_stress_fields(structure, shapes, config, tube and not motion_only),
     }
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
-    fields = with_support_plates(fields, config.supports)
+    fields = with_support_plates(fields, config.supports, config.excitation)
     model = ModalModel(**fields)
     _refuse_unheld_preload(model)
     return model
@@ -337,9 +341,13 @@ def named_arc_length(structure: TubeStructure, config: ConfigPart, name: str) ->
 
 
 def _sensor_fields(
-    structure: Any, shapes: np.ndarray, config: ConfigPart, point_rows: Callable
+    structure: Any,
+    shapes: np.ndarray,
+    config: ConfigPart,
+    point_rows: Callable,
+    gauges: Sequence[tuple[str, np.ndarray]],
 ) -> dict[str, Any]:
-    """Return the fields of the sensors, named "point.direction".
+    """Return the fields of the sensors, named "point.direction", and "point.strain" of the gauges.
 
     There is one for every point and direction of record.sensors. Without that section, a structure
     that is no tube has one for every direction of every named point.
@@ -357,10 +365,19 @@ def _sensor_fields(
         places = [named_arc_length(structure, config, name) for name, _ in wanted]
         positions = [structure.centreline.position(place) for place in places]
     rows = [AXES[axis] @ point_rows(name) for name, axis in wanted]
+    directions = [AXES[axis] for _, axis in wanted]
+    for name, normal in gauges:
+        place = named_arc_length(structure, config, name)
+        positions.append(structure.centreline.position(place))
+        directions.append(np.asarray(normal, float))
+        rows.append(structure.strain_row(place, normal))
     return {
-        "sensor_names": tuple(f"{name}.{axis}" for name, axis in wanted),
+        "sensor_names": (
+            *(f"{name}.{axis}" for name, axis in wanted),
+            *(f"{name}.strain" for name, _ in gauges),
+        ),
         "sensor_positions": np.array(positions).reshape(-1, 3),
-        "sensor_directions": np.array([AXES[axis] for _, axis in wanted]).reshape(-1, 3),
+        "sensor_directions": np.array(directions).reshape(-1, 3),
         "sensor_shapes": (np.array(rows).reshape(-1, structure.dofs) @ shapes).T,
     }
 

@@ -9,6 +9,8 @@ from scipy import sparse
 
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import MODE_FIELDS
+from vibroimpact.geometry.directions import unit_vector
+from vibroimpact.structure.tube import TubeStructure
 
 
 def with_point_masses(
@@ -23,7 +25,11 @@ def with_point_masses(
         return structure
     rows = np.vstack([np.sqrt(mass.mass_kg) * point_rows(mass.point) for mass in masses])
     rows = sparse.csr_array(np.where(np.abs(rows) > 1.0e-15 * np.abs(rows).max(), rows, 0.0))
-    return replace(structure, mass=(structure.mass + rows.T @ rows).tocsr())
+    changed = {"mass": (structure.mass + rows.T @ rows).tocsr()}
+    if isinstance(structure, TubeStructure):  # others work it out from their mass
+        carried = sum(mass.mass_kg * point_rows(mass.point) for mass in masses)
+        changed["inertia"] = structure.inertia + carried
+    return replace(structure, **changed)
 
 
 def with_frequency_factors(
@@ -46,16 +52,20 @@ def with_frequency_factors(
     return out[order], order
 
 
-def with_support_plates(fields: dict[str, Any], supports: Sequence[ConfigPart]) -> dict[str, Any]:
+def with_support_plates(
+    fields: dict[str, Any], supports: Sequence[ConfigPart], excitation: ConfigPart
+) -> dict[str, Any]:
     """Return the fields of a ModalModel with two more modes per support on a flexible plate.
 
     They are the plate's motion along the contact directions. The contact sees the difference of
     tube and plate: the plate's shape there is -1/sqrt(mass), so that the contact force pushes it
-    back.
+    back. The inertia of a plate that rides on a moving base drives it.
 
     fields: {name: array} of a ModalModel, with the mode axis first.
     supports: entries of the configuration.
+    excitation: section of the configuration.
     """
+    rides = excitation.kind == "base_motion" and excitation.obstacles == "moving"
     grown = dict(fields)
     for number, support in enumerate(supports):
         if support.plate is None:
@@ -69,6 +79,10 @@ def with_support_plates(fields: dict[str, Any], supports: Sequence[ConfigPart]) 
             own_points = fields["support_of_point"] == number
             shape = -1.0 / np.sqrt(support.plate.mass_kg)
             grown["contact_shapes"][-1, own_points, direction] = shape
+            if rides:
+                axes = fields["contact_directions"][own_points]
+                along = axes[len(axes) // 2, direction] @ unit_vector(excitation.direction)
+                grown["drive_shapes"][-1, 0] = -along / abs(shape)
     if len(grown["omega"]) == len(fields["omega"]):
         return fields
     order = np.argsort(grown["omega"], kind="stable")

@@ -44,6 +44,7 @@ class BendingPlane:
     rotary_inertia: rho I in kg m; 0 for Euler-Bernoulli.
     fibre_stiffness: E times the distance of the outer fibre in N/m, its bending stress per unit
         curvature.
+    outer_fibre: distance of the outer fibre in m, its bending strain per unit curvature.
     """
 
     bending_stiffness: float
@@ -51,6 +52,7 @@ class BendingPlane:
     mass_per_length: float
     rotary_inertia: float
     fibre_stiffness: float
+    outer_fibre: float
 
     def shear_parameter(self, length: float) -> float:
         """Return phi = 12 EI / (kGA L²) for an element length L in m; 0 for Euler-Bernoulli."""
@@ -101,6 +103,7 @@ def section_beam(section: ConfigPart, material: ConfigPart, theory: str) -> Beam
             mass_per_length=density * properties.area,
             rotary_inertia=density * second_moment if with_shear else 0.0,
             fibre_stiffness=young * properties.outer_fibres[axis],
+            outer_fibre=properties.outer_fibres[axis],
         )
 
     return Beam(

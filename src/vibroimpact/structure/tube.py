@@ -104,6 +104,18 @@ class TubeStructure:
             rows += self._to_free_dofs(element, stress) / len(elements)
         return rows
 
+    def strain_row(self, arc_length: float, normal: np.ndarray) -> np.ndarray:
+        """Return (dof,): axial strain by bending of the outer fibre at an arc length in m, towards
+        the outward normal (3,), per unit dof.
+
+        It is minus the fibre's distance times the curvature of the deflection along the normal; the
+        strain by an axial force is no part of it. A fibre that bulges outwards is stretched. Where
+        the section is not round, the normal is one of its axes, of either sense.
+        """
+        moduli = [plane.fibre_stiffness / plane.outer_fibre for plane in self.beam.planes]
+        across = self.section_axes(arc_length) @ unit_vector(normal)
+        return -(across / moduli) @ self.stress_rows(arc_length)
+
     def section_axes(self, arc_length: float) -> np.ndarray:
         """Return (2, 3): the two axes of the section at an arc length in m, along which stresses
         are given. A round section has the transverse directions.

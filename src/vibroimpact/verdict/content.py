@@ -117,7 +117,9 @@ class Region(_Content):
     band_Hz: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(
         description="Lower and upper end of the band, Hz."
     )
-    load_rms_N: Number | None = Field(description="RMS of the first force channel, N.")
+    load_rms_N: Number | None = Field(
+        description="RMS of the first force channel, N; in load_unit on a moving base."
+    )
     gap_m: Number | None = Field(description="Radial clearance, m; null where there is none.")
     channel: str = Field(description="Name of the response channel.")
     discrepancy_dB: Number | None = Field(
@@ -245,6 +247,9 @@ class Verdict(_Content):
     )
     probability_something_else: Probability | None = Field(
         default=None, description="Probability that what is missing is not in the catalogue."
+    )
+    load_unit: Literal["N", "m/s²"] = Field(
+        default="N", description="Unit of the loads: m/s² where the base moved, N of forces."
     )
     withdrawn: Withdrawn | None = Field(
         default=None, description="What was tried and made records worse that took no part."

@@ -13,7 +13,7 @@ from vibroimpact.units import si_factor, si_unit
 from .cuts import Cut, cut_records
 from .raw_files import raw_files, read_signals
 from .sensors import Measured, ResolvedSensor, one_rate, read_voltage, resolve_sensors
-from .sidecar import NAME, Record, Sensor, Sidecar, draft_sidecar, read_sidecar
+from .sidecar import NAME, Drive, Record, Sensor, Sidecar, draft_sidecar, read_sidecar
 from .signals import ImportProblem
 
 
@@ -50,10 +50,8 @@ def _sidecar_from_files(folder, found):
     """
     signals = [signal for group in found.values() for signal in group]
     first = next(iter(found.values()))
-    forces, responses = (
-        [Sensor(name=signal.name) for signal in first if signal.force is wanted]
-        for wanted in (True, False)
-    )
+    forces = [Drive(name=signal.name) for signal in first if signal.force]
+    responses = [Sensor(name=signal.name) for signal in first if not signal.force]
     if not forces or not responses:
         missing = "force (ordinate type 13)" if not forces else "response"
         raise ImportProblem(

@@ -9,10 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.campaign.file import Channel
+from vibroimpact.campaign.force_kinds import BASE
 from vibroimpact.units import UnitError, si_factor
 
 from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar
 from .signals import Signal
+
+NOWHERE = (np.nan, np.nan, np.nan)  # an acceleration of the base is that of no point
 
 
 @dataclass(frozen=True)
@@ -33,7 +36,12 @@ class ResolvedSensor:
     @property
     def unit_kind(self) -> str:
         """Return the kind as si_factor knows it."""
-        return "excitation" if self.role == "force" else self.channel.kind
+        return unit_kind(self.role, self.channel.kind)
+
+
+def unit_kind(role: str, kind: str) -> str:
+    """Return the kind of a sensor as si_factor knows it, of its role and kind."""
+    return "excitation" if role == "force" and kind != BASE else kind
 
 
 @dataclass(frozen=True)
@@ -76,9 +84,15 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
     if not kind:
         problems.append(
             f"{place}: the kind is not known: add kind: acceleration, velocity, displacement,"
-            " contact_force or generic"
+            " contact_force, strain or generic"
         )
-    point = sensor.point_m or first.point
+    if role == "force" and kind == "acceleration":
+        problems.append(
+            f"{place}: an acceleration is no force: add kind: {BASE} where all that holds the"
+            " structure moves, else list it among channels"
+        )
+        return None
+    point = sensor.point_m or first.point or (NOWHERE if kind == BASE else None)
     direction = _unit_vector(sensor.direction, place, problems) or first.direction
     if point is None:
         problems.append(f"{place}: its place is not known: add point_m: [x, y, z] in metres")
@@ -87,7 +101,7 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
             f"{place}: its direction is not known: add direction: +x, -y, ... or [x, y, z], the"
             " positive sense"
         )
-    unit = _unit(sensor, signals, "excitation" if role == "force" else kind, measured)
+    unit = _unit(sensor, signals, unit_kind(role, kind), measured)
     if unit is None or not kind or point is None or direction is None:
         return None
     unit_from = NAME if sensor.unit else first.unit_from

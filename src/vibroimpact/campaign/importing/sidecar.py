@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field, ValidationError
 
 from vibroimpact.campaign.file import Kind
+from vibroimpact.campaign.force_kinds import ForceKind
 from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, shown
 from vibroimpact.config.quantities import (
     Frequency_Hz,
@@ -67,7 +68,7 @@ TransientPeriods = Annotated[
 
 
 class Sensor(Section):
-    """A response channel or a force.
+    """A response channel.
 
     name: of the channel.
     variable: name of the signal in the files; the same where it is not given.
@@ -81,6 +82,12 @@ class Sensor(Section):
     kind: Kind | None = None
     point_m: Point_m | None = None
     direction: Direction | Vector | None = None
+
+
+class Drive(Sensor):
+    """A force, or an acceleration of the base, which needs no point_m."""
+
+    kind: ForceKind | Kind | None = None  # type: ignore[assignment]
 
 
 class Record(Section):
@@ -122,7 +129,7 @@ class Sidecar(Section):
     start_up: Literal["rest", "stationary"] = "stationary"
     period_samples: PeriodSamples = 0
     transient_periods: TransientPeriods = 0
-    forces: tuple[Sensor, ...] = Field(min_length=1)
+    forces: tuple[Drive, ...] = Field(min_length=1)
     channels: tuple[Sensor, ...] = Field(min_length=1)
     records: tuple[Record, ...] = Field(min_length=1)
     voltage: Voltage | None = None

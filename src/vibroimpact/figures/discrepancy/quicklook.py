@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.campaign.file import force_units
+from vibroimpact.campaign.force_kinds import BASE, FORCE, unit_kinds
 from vibroimpact.campaign.signals import Averaging, campaign_signals, transfer_band
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
@@ -33,7 +34,9 @@ PSD_COLUMNS = {
     "m": "psd_m2_per_Hz",
     "N": "psd_N2_per_Hz",
     "V": "psd_V2_per_Hz",
+    "1": "psd_1_per_Hz",
 }
+LOADS = {FORCE: "load_rms_N", BASE: "load_rms_m_per_s2"}
 CURVES = (BLUE, ORANGE, GREEN, RED, PINK, BLACK, SKY, BROWN, GREY)
 MARKERS = "os^Dv<>PX"
 
@@ -45,8 +48,10 @@ def quicklook(campaign):
     """
     measured = campaign_signals(campaign)
     panels = [
-        ("force", index, name, _shown_unit(force_units(campaign, index), "excitation"))
-        for index, name in enumerate(measured.forces)
+        ("force", index, name, _shown_unit(force_units(campaign, index), kind))
+        for index, (name, kind) in enumerate(
+            zip(measured.forces, unit_kinds(campaign), strict=True)
+        )
     ]
     panels += [
         (
@@ -128,6 +133,7 @@ def _spectra(sheet, axes, measured, signal, unit, colours, band):
     """Draw the PSDs of one force or response, ("force" or "response", index), record by record."""
     role, index = signal
     column = PSD_COLUMNS.get(unit, "psd_unit2_per_Hz")
+    load_unit = "m/s²" if measured.force_kinds[0] == BASE else "N"
     lowest, highest = np.inf, 0.0
     for record in np.argsort(measured.load_rms, kind="stable"):
         values = getattr(measured, role)[record][index]
@@ -141,11 +147,15 @@ def _spectra(sheet, axes, measured, signal, unit, colours, band):
             ("frequency_Hz", frequency),
             (column, psd),
             measured.records[record],
-            tags={"load_rms_N": float(load), "split": measured.splits[record]},
+            tags={
+                LOADS[measured.force_kinds[0]]: float(load),
+                "split": measured.splits[record],
+            },
             color=colours.get(load, BLACK),
             linewidth=0.9,
             linestyle="--" if held else "-",
-            label=f"{measured.records[record]} ({load:.3g} N RMS{', held out' if held else ''})",
+            label=f"{measured.records[record]} ({load:.3g} {load_unit} RMS"
+            f"{', held out' if held else ''})",
         )
         lowest, highest = min(lowest, np.percentile(psd, 3)), max(highest, psd.max())
     if not highest > 0.0:
@@ -179,6 +189,7 @@ def _binned(values, rate, band):
 
 def _levels(sheet, axes, measured):
     """Draw the RMS of every response over its RMS at the lowest level, against load."""
+    load_column = LOADS[measured.force_kinds[0]]
     order = np.argsort(measured.load_rms, kind="stable")
     loads = measured.load_rms[order]
     for index, name in enumerate(measured.channels):
@@ -189,7 +200,7 @@ def _levels(sheet, axes, measured):
             continue
         sheet.line(
             axes,
-            ("load_rms_N", loads),
+            (load_column, loads),
             ("rms_over_lowest", rms / rms[0]),
             name,
             color=CURVES[index % len(CURVES)],
@@ -199,12 +210,12 @@ def _levels(sheet, axes, measured):
             alpha=0.85,
         )
     if not axes.lines:
-        sheet.note(axes, "no response without holes", "load_rms_N", "rms_over_lowest")
+        sheet.note(axes, "no response without holes", load_column, "rms_over_lowest")
         return
     line = np.array([loads[0], loads[-1]])
     sheet.line(
         axes,
-        ("load_rms_N", line),
+        (load_column, line),
         ("rms_over_lowest", line / line[0]),
         "linear",
         color=GREY,

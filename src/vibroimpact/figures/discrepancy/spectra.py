@@ -107,6 +107,11 @@ def _rms(values):
     return float(np.sqrt(np.mean(np.square(values)))) if values.size else 0.0
 
 
+def _load_unit(data):
+    """Return the unit of the loads of a map as a reader is told it."""
+    return {"m s-2": "m/s²"}.get(data["load_rms"].attrs.get("units", "N"), "N")
+
+
 def _panel(sheet, axes, maps, record, channel, regions):
     """Draw one record and channel."""
     before = maps[0]
@@ -116,7 +121,7 @@ def _panel(sheet, axes, maps, record, channel, regions):
     gap = float(before["gap"].values[record])
     load = float(before["load_rms"].values[record])
     axes.set_title(
-        f"{sensor}, {name}{held}\n{load:.3g} N"
+        f"{sensor}, {name}{held}\n{load:.3g} {_load_unit(before)}"
         f" RMS{f', gap {gap * 1e3:.3g} mm' if np.isfinite(gap) else ''}",
         fontsize=8.5,
     )
