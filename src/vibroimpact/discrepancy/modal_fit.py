@@ -4,7 +4,7 @@ which are linear, solved for at each step.
 Variable projection: G.H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
@@ -43,6 +43,19 @@ class ModalFit:
     delay: np.ndarray
     residual: np.ndarray
     share: np.ndarray
+
+    def of_modes(self, kept):
+        """Return the ModalFit of some modes, kept (fitted,) bool, with what all of them left."""
+        both = np.tile(kept, 2)
+        return replace(
+            self,
+            modes=self.modes[kept],
+            drive=self.drive[kept],
+            log_frequency=self.log_frequency[kept],
+            log_damping=self.log_damping[kept],
+            participation=self.participation[:, kept],
+            covariance=self.covariance[np.ix_(both, both)],
+        )
 
 
 class ModalLines:
