@@ -410,7 +410,7 @@ def read_driven(bench, fresh, out, begun):
     alone = fresh()
     alone.measured_fit = bench.measured_fit.of_modes(driven)
     rows = linear_rows(alone, out.scales, {}, begun)
-    if not nameable(rows[0], out.scales):
+    if not nameable(rows[0], out.scales) or not told_apart(rows):
         return None
     known, out.adopted = out.adopted, rows[0]
     moved = fresh()
@@ -422,6 +422,16 @@ def read_driven(bench, fresh, out, begun):
         return None
     out.linear, out.nonlinear_low = rows, False
     return read_again(moved, fresh, out, {}, begun, driven_alone=True)
+
+
+def told_apart(rows):
+    """Return whether the best single effect of rows of linear_rows is told from the others: a force
+    that is turned drives its modes as one with another gain does.
+    """
+    singles = [row for row in rows if "+" not in row["name"]]
+    first = candidate_named(singles[0]["name"]).ids
+    others = [row["gain"] for row in singles if candidate_named(row["name"]).ids != first]
+    return singles[0]["gain"] > max(others, default=-np.inf) + priors.LINEAR_AMBIGUOUS
 
 
 def read_all(bench, fresh, out, tables, begun):
@@ -476,10 +486,10 @@ def read_again(moved, fresh, out, tables, begun, driven_alone=False):
         ):  # a fault of the chain moves no mode
             return moved
         bare, before = fresh(), candidate_named(out.adopted["name"]).ids
-        bare.measured_fit = translated(moved.measured_fit, moved.bare, bare.bare)
+        fit = moved.measured_fit
         if driven_alone:
-            driven = driven_modes(bare.bare, bare.measured_fit.modes)
-            bare.measured_fit = bare.measured_fit.of_modes(driven)
+            fit = fit.of_modes(driven_modes(moved.bare, fit.modes))
+        bare.measured_fit = translated(fit, moved.bare, bare.bare)
         rows = linear_rows(bare, out.scales, tables, begun)
         if not nameable(rows[0], out.scales):
             return moved
