@@ -15,7 +15,7 @@ from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_record
 from vibroimpact.discrepancy.in_place import gain_of_spring
 from vibroimpact.discrepancy.linear_fit import LinearChanges
 from vibroimpact.discrepancy.nearest_model import translated
-from vibroimpact.discrepancy.prepared import adopt, prepare, workbench
+from vibroimpact.discrepancy.prepared import adopt, prepare, told_apart, workbench
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.effects.places import between
 from vibroimpact.excitation.random_force import band_limited_noise
@@ -39,6 +39,7 @@ TURNED = (
     {"angle": -0.4},
 )
 DAMPED = ("modal_damping@all", {"factor": 3.0})
+FLUID = ("fluid_added_mass_damping@tube", {"mass": 0.25, "damping": 5.0})
 CROSSED = (
     "mode_frequency_error@mode_5",
     {"factor": 0.85},
@@ -103,11 +104,26 @@ def read(prepared):
     }
 
 
+def rows_of(*gains):
+    """Rows of linear effects, {name: gain}."""
+    return [{"name": name, "unit": [0.5], "gain": gain} for name, gain in gains]
+
+
+def test_turned_force_is_as_good_as_a_gain_to_the_modes_it_drives():
+    turned, gain = ("force_misalignment@about_z", 2003.2), ("sensor_gain@force", 2003.1)
+    assert not told_apart(rows_of(turned, gain))
+    assert told_apart(rows_of(turned, ("sensor_gain@force", 1900.0)))
+    # another place of the same effect, and a pair that holds it, are no other effect
+    other = ("force_misalignment@about_tube", 2003.2)
+    assert told_apart(rows_of(turned, other, ("added_mass@apex+sensor_gain@force", 2010.0)))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("effects", "wanted"),
     [
         ((CROSSED,), {"mode_frequency_error": ("factor", 0.85, 0.005)}),
+        ((FLUID,), {"fluid_added_mass_damping": ("mass", 0.25, 0.02)}),
         (
             (ROOTS, MASS),
             {"root_stiffness": ("rotation", 6000.0, 0.02), "added_mass": ("mass", 0.3, 0.02)},
@@ -126,6 +142,7 @@ def read(prepared):
     ],
     ids=[
         "a mode below its neighbour",
+        "a fluid that moves every mode",
         "roots and mass",
         "stinger and damping",
         "turned force and damping",
