@@ -364,6 +364,10 @@ def read_lowest(bench, fresh, out):
     _, _, out.chi_square, _ = corrected_nuisance(bench)
     out.residual = fit.residual.tolist()
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
+    told = read_driven(bench, fresh, out, begun)
+    bench = read_all(bench, fresh, out, tables, begun) if told is None else told
+    # of the last fit: where modes moved far, the first one is late by what it misses
+    fit = bench.measured_fit or fit
     out.delays = {
         name: float(lag)
         for name, lag in zip(bench.signals.names, fit.delay, strict=True)
@@ -382,8 +386,6 @@ def read_lowest(bench, fresh, out):
                 ),
             }
         )
-    told = read_driven(bench, fresh, out, begun)
-    bench = read_all(bench, fresh, out, tables, begun) if told is None else told
     acting = acting_place(bench) if bench.measured_fit is not None else None
     if acting is not None:
         out.scales |= searched((acting.low_m, acting.high_m))
