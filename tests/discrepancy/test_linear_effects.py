@@ -109,7 +109,7 @@ def rows_of(*gains):
     return [{"name": name, "unit": [0.5], "gain": gain} for name, gain in gains]
 
 
-def test_turned_force_is_as_good_as_a_gain_to_the_modes_it_drives():
+def test_turned_force_is_a_gain_to_the_modes_it_drives():
     turned, gain = ("force_misalignment@about_z", 2003.2), ("sensor_gain@force", 2003.1)
     assert not told_apart(rows_of(turned, gain))
     assert told_apart(rows_of(turned, ("sensor_gain@force", 1900.0)))
