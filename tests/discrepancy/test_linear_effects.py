@@ -14,8 +14,9 @@ from vibroimpact.discrepancy.candidates import Pair, candidate_named
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.in_place import gain_of_spring
 from vibroimpact.discrepancy.linear_fit import LinearChanges
+from vibroimpact.discrepancy.lowest_record import told_apart
 from vibroimpact.discrepancy.nearest_model import translated
-from vibroimpact.discrepancy.prepared import adopt, prepare, told_apart, workbench
+from vibroimpact.discrepancy.prepared import adopt, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.effects.places import between
 from vibroimpact.excitation.random_force import band_limited_noise

@@ -1,8 +1,8 @@
-"""The linear stage: checks, what the lowest record tells by itself, the linear effects that are
-adopted before contact is looked at.
+"""The linear stage: checks of a campaign, what its lowest record tells, and the linear effects that
+are adopted before contact is looked at.
 """
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from math import ceil
 
@@ -19,7 +19,7 @@ from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
-from .acting_place import acting_place
+from .adopted import adopt
 from .candidates import candidate_named, local_candidates, not_testable
 from .comparable import (
     LEFT_OUT,
@@ -31,19 +31,14 @@ from .comparable import (
     left_out,
     strain_rows,
 )
-from .driven import driven_channels
 from .in_place import in_place
-from .lags import driven_modes
-from .linear_findings import linear_findings
-from .linear_fit import LinearChanges
-from .linear_misfit import LinearMisfit
-from .linear_rows import held, linear_rows, nameable, nearest_linear
-from .linear_stage import left
+from .linear_rows import held, nearest_linear
+from .lowest_record import read_lowest
 from .measuring import Measuring
 from .modal_fit import ModalFit
-from .nearest_model import fit_from_nearest, translated
+from .nearest_model import translated
 from .nuisance import neutral, plausible
-from .scales import scales, searched
+from .scales import scales
 from .sensed import differentiated, kind_groups
 from .slower import slower
 from .strain import STRAIN, speed_per_strain
@@ -173,28 +168,6 @@ def workbench(config, campaign_path, prepared, seconds=None):
                 False,
             )
     return bench
-
-
-def adopt(bench, prepared, linear_stage=None):
-    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from
-    here on, nuisances are those beside it.
-
-    linear_stage: whether the lowest record tells of the linear structure with them; looked for
-    where it is None.
-    """
-    candidate = candidate_named(prepared.adopted["name"])
-    physical = candidate.physical(prepared.adopted["unit"], prepared.scales)
-    values = candidate.variant(bench.values, physical)
-    if values is not bench.values:
-        bench.rebase(values)
-    if linear_stage is not None:
-        bench.linear_stage = linear_stage
-    if prepared.fit is not None:
-        bench.measured_fit = ModalFit(
-            **{name: np.array(value) for name, value in prepared.fit.items()}
-        )
-    bench.measuring = candidate.measuring(physical, bench.signals.names)
-    bench.nuisance = corrected_nuisance(bench)[0] if bench.linear_stage else None
 
 
 def prepare(config, campaign_path, draw=0):
@@ -332,179 +305,6 @@ def telling_modes(prepared, shown):
     it: a press that holds the tube hid nine times its damping.
     """
     return shown if prepared.linear_stage and not prepared.nonlinear_low else None
-
-
-def read_lowest(bench, fresh, out):
-    """Return the Workbench with what the lowest record tells: linear stage, delays, linear effects,
-    what is adopted; Prepared out is changed.
-
-    bench: Workbench; fresh() gives another one.
-    """
-    driven, begun, tables = driven_channels(bench), (), {}
-    if (
-        left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL
-    ):  # modes that moved too far to be followed: begin from the effects that come nearest
-        bench.measured_fit, begun = fit_from_nearest(
-            bench, LinearChanges(bench), out.scales, held(bench.campaign)
-        )
-        bench.__dict__.pop("measured_reading", None)
-    fit = bench.measured_fit
-    if np.median(fit.share[driven]) > priors.UNREAD:
-        out.linear_stage = False
-        out.checks.append(
-            {
-                "check": "lowest level",
-                "level": "warn",
-                "record": None,
-                "channel": None,
-                "message": UNREAD_MESSAGE,
-            }
-        )
-        return bench
-    _, _, out.chi_square, _ = corrected_nuisance(bench)
-    out.residual = fit.residual.tolist()
-    out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
-    told = read_driven(bench, fresh, out, begun)
-    bench = read_all(bench, fresh, out, tables, begun) if told is None else told
-    # of the last fit: where modes moved far, the first one is late by what it misses
-    fit = bench.measured_fit or fit
-    out.delays = {
-        name: float(lag)
-        for name, lag in zip(bench.signals.names, fit.delay, strict=True)
-        if lag != 0.0
-    }
-    for name, lag in out.delays.items():
-        out.checks.append(
-            {
-                "check": "delay",
-                "level": "warn",
-                "record": None,
-                "channel": name,
-                "message": (
-                    f"{name} reads {1e3 * lag:+.3f} ms late against the model's response to the"
-                    " force; what is simulated is made as late."
-                ),
-            }
-        )
-    acting = acting_place(bench) if bench.measured_fit is not None else None
-    if acting is not None:
-        out.scales |= searched((acting.low_m, acting.high_m))
-    out.checks += linear_findings(bench, fresh, out.adopted, out.nonlinear_low, acting)
-    out.fit = (
-        {name: np.asarray(value).tolist() for name, value in asdict(bench.measured_fit).items()}
-        if bench.measured_fit is not None
-        else None
-    )
-    return bench
-
-
-def read_driven(bench, fresh, out, begun):
-    """Return the Workbench with the linear effect that those modes tell which the force drives in
-    the model, where all that the record shows fits with it; Prepared out is changed. None where it
-    does not, and where the force drives all that were read.
-
-    Where modes moved far, one that is not driven is fitted to what the others leave: it stayed at
-    276 Hz, known to a ten-thousandth, and no effect of the model was let move the others as far.
-    """
-    driven = driven_modes(bench.bare, bench.measured_fit.modes)
-    if driven.all() or not driven.any():
-        return None
-    alone = fresh()
-    alone.measured_fit = bench.measured_fit.of_modes(driven)
-    rows = linear_rows(alone, out.scales, {}, begun)
-    if not nameable(rows[0], out.scales) or not told_apart(rows):
-        return None
-    known, out.adopted = out.adopted, rows[0]
-    moved = fresh()
-    moved.measured_fit = alone.measured_fit
-    adopt(moved, out)
-    fits = moved.linear_stage and moved.measured_fit is not alone.measured_fit
-    if not fits or LinearMisfit(moved, len(rows[0]["unit"]), alone.bare).p() < priors.SIGNIFICANT:
-        out.adopted = known
-        return None
-    out.linear, out.nonlinear_low = rows, False
-    return read_again(moved, fresh, out, {}, begun, driven_alone=True)
-
-
-def told_apart(rows):
-    """Return whether the best single effect of rows of linear_rows is told from the others: a force
-    that is turned drives its modes as one with another gain does.
-    """
-    singles = [row for row in rows if "+" not in row["name"]]
-    first = candidate_named(singles[0]["name"]).ids
-    others = [row["gain"] for row in singles if candidate_named(row["name"]).ids != first]
-    return singles[0]["gain"] > max(others, default=-np.inf) + priors.LINEAR_AMBIGUOUS
-
-
-def read_all(bench, fresh, out, tables, begun):
-    """Return the Workbench with the linear effects that all modes tell which the lowest record
-    shows; Prepared out is changed.
-    """
-    driven, fit = driven_channels(bench), bench.measured_fit
-    out.linear = linear_rows(bench, out.scales, tables, begun)
-    singles, leaves = [row for row in out.linear if "+" not in row["name"]], []
-    for row in (*singles[:1], *(row for row in out.linear[:1] if row not in singles)):
-        if not nameable(row, out.scales):
-            continue
-        out.adopted, bench = row, fresh()
-        bench.measured_fit = fit
-        adopt(bench, out)
-        # modes that moved far are fitted well only from the model that moved them: what is left
-        # there tells whether the structure is linear
-        rest = bench.measured_fit.residual[driven].max() if bench.linear_stage else np.inf
-        if rest < priors.LINEAR_RESIDUAL:
-            out.nonlinear_low = False
-            bench = read_again(bench, fresh, out, tables, begun)
-            break
-        leaves.append((rest, row, bench))
-    else:  # the modes were read without it: one effect, unless two leave less
-        if leaves:
-            _, out.adopted, bench = min(leaves, key=lambda one: one[0])
-    if out.nonlinear_low:
-        out.adopted, bench = None, fresh()
-        bench.measured_fit = fit
-    return bench
-
-
-UNREAD_MESSAGE = (
-    "No modes explain the lowest record: it touches already, or the structure is another one."
-    " Linear effects are tried by simulation, beside the others. A record at a lower load would"
-    " tell them by itself."
-)
-
-
-def read_again(moved, fresh, out, tables, begun, driven_alone=False):
-    """Return the Workbench with what the lowest record tells once its modes are fitted from the
-    model that moved them; Prepared out is changed.
-
-    moved: Workbench with effects adopted; fresh() gives another one, whose own fit may be percents
-    off where a mode moved far: half a kilogram was read as 3 % more, and a second effect made of
-    the difference. Where that tells of other effects, once more. driven_alone: by the modes alone
-    that the force drives, see read_driven.
-    """
-    for _ in range(AGAIN):
-        if (
-            moved.values is moved.given or moved.measured_fit is None
-        ):  # a fault of the chain moves no mode
-            return moved
-        bare, before = fresh(), candidate_named(out.adopted["name"]).ids
-        fit = moved.measured_fit
-        if driven_alone:
-            fit = fit.of_modes(driven_modes(moved.bare, fit.modes))
-        bare.measured_fit = translated(fit, moved.bare, bare.bare)
-        rows = linear_rows(bare, out.scales, tables, begun)
-        if not nameable(rows[0], out.scales):
-            return moved
-        out.linear, out.adopted = rows, rows[0]
-        if candidate_named(rows[0]["name"]).ids == before:
-            break
-        moved = fresh()  # fitted anew from the model that holds what is adopted now
-        adopt(moved, out)
-    adopt(bare, out)
-    return bare
-
-
-AGAIN = 3  # times at most
 
 
 def mixed_up(bench):
