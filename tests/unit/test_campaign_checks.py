@@ -16,8 +16,10 @@ from vibroimpact.campaign.checks.file_checks import (
     refused,
     usable_signals,
 )
+from vibroimpact.campaign.checks.linear_record import INCOHERENT, mean_coherence
 from vibroimpact.campaign.checks.signal_faults import clipped_share
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, read_campaign
+from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.records import write_record
 
 DEVELOPMENT = Path(__file__).parents[2].parent / "shared" / "data" / "campaigns"
@@ -313,6 +315,23 @@ def test_swapped_channels_of_two_kinds_are_detected(sound):
     assert [row["channel"] for row in found] == [
         names(sound, 0, channel)[1] for channel in (along, across)
     ]
+
+
+def test_a_noisy_channel_is_not_taken_for_a_swapped_one(sound):
+    """Of a displacement, only the lowest modes are above its noise: its mean coherence is low."""
+    along = int(np.argmax(np.abs(sound["channel_direction"].values[:, 1])))
+    response = np.nan_to_num(sound["response"].values[:, along])
+    omega = 2.0 * np.pi * np.fft.rfftfreq(response.shape[-1], 1.0 / RATE)
+    lines = np.fft.rfft(response) * (omega > 10.0) / np.maximum(omega, 10.0) ** 2
+    moved = np.fft.irfft(lines, response.shape[-1])
+    noise = 0.3 * moved.std(axis=-1, keepdims=True)
+    moved += noise * np.random.default_rng(1).standard_normal(moved.shape)
+    sound["response"].values[:, along] = moved
+    sound["channel_kind"].values[along] = "displacement"
+    sound["channel_units"].values[along] = "m"
+    spectra = transfer(campaign_signals(sound), 0)
+    assert mean_coherence(spectra)[along] < INCOHERENT < spectra.following[along]
+    assert "swapped channels" not in {row["check"] for row in complaints(sound)}
 
 
 @pytest.mark.parametrize("channel", [0, 3])

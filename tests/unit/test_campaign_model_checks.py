@@ -30,7 +30,7 @@ def beam(stretch=1.0, damping=0.01):
 
 def spectra(h1):
     """A Transfer of measured responses per force, fully coherent."""
-    return Transfer(LINES, h1, np.full(h1.shape, 0.98), np.ones(len(h1)), 12)
+    return Transfer(LINES, h1, np.full(h1.shape, 0.98), np.ones(len(h1)), np.ones(len(h1)), 12)
 
 
 def test_nearly_correct_model_flags_no_channel():

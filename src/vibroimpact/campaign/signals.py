@@ -234,6 +234,7 @@ class Transfer:
     h1 (channel, line): response per force.
     coherence (channel, line): 0 to 1.
     power (channel,): mean square of the responses in the band.
+    following (channel,): share of that power which follows the force, 0 to 1.
     averages: number of segments.
     """
 
@@ -241,6 +242,7 @@ class Transfer:
     h1: np.ndarray
     coherence: np.ndarray
     power: np.ndarray
+    following: np.ndarray
     averages: int
 
 
@@ -279,6 +281,7 @@ def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
         cross / force_psd[kept],
         coherence,
         psd.sum(axis=-1) * step,
+        np.sum(coherence * psd, axis=-1) / np.maximum(psd.sum(axis=-1), np.finfo(float).tiny),
         values.shape[1],
     )
 

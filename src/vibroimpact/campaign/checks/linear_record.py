@@ -103,9 +103,11 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
     the same kind if there is one. Without a partner, one channel that follows tells of no other.
     """
     coherence, along = mean_coherence(spectra), alignment(signals)
+    # where only the strong lines of a channel are above its noise, its mean coherence is low
+    follows = np.maximum(coherence, spectra.following)
     along = np.where(np.array(signals.kinds) == "contact_force", np.nan, along)
     following = np.sum((along > ALIGNED) & (coherence > COHERENT))
-    silent = np.flatnonzero((along > ALIGNED) & (coherence < INCOHERENT))
+    silent = np.flatnonzero((along > ALIGNED) & (follows < INCOHERENT))
     loud = np.flatnonzero((along < ACROSS) & (coherence > COHERENT))
     hints: list[tuple[int, int | None]] = []
     if following < silent.size:
