@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg, stats
 
-from . import nuisance as linear
 from .linear_record import DISCARDED, LinearRecord
 from .linear_stage import fit_modes
 from .measuring import Measuring
+from .nearest_model import at_modes
 
 LEAST = 1.0e-4  # of a frequency, one sigma: below it the fits of two halves are not told apart
 
@@ -38,10 +38,7 @@ def drift_of(bench):
     responses = late.delayed(responses, signals.rate)
     responses = responses if base is None else responses - base
     # from where the whole record has the modes: halves differ from it by little
-    there = linear.corrected(
-        bench.bare,
-        linear.Nuisance(fit.modes, np.exp(fit.log_frequency), np.exp(fit.log_damping), None),
-    )
+    there = at_modes(bench.bare, fit)
     middle = force.shape[-1] // 2
     start = 0.0 if signals.from_rest else 2.0 * DISCARDED
     halves = []

@@ -85,7 +85,7 @@ def gain_of_spring(bench, changes, place, stiffness):
     model = attach(check_config(element, "variant of the model"), bench.campaign)
     damping = SMALL * stiffness / model.omega[model.omega > 0.0][0]
     start = linear.reading_of_model(bench.bare, changes.modes)
-    bare = linear.likelihood(bench.measured_reading, start, bench.measured_fit.covariance)[0]
+    bare = linear.likelihood(bench.measured_reading, start)[0]
 
     def loss(unit):
         laws = replace(
@@ -97,12 +97,7 @@ def gain_of_spring(bench, changes, place, stiffness):
         if np.sum(changed.omega > 0.0) < np.sum(model.omega > 0.0):
             return np.inf  # softened until it does not stand
         reading = changes.reading_of(changed)
-        return (
-            bare
-            - linear.likelihood(
-                bench.measured_reading, reading, bench.measured_fit.covariance, start
-            )[0]
-        )
+        return bare - linear.likelihood(bench.measured_reading, reading, start)[0]
 
     best = min(((first, second) for first in GRID[0] for second in GRID[1]), key=loss)
     return -float(

@@ -138,8 +138,8 @@ def fitted(bench, changes, candidate, unit, scales):
     Gauss-Newton with the model itself; None where it can not be built. Intervals are of each
     parameter with the others free.
     """
-    measured, error = bench.measured_reading, bench.measured_fit.covariance
-    bare = linear.likelihood(measured, linear.reading_of_model(bench.bare, changes.modes), error)[0]
+    measured = bench.measured_reading
+    bare = linear.likelihood(measured, linear.reading_of_model(bench.bare, changes.modes))[0]
 
     def reading(unit, anchor):
         physical = candidate.physical(unit, scales)
@@ -154,16 +154,14 @@ def fitted(bench, changes, candidate, unit, scales):
         # basis is 1 to 3 % off in shapes that change much
         for _ in range(ANCHORED):
             unit, best, slopes = descended(
-                lambda at, anchor=anchor: reading(at, anchor), unit, measured, error, changes.full
+                lambda at, anchor=anchor: reading(at, anchor), unit, measured, changes.full
             )
             physical = candidate.physical(unit, scales)
             anchor = (
                 changes.whole_reading(candidate, physical),
                 changes.reading(candidate, physical),
             )
-        unit, best, slopes = descended(
-            lambda at: reading(at, anchor), unit, measured, error, changes.full
-        )
+        unit, best, slopes = descended(lambda at: reading(at, anchor), unit, measured, changes.full)
     except (ConfigError, linalg.LinAlgError):
         return None
     left = max(1.0, best[1] / best[2])  # what the effects do not explain widens their intervals
@@ -172,25 +170,23 @@ def fitted(bench, changes, candidate, unit, scales):
     return LinearResult(candidate, unit, float(best[0] - bare), interval)
 
 
-def descended(reading, unit, measured, error, bare):
+def descended(reading, unit, measured, bare):
     """Return (unit (parameter,), (score, chi-square, number of values), slopes (value, parameter))
     where Gauss-Newton from unit on ends; reading(unit) -> Reading; bare: that without effects.
     """
     best, shorter, new = None, 1.0, unit
     for _ in range(TURNS):
         simulated = reading(new)
-        score, chi_square, _ = linear.likelihood(measured, simulated, error, bare)
+        score, chi_square, _ = linear.likelihood(measured, simulated, bare)
         if best is not None and score < best[0]:
             shorter *= 0.4
         else:
-            values, covariance, sensitivity = linear.difference(
-                measured, simulated, error, bare=bare
-            )
+            values, covariance, sensitivity = linear.difference(measured, simulated, bare=bare)
             factor = linalg.cholesky(covariance + sensitivity @ sensitivity.T, lower=True)
             best, unit, shorter = (score, chi_square, len(values)), new, 1.0
             slopes = np.array(
                 [
-                    _slope(reading, unit, number, simulated, measured, error, factor)
+                    _slope(reading, unit, number, simulated, measured, factor)
                     for number in range(len(unit))
                 ]
             ).T
@@ -206,13 +202,11 @@ def descended(reading, unit, measured, error, bare):
     return unit, best, slopes
 
 
-def _slope(reading, unit, number, simulated, measured, error, factor):
+def _slope(reading, unit, number, simulated, measured, factor):
     """Return (value,): the change of the whitened differences with one normalised parameter."""
     side = STEP if unit[number] < 0.5 else -STEP
     there = np.array(unit)
     there[number] += side
     seen = linear.seen_by(measured, simulated)  # the same on both sides
-    one, other = (
-        linear.difference(measured, row, error, seen)[0] for row in (simulated, reading(there))
-    )
+    one, other = (linear.difference(measured, row, seen)[0] for row in (simulated, reading(there)))
     return linalg.solve_triangular(factor, (other - one) / side, lower=True)

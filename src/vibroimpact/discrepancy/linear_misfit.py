@@ -23,6 +23,7 @@ from .attach import attach
 from .linear_fit import REACH, coarse, descended, moved
 from .linear_stage import fit_modes, left, modelled_lines
 from .linearised import linearised, matched, same_modes
+from .nearest_model import followed
 from .other_lengths import Moved, parts, scaled
 from .strain import gauges_of
 
@@ -73,7 +74,6 @@ class LinearMisfit:
         self.bench, self.freed, self.given_model = bench, freed, given
         self.left = left(bench.measured_fit, bench.bare)
         self.measured, self.simulated = bench.measured_reading, bench.bare_reading
-        self.error = bench.measured_fit.covariance
         self.given = (
             None
             if given is None
@@ -97,19 +97,22 @@ class LinearMisfit:
     def mends(self):
         """Return the Mends, the likeliest first."""
         channels = self._channels
-        return sorted(
-            [
-                self._frequencies(),
-                self._section(),
-                *filter(None, starmap(self._length, parts(self.bench.config.structure).items())),
-                *map(self._mode, range(self.modes)),
-                *map(self._channel, channels),
-                *map(self._gain, channels),
-                *filter(None, map(self._direction, channels[~self._gauges[channels]])),
-                *self.places,
-            ],
-            key=lambda mend: mend.score,
-        )
+        found = [
+            self._frequencies(),
+            self._section(),
+            *filter(None, starmap(self._length, parts(self.bench.config.structure).items())),
+            *map(self._mode, range(self.modes)),
+            *map(self._channel, channels),
+            *map(self._gain, channels),
+            *filter(None, map(self._direction, channels[~self._gauges[channels]])),
+        ]
+        # a place is read anew, which costs as much as all before: where nothing else mends it
+        if not any(self._mended(mend) for mend in found if mend.kind != "channel"):
+            found += self.places
+        return sorted(found, key=lambda mend: mend.score)
+
+    def _mended(self, mend):
+        return self.p(mend.chi_square, mend.freed) > priors.SIGNIFICANT
 
     @cached_property
     def places(self):
@@ -138,7 +141,7 @@ class LinearMisfit:
         is not of the model's modes, and is looked at by itself.
         """
         values, covariance, sensitivity = linear.difference(
-            self.measured, simulated, self.error, self.seen, self.given
+            self.measured, simulated, self.seen, self.given
         )
         own = slice(len(values) - len(self.seen))
         return values[own], (covariance + sensitivity @ sensitivity.T)[own, own]
@@ -281,7 +284,6 @@ class LinearMisfit:
                 ),
                 np.array([0.5]),
                 self.measured,
-                self.error,
                 self.simulated,
             )
             found = self._reading_of_lengths(config, keys, factor(unit))
@@ -306,6 +308,7 @@ class LinearMisfit:
         points = self.bench.campaign["channel_point"].astype(float).copy()
         points[channel] = self._line.position(arc)
         bench = self.bench.again(self.bench.campaign.assign(channel_point=points))
+        bench.measured_fit = followed(bench, self.bench.measured_fit)
         return LinearMisfit(bench, self.freed, self.given_model)
 
     def place(self, mend):

@@ -95,14 +95,12 @@ def calibrate(bench, candidate, scales, table=None):
     """Return the LinearResult of a linear candidate on the lowest record."""
     fit, measured = bench.measured_fit, bench.measured_reading
     start = linear.reading_of_model(bench.bare, fit.modes)
-    bare = linear.likelihood(measured, start, fit.covariance)[0]
+    bare = linear.likelihood(measured, start)[0]
 
     def loss(unit):
         outside = np.sum(np.maximum(np.abs(np.asarray(unit) - 0.5) - 0.5, 0.0))
         reading = reading_under(bench, candidate, np.clip(unit, 0.0, 1.0), scales, table)
-        return (
-            bare - linear.likelihood(measured, reading, fit.covariance, start)[0] + 1.0e3 * outside
-        )
+        return bare - linear.likelihood(measured, reading, start)[0] + 1.0e3 * outside
 
     count = len(candidate.effect.parameters)
     starts = unit_grid(count, {1: 61, 2: 15, 3: 7}[count])
@@ -122,7 +120,7 @@ def calibrate(bench, candidate, scales, table=None):
     )
     unit = np.clip(found.x, 0.0, 1.0)
     chi_square = linear.likelihood(
-        measured, reading_under(bench, candidate, unit, scales, table), fit.covariance, start
+        measured, reading_under(bench, candidate, unit, scales, table), start
     )[1]
     left = max(
         1.0, chi_square / (2 * len(fit.modes) + fit.participation.size)

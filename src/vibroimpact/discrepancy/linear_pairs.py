@@ -45,10 +45,10 @@ def proposed(bench, rows, scales, tables):
     Far from the measurement the likelihood knows but its worst entry: here an entry that is far off
     counts by the logarithm of how far.
     """
-    measured, error = bench.measured_reading, bench.measured_fit.covariance
+    measured = bench.measured_reading
     bare = linear.reading_of_model(bench.bare, bench.measured_fit.modes)
     seen = linear.seen_by(measured, measured)
-    target, covariance, sensitivity = linear.difference(measured, bare, error, seen)
+    target, covariance, sensitivity = linear.difference(measured, bare, seen)
     sd = np.sqrt(np.diag(covariance) + np.sum(sensitivity**2, axis=1))
     candidates, units, changes = [], [], []
     for row in rows:
@@ -58,7 +58,6 @@ def proposed(bench, rows, scales, tables):
             there = linear.difference(
                 measured,
                 reading_under(bench, candidate, unit, scales, tables.get(candidate.name)),
-                error,
                 seen,
             )[0]
             candidates.append(candidate)

@@ -24,10 +24,14 @@ class LinearRecord:
         # responses are needed at a fraction of the rate only: the force holds nothing above the
         # band
         self.every = max(1, int(rate / (RATE_PER_BAND * band_Hz[1])))
-        samples = force.shape[-1] // self.every * self.every
-        self.rate, self.samples = rate, samples
         begin = (0.0 if from_rest else DISCARDED) if begin is None else begin
-        self.first = int(begin * samples) // self.every * self.every
+        whole = force.shape[-1] // self.every
+        # as much as is quick to transform: a length with a large prime factor takes ten times as
+        # long
+        compared = fft.prev_fast_len(whole - int(begin * whole), real=True)
+        first = whole - compared if begin else 0
+        samples, self.first = self.every * (first + compared), self.every * first
+        self.rate, self.samples = rate, samples
         self.length = self.every * fft.next_fast_len(2 * samples // self.every, real=True)
         kept = self.length // self.every // 2 + 1
         self.omega = 2.0 * np.pi * fft.rfftfreq(self.length, 1.0 / rate)[:kept]

@@ -97,7 +97,14 @@ def _among_all(found, moves):
         out[moves] = values
         return out
 
-    neutral = {"participation": 0.0, "delay": 0.0, "residual": 1.0, "share": 0.0}
+    neutral = {
+        "participation": 0.0,
+        "shape_covariance": 0.0,
+        "shape_slopes": 0.0,
+        "delay": 0.0,
+        "residual": 1.0,
+        "share": 0.0,
+    }
     return replace(
         found, **{name: placed(getattr(found, name), other) for name, other in neutral.items()}
     )
@@ -135,6 +142,7 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
         + 1.0e-300
     )
     delay, lag, start = np.zeros(len(measured)), None, np.zeros(len(visible)) if fixed else None
+    found = None
     for _ in range(
         3
     ):  # modes that the model does not excite, and delays, are seen once the rest is taken out
@@ -171,8 +179,15 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
             # what breaks a symmetry lets a channel see modes that it does not in the model: looked
             # at from the beginning, and once the modes are where they are
             begun = [start, *begun]
-        found = min((lines.fit(more, noise, delay, one) for one in begun), key=_implausible)
+        before, found = (
+            found,
+            min((lines.fit(more, noise, delay, one) for one in begun), key=_implausible),
+        )
         if fixed:
+            break
+        if before is not None and left(found, model) >= LOST > left(before, model):
+            # of a mode that is hardly driven, phases are not told, and make channels late
+            found = before
             break
         nothing = (
             np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING

@@ -11,6 +11,7 @@ from .acting_place import acting_place
 from .adopted import adopt
 from .candidates import candidate_named
 from .driven import driven_channels
+from .explained import share_explained
 from .lags import driven_modes
 from .linear_findings import linear_findings
 from .linear_fit import LinearChanges
@@ -54,6 +55,9 @@ def read_lowest(bench, fresh, out):
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
     told = read_driven(bench, fresh, out, begun)
     bench = read_all(bench, fresh, out, tables, begun) if told is None else told
+    if out.adopted is not None and not adopted_explains(bench, fresh, out.adopted):
+        out.adopted, out.nonlinear_low, bench = None, True, fresh()
+        bench.measured_fit = fit
     # of the last fit: where modes moved far, the first one is late by what it misses
     fit = bench.measured_fit or fit
     out.delays = {
@@ -147,11 +151,28 @@ def read_all(bench, fresh, out, tables, begun):
         leaves.append((rest, row, bench))
     else:  # the modes were read without it: one effect, unless two leave less
         if leaves:
-            _, out.adopted, bench = min(leaves, key=lambda one: one[0])
+            leaves.sort(key=lambda one: (not adopted_explains(one[2], fresh, one[1]), one[0]))
+            _, out.adopted, bench = leaves[0]
     if out.nonlinear_low:
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
     return bench
+
+
+def adopted_explains(bench, fresh, adopted):
+    """Return whether what was adopted (a row of linear_rows), read again with it in the model of a
+    Workbench, explains the lowest record, or most of what is beyond chance there: a structure that
+    touches already differs from every linear one, and some of them come nearer.
+
+    fresh() gives a Workbench without it.
+    """
+    if not bench.linear_stage:  # it touches with what was adopted, which tells nothing against it
+        return True
+    given = fresh()
+    given.measured_fit = translated(bench.measured_fit, bench.bare, given.bare)
+    before, after = LinearMisfit(given), LinearMisfit(bench, len(adopted["unit"]), given.bare)
+    share = share_explained(after.chi_square, before.chi_square, after.count)
+    return after.p() > priors.SIGNIFICANT or share > priors.EXPLAINED
 
 
 UNREAD_MESSAGE = (

@@ -16,6 +16,7 @@ RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, b
 LARGEST_LOG_DAMPING = 3.0
 IDLE = 1.0e-9  # of the change with the logarithm that changes most
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
+SINGULAR = 1.0e-9  # of the largest mode in a channel: less beside the others is not told from none
 SETTLED = 1.0e-6  # of what is left: a step that promises less is not taken
 SEARCH = (
     0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
@@ -29,9 +30,11 @@ class ModalFit:
     modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted
     over the model's value; participation (channel, fitted): response per unit modal response to the
     force on `drive` (fitted, force_channel); covariance of [log_frequency, log_damping] (2 fitted,
-    2 fitted); delay (channel,) s by which a channel lags the others' fit, 0 where it is not to be
-    told from none; residual (channel,): RMS of what is left over that of the noise and of
-    RESIDUAL_SHARE of the response, in the band; share (channel,): residual over response, RMS.
+    2 fitted); shape_covariance (channel, fitted, fitted) of participations with these as they are;
+    shape_slopes (channel, fitted, 2 fitted): what participations change with these; delay
+    (channel,) s by which a channel lags the others' fit, 0 where it is not to be told from none;
+    residual (channel,): RMS of what is left over that of the noise and of RESIDUAL_SHARE of the
+    response, in the band; share (channel,): residual over response, RMS.
     """
 
     modes: np.ndarray
@@ -40,13 +43,18 @@ class ModalFit:
     log_damping: np.ndarray
     participation: np.ndarray
     covariance: np.ndarray
+    shape_covariance: np.ndarray
+    shape_slopes: np.ndarray
     delay: np.ndarray
     residual: np.ndarray
     share: np.ndarray
 
     def of_modes(self, kept):
-        """Return the ModalFit of some modes, kept (fitted,) bool, with what all of them left."""
-        both = np.tile(kept, 2)
+        """Return the ModalFit of some modes, kept (fitted,) bool or their places in another order,
+        with what all of them left.
+        """
+        kept = np.arange(len(self.modes))[kept]
+        both = np.concatenate([kept, kept + len(self.modes)])
         return replace(
             self,
             modes=self.modes[kept],
@@ -55,7 +63,20 @@ class ModalFit:
             log_damping=self.log_damping[kept],
             participation=self.participation[:, kept],
             covariance=self.covariance[np.ix_(both, both)],
+            shape_covariance=self.shape_covariance[:, kept][:, :, kept],
+            shape_slopes=self.shape_slopes[:, kept][:, :, both],
         )
+
+    @property
+    def joint_covariance(self):
+        """Return the covariance of [log_frequency, log_damping, participation], channel by channel
+        of the last: of two modes side by side a channel tells the sum and hardly the difference.
+        """
+        channels, modes = self.participation.shape
+        slopes = self.shape_slopes.reshape(channels * modes, 2 * modes)
+        along = np.vstack([np.eye(2 * modes), slopes])
+        alone = linalg.block_diag(np.zeros((2 * modes, 2 * modes)), *self.shape_covariance)
+        return along @ self.covariance @ along.T + alone
 
 
 class ModalLines:
@@ -96,7 +117,7 @@ class ModalLines:
             logs = np.concatenate(start)
         else:
             logs[: self.count] = start if start is not None else self._start()
-        best, best_cost, damp, slopes = None, np.inf, 1.0e-3, None
+        best, best_cost, damp = None, np.inf, 1.0e-3
         for _ in range(ITERATIONS):
             basis = self._basis(logs)
             shapes = self._participations(basis, seen, phases)
@@ -109,7 +130,7 @@ class ModalLines:
                     cost,
                     max(0.2 * damp, 1.0e-9),
                 )
-                slopes = self._slopes(best, seen)
+                slopes, shape_slopes = self._slopes(best, seen)
                 if converged:
                     break
             else:
@@ -134,7 +155,7 @@ class ModalLines:
             logs[self.count :] = np.clip(
                 logs[self.count :], -LARGEST_LOG_DAMPING, LARGEST_LOG_DAMPING
             )
-        return self._result(best, slopes, noise, delay)
+        return self._result(best, slopes, shape_slopes, seen, noise, delay)
 
     def explains_more(self, found, seen, more):
         """Return whether a ModalFit with the participations `seen` would leave less with `more` of
@@ -187,7 +208,8 @@ class ModalLines:
 
     def _slopes(self, best, seen):
         """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm,
-        without what the participations would take up.
+        without what the participations would take up; and (channel, fitted, 2 fitted): the change
+        of these.
 
         The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of
         the basis, channel by channel.
@@ -198,6 +220,7 @@ class ModalLines:
             for kind in basis
         }
         slopes = np.zeros((len(shapes), 2 * self.measured.shape[1], 2 * self.count))
+        taken = np.zeros((*shapes.shape, 2 * self.count))
         for channel, kind in enumerate(self.kinds):
             own = _real(
                 (np.tile(shapes[channel], 2)[:, None] * self.weights[channel]) * change[kind]
@@ -205,12 +228,17 @@ class ModalLines:
             known = self.weights[channel] * basis[kind][seen[channel]]
             known = self._beside_base(known, channel)
             columns = [_real(known)] + [_real(1j * known)] * np.iscomplexobj(shapes)
-            span, _ = np.linalg.qr(np.vstack(columns).T)
-            slopes[channel] = own - span @ (span.T @ own)
-        return slopes.reshape(-1, 2 * self.count)
+            span, turn = np.linalg.qr(np.vstack(columns).T)
+            inside = span.T @ own
+            slopes[channel] = own - span @ inside
+            count = int(seen[channel].sum())
+            if count:
+                # what the change of the modes alone would do is made up for by participations
+                taken[channel, seen[channel]] = -(_inverse(turn) @ inside)[:count]
+        return slopes.reshape(-1, 2 * self.count), taken
 
-    def _result(self, best, slopes, noise, delay):
-        logs, shapes, _, residual = best
+    def _result(self, best, slopes, shape_slopes, seen, noise, delay):
+        logs, shapes, basis, residual = best
         covariance = linalg.pinvh(slopes.T @ slopes) * max(1.0, np.mean(np.abs(residual) ** 2))
         power = np.sqrt(np.sum(np.abs(residual / self.weights) ** 2, axis=-1))
         total = np.sqrt(np.sum(np.abs(self.measured) ** 2, axis=-1))
@@ -221,10 +249,27 @@ class ModalLines:
             logs[self.count :],
             shapes,
             covariance,
+            self._shape_covariance(basis, seen, np.mean(np.abs(residual) ** 2, axis=-1)),
+            shape_slopes,
             delay,
             power / np.hypot(noise, RESIDUAL_SHARE * total),
             power / np.maximum(total, 1.0e-300),
         )
+
+    def _shape_covariance(self, basis, seen, left):
+        """Return (channel, fitted, fitted): the covariance of participations, of lines that leave
+        the weighted mean square left (channel,).
+        """
+        out = np.zeros((len(seen), self.count, self.count))
+        for channel in np.flatnonzero(seen.any(axis=1)):
+            rows = self.weights[channel] * basis[self.kinds[channel]][seen[channel]]
+            rows = _real(self._beside_base(rows, channel))
+            count = int(seen[channel].sum())
+            root = _inverse(np.linalg.qr(rows.T, mode="r"))[:count]
+            out[np.ix_([channel], seen[channel], seen[channel])] = (
+                max(1.0, left[channel]) * root @ root.T
+            )
+        return out
 
     def _start(self):
         """Return (fitted,) ln of the frequency at which the mode alone explains most near its
@@ -284,6 +329,13 @@ def without_base(lines, record, weights):
     size = np.sum(np.abs(weights * record.base) ** 2, axis=-1)
     share = np.sum((base.conj() * lines).real, axis=-1) / np.where(size > 0.0, size, 1.0)
     return lines - share[:, None] * record.base
+
+
+def _inverse(turn):
+    """Return the inverse of an upper triangular matrix, finite where two modes are one."""
+    size = np.abs(np.diag(turn))
+    ridge = np.diag(np.where(size < SINGULAR * size.max(initial=0.0), SINGULAR * size.max(), 0.0))
+    return linalg.solve_triangular(turn + ridge, np.eye(len(turn)))
 
 
 def _real(values):

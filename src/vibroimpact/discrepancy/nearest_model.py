@@ -13,6 +13,8 @@ from . import priors
 from .candidates import Pair, linear_candidates, unit_grid
 from .linear_stage import fit_modes, left
 from .linearised import matched
+from .measuring import Measuring
+from .nuisance import Nuisance, corrected
 from .sensed import of_modes, orders
 
 BANDS_PER_OCTAVE = 8
@@ -100,28 +102,43 @@ def begun_from(bench, model):
     )
 
 
+def followed(bench, fit):
+    """Return the ModalFit of a Workbench's lowest record with the modes of another fit of that
+    record, each begun from where that found it, and its delays.
+    """
+    signals, record = bench.signals, bench.linear_record
+    there = at_modes(bench.bare, fit)
+    late = Measuring(np.ones(len(fit.delay)), -fit.delay)
+    responses = bench.valid(signals.response[signals.lowest])
+    # what is late is the absolute motion
+    base = 0.0 if signals.base is None else bench.valid(signals.base[signals.lowest])
+    responses = late.delayed(responses + base, signals.rate) - base
+    found = fit_modes(
+        record, responses, there, signals.kinds, signals.noise_in_band, fit.modes, search=False
+    )
+    return replace(translated(found, there, bench.bare), delay=fit.delay)
+
+
+def at_modes(model, fit):
+    """Return a ModalModel with the frequencies and damping that a ModalFit found."""
+    found = Nuisance(fit.modes, np.exp(fit.log_frequency), np.exp(fit.log_damping), None)
+    return corrected(model, found)
+
+
 def translated(fit, model, other):
     """Return a ModalFit relative to `model` as one relative to another ModalModel: each mode as
     that of the other which is most like it.
     """
     modes = matched(other, np.log(model.omega[fit.modes]) + fit.log_frequency, fit.participation)
-    order, count = np.argsort(modes), len(modes)
+    order = np.argsort(modes)
     frequency = fit.log_frequency + np.log(model.omega[fit.modes] / other.omega[modes])
     damping = (
         fit.log_damping
         + np.log(model.damping[fit.modes] / model.omega[fit.modes])
         - np.log(other.damping[modes] / other.omega[modes])
     )
-    both = np.concatenate([order, order + count])
-    return replace(
-        fit,
-        modes=modes[order],
-        drive=fit.drive[order],
-        log_frequency=frequency[order],
-        log_damping=damping[order],
-        participation=fit.participation[:, order],
-        covariance=fit.covariance[np.ix_(both, both)],
-    )
+    there = replace(fit, modes=modes, log_frequency=frequency, log_damping=damping)
+    return there.of_modes(order)
 
 
 class BandSpectra:

@@ -24,7 +24,8 @@ SEEN = 0.05
 class Reading:
     """What a fit of the lowest record reads: ln frequency and ln damping (mode,), participation
     (channel, mode), residual over noise (channel,); gauges (channel,) bool: those that read a
-    strain, None where none does.
+    strain, None where none does; error: covariance of the three first, participations channel by
+    channel, None where they are known.
     """
 
     modes: np.ndarray
@@ -33,6 +34,7 @@ class Reading:
     participation: np.ndarray
     residual: np.ndarray
     gauges: np.ndarray | None = None
+    error: np.ndarray | None = None
 
     @property
     def scale(self):
@@ -57,13 +59,16 @@ class Nuisance:
 def reading_of_fit(fit, model):
     """Return the Reading of a ModalFit of responses to the force on `model`."""
     omega, damping = model.omega[fit.modes], model.damping[fit.modes]
+    drive = driven(fit.drive)
+    unit = np.concatenate([np.ones(2 * len(drive)), np.tile(drive, len(fit.participation))])
     return Reading(
         fit.modes,
         np.log(omega) + fit.log_frequency,
         np.log(damping / (2.0 * omega)) + fit.log_damping,
-        fit.participation * driven(fit.drive),
+        fit.participation * drive,
         fit.residual,
         gauges_of(model),
+        fit.joint_covariance * unit * unit[:, None],
     )
 
 
@@ -115,14 +120,14 @@ def seen_by(measured, simulated):
     return size > SEEN * by_family(size, measured.gauges)
 
 
-def difference(measured, simulated, error, seen=None, bare=None):
+def difference(measured, simulated, seen=None, bare=None):
     """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus
     simulated Reading.
 
-    error: (2 mode, 2 mode) covariance of the fit's logarithms. Nuisances: mode frequencies, mode
-    dampings, channel gains, each in units of its prior's sigma; the covariance is of what is not
-    nuisance. seen (channel, mode) bool: the participations that are compared, see seen_by; bare:
-    Reading without the effect, of whose change of the shapes two codes differ by a share.
+    Nuisances: mode frequencies, mode dampings, channel gains, each in units of its prior's sigma;
+    the covariance is of what is not nuisance. seen (channel, mode) bool: the participations that
+    are compared, see seen_by; bare: Reading without the effect, of whose change of the shapes two
+    codes differ by a share.
     """
     count, channels = len(measured.log_frequency), len(measured.participation)
     # of the measured alone: a gain that inflates what is simulated must not shrink its errors
@@ -140,12 +145,21 @@ def difference(measured, simulated, error, seen=None, bare=None):
         ]
     )
     change = 0.0 if bare is None else ((simulated.participation - bare.participation) / scale)[seen]
-    shape = np.eye(len(ratio)) * (priors.SHAPE_SD**2 + (priors.SHAPE_LAW_SD * change) ** 2)
-    covariance = linalg.block_diag(
-        error + np.diag([1.0e-10] * count + [1.0e-4] * count),
-        shape,
-        np.eye(channels) * priors.RESIDUAL_SD**2,
+    covariance = np.diag(
+        np.concatenate(
+            [
+                np.full(count, 1.0e-10),
+                np.full(count, 1.0e-4),
+                np.full(len(ratio), priors.SHAPE_SD**2) + (priors.SHAPE_LAW_SD * change) ** 2,
+                np.full(channels, priors.RESIDUAL_SD**2),
+            ]
+        )
     )
+    if measured.error is not None:
+        kept = np.concatenate([np.arange(2 * count), 2 * count + np.flatnonzero(seen)])
+        unit = np.concatenate([np.ones(2 * count), 1.0 / scale[seen]])
+        own = slice(len(kept))
+        covariance[own, own] += measured.error[np.ix_(kept, kept)] * unit * unit[:, None]
     sensitivity = np.zeros((len(values), 2 * count + channels))
     sensitivity[:count, :count] = np.eye(count) * priors.FREQUENCY_SD
     sensitivity[count : 2 * count, count : 2 * count] = np.eye(count) * priors.DAMPING_SD
@@ -155,11 +169,11 @@ def difference(measured, simulated, error, seen=None, bare=None):
     return values, covariance, sensitivity
 
 
-def likelihood(measured, simulated, error, bare=None):
+def likelihood(measured, simulated, bare=None):
     """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances
     marginalised, pulls in sigma. bare: see difference.
     """
-    values, covariance, sensitivity = difference(measured, simulated, error, bare=bare)
+    values, covariance, sensitivity = difference(measured, simulated, bare=bare)
     total = covariance + sensitivity @ sensitivity.T
     factor = linalg.cho_factor(total, lower=True)
     solved = linalg.cho_solve(factor, values)

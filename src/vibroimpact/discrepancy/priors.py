@@ -70,3 +70,6 @@ SIGNIFICANT = 0.01
 # of log likelihood on the lowest record: faults of the chain nearer than this to the best are not
 # told apart
 LINEAR_AMBIGUOUS = 3.0
+# Share of the chi-square beyond chance that an explanation must take away; with less it is a part
+# of one.
+EXPLAINED = 0.75

@@ -323,7 +323,5 @@ def corrected_nuisance(bench):
     fit = bench.measured_fit
     if fit is None:
         return None, 0.0, 0.0, np.zeros(0)
-    score, chi_square, pulls = linear.likelihood(
-        bench.measured_reading, bench.bare_reading, fit.covariance
-    )
+    score, chi_square, pulls = linear.likelihood(bench.measured_reading, bench.bare_reading)
     return linear.nuisance_of(pulls, fit.modes, len(bench.signals.names)), score, chi_square, pulls

@@ -9,9 +9,6 @@ PAIRS = 0.1  # of all that is left: two effects of the catalogue
 NAMED = 0.9  # probability from which an explanation is named, or a set of them given
 # Probability by chance of all that is measured, from which on nothing is looked for.
 CHANCE = 0.5
-# Share of the chi-square beyond chance that an explanation must take away; with less it is a part
-# of one.
-EXPLAINED = 0.75
 # Share of the excess of the misfit that a completed model must close on the records that took no
 # part; with less it is a part of what is missing.
 CLOSED = 0.5

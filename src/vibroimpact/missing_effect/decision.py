@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
+from vibroimpact.discrepancy.explained import share_explained
 from vibroimpact.discrepancy.nuisance import Nuisance
 from vibroimpact.verdict.content import Conclusion
 
@@ -85,7 +87,7 @@ def decide(
     elif reached < constants.NAMED:
         verdict = "partly_explained" if rows[0][1] > 0.5 else "unknown"
         chosen = chosen if verdict == "partly_explained" else None
-    elif share_explained(fits[best[0]].left, before, values) < constants.EXPLAINED:
+    elif share_explained(fits[best[0]].left, before, values) < priors.EXPLAINED:
         verdict = "partly_explained"
     else:
         verdict = "named" if len(together) == 1 else "ambiguous"
@@ -147,13 +149,6 @@ def partly_decision(decision: Decision) -> Decision:
     """
     sure = decision.verdict in ("named", "ambiguous")
     return replace(decision, verdict="partly_explained") if sure else decision
-
-
-def share_explained(left: float, before: float, values: int) -> float:
-    """Return the share of a chi-square beyond chance that an explanation takes away; 1 where there
-    was none.
-    """
-    return 1.0 - max(0.0, left - values) / (before - values) if before > values else 1.0
 
 
 def explanations(chances: Chances) -> list[tuple[str, float, float]]:

@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.cost import SIMULATED
+from vibroimpact.discrepancy.explained import share_explained
 from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.stopwatch import Stopwatch
 
 from . import alike, constants, race, screening, so_far, two_effects, verdict
-from .decision import decide, share_explained
+from .decision import decide
 from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
@@ -174,7 +176,7 @@ def unexplained(search: Search) -> bool:
     if 0.25 * (left - LEAST * null.values) < ROOM:
         return False
     explained = share_explained(left, nothing, null.values)
-    return explained < constants.EXPLAINED or open_chance(search) > OPEN
+    return explained < priors.EXPLAINED or open_chance(search) > OPEN
 
 
 def screened(prepared: Prepared) -> list[str]:

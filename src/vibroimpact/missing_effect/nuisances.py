@@ -46,9 +46,7 @@ def _posterior(bench):
     if not (bench.linear_stage and bench.modes_told):
         return np.zeros(0, int), np.zeros(channels), np.eye(channels)
     fit = bench.measured_fit
-    values, covariance, sensitivity = linear.difference(
-        bench.measured_reading, bench.bare_reading, fit.covariance
-    )
+    values, covariance, sensitivity = linear.difference(bench.measured_reading, bench.bare_reading)
     factor = linalg.cho_factor(covariance + sensitivity @ sensitivity.T, lower=True)
     mean = sensitivity.T @ linalg.cho_solve(factor, values)
     left = np.eye(len(mean)) - sensitivity.T @ linalg.cho_solve(factor, sensitivity)

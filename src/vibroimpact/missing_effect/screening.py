@@ -2,7 +2,9 @@
 more.
 """
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.candidates import candidate_named, elsewhere
+from vibroimpact.discrepancy.explained import share_explained
 from vibroimpact.effects.effect import Values
 
 from .search import LITTLE, Search, telling
@@ -20,19 +22,33 @@ def first_explanations(screened: list[str], places: int = 2) -> list[str]:
 
 
 def screen(search: Search, names: list[str], values: Values) -> None:
-    """Run every explanation at two points for each parameter, at single supports where it explains
-    most at all of them, and those that may explain the measurement at more.
+    """Run every explanation at two points for each parameter, and those that may explain the
+    measurement at more; where no direction takes most of it away, also at single supports, where it
+    explains most at all of them.
     """
     for name in names:
         search.run_first(name, 2 * len(candidate_named(name).effect.parameters))
-        at_all = search.trials[name]
-        for other in elsewhere(candidate_named(name), values):
-            if len(at_all.noise):
-                search.run_screened(other.name, at_all.unit[telling(at_all, search.null.measured)])
+    if not led(search):
+        for name in names:
+            at_all = search.trials[name]
+            for other in elsewhere(candidate_named(name), values):
+                if len(at_all.noise):
+                    unit = at_all.unit[telling(at_all, search.null.measured)]
+                    search.run_screened(other.name, unit)
     search.learn()
     for name in may_explain(search):
         search.run_first(name)
     search.look()
+
+
+def led(search: Search) -> bool:
+    """Return whether the direction of one explanation takes most of the chi-square beyond chance
+    away: of that one alone the single supports are looked at, later.
+    """
+    measured = search.null.measured
+    before = float(measured @ measured)
+    most = max(search.explains(measured).values(), default=0.0)
+    return share_explained(before - most, before, search.null.values) > priors.EXPLAINED
 
 
 def may_explain(search: Search) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.discrepancy import mapping, misfit
+from vibroimpact.discrepancy import mapping, misfit, priors
 from vibroimpact.discrepancy.survivors import survivors
 from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.integration.contact_convergence import IntegrationError
@@ -107,7 +107,7 @@ class Closing:
         """Return whether the completed model leaves so much that what is added is no part of what
         is missing.
         """
-        return self.worse or self._closes_less_than(1.0 - constants.EXPLAINED)
+        return self.worse or self._closes_less_than(1.0 - priors.EXPLAINED)
 
     def _closes_less_than(self, wanted):
         share = self.misfit[self.judged]["closed_fraction"]
