@@ -5,6 +5,7 @@ Variants of a model differ in little: most share the finite-element matrices and
 
 import hashlib
 from collections.abc import Callable, Hashable
+from threading import RLock
 from typing import Any
 
 import numpy as np
@@ -17,14 +18,16 @@ class Memo:
 
     def __init__(self) -> None:
         self.results: dict[Hashable, Any] = {}
+        self.lock = RLock()  # threads that ask for the same result make it once
 
     def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return the result stored under a key, or that of make(), which is then stored."""
-        if key not in self.results:
-            while len(self.results) >= MAX_ENTRIES:
-                self.results.pop(next(iter(self.results)))
-            self.results[key] = make()
-        return self.results[key]
+        with self.lock:
+            if key not in self.results:
+                while len(self.results) >= MAX_ENTRIES:
+                    self.results.pop(next(iter(self.results)))
+                self.results[key] = make()
+            return self.results[key]
 
 
 def content_key(*parts: str | np.ndarray) -> bytes:

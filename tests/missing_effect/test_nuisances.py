@@ -1,5 +1,6 @@
 """Draws of nuisances scatter as their priors say, and less where the lowest record tells."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -30,10 +31,11 @@ def bench_with(told, scatter=1.0e-4, shift=0.0):
         modes_told=told,
         signals=SimpleNamespace(names=("a", "b")),
         bare=SimpleNamespace(modes=MODES, omega=np.array([60.0, 150.0, 400.0])),
-        measured_fit=SimpleNamespace(
-            modes=np.array([0, 1]), covariance=np.diag([scatter**2] * 2 + [1.0e-2] * 2)
+        measured_fit=SimpleNamespace(modes=np.array([0, 1])),
+        measured_reading=replace(
+            reading(shift),
+            error=np.diag([scatter**2] * 2 + [1.0e-2] * 2 + [0.0] * 2 * CHANNELS),
         ),
-        measured_reading=reading(shift),
         bare_reading=reading(),
     )
 

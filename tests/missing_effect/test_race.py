@@ -7,6 +7,8 @@ import pytest
 
 from tests.white_null import white_null
 from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.missing_effect.alike import (
     at_its_place,
     elsewhere_too,
@@ -51,7 +53,7 @@ def changed(name, unit):
 class Made(Search):
     """A Search whose runs are looked up."""
 
-    def _changes(self, candidate, unit):
+    def _changes(self, candidate, unit, first_seed):
         mean = sum(changed(part.name, own) for part, own in candidate.parts(unit))
         signs = np.random.default_rng(int(1.0e6 * unit[0])).choice([-1.0, 1.0], VALUES)
         return mean + np.sqrt(NOISE) * np.outer([1.0, -1.0], signs)
@@ -62,7 +64,7 @@ def searched():
     measured = np.random.default_rng(2).standard_normal(VALUES) + changed(HERTZ, [0.05])
     search = Made(None, white_null(measured), dict.fromkeys(SCALES, 1.0))
     for name in (STIFFNESS, HERTZ, FRICTION):
-        search.run_first(name, 2)
+        search.screen([search.first(name, 2)])
         search.fit(name)
     return search
 
@@ -106,7 +108,7 @@ def test_what_changes_nothing_that_is_missing_is_not_run(searched):
 
 def test_each_of_two_effects_is_run_alone(searched):
     pair = f"{STIFFNESS}+{FRICTION}"
-    searched.run(pair, np.array([[0.5, 0.5]]))
+    searched.run([(pair, np.array([[0.5, 0.5]]))])
     runs = len(searched.trials[FRICTION].noise)
     parts_alone(searched, pair)
     assert len(searched.trials[FRICTION].noise) == runs + 1
@@ -115,7 +117,7 @@ def test_each_of_two_effects_is_run_alone(searched):
 
 def test_effects_at_a_point_are_run_where_one_leads(searched):
     for name in (STOP_THERE, "cubic_stiffness@shaker"):
-        searched.run_first(name, 2)
+        searched.screen([searched.first(name, 2)])
     at_its_place(searched, STOP_THERE)
     assert "cubic_stiffness@span_1" in searched.trials  # as the stop; no stiffness of a contact is
     assert {trial.candidate.location for trial in searched.trials.values()} == {
@@ -131,7 +133,7 @@ def test_an_effect_is_tried_at_the_other_end_of_a_tube(searched):
     spring, rubbing = "cubic_stiffness@along_tube", "coulomb_friction@along_tube"
     searched.scales |= {"load": 1.0}
     for name in (spring, rubbing):
-        searched.run_first(name)
+        searched.screen([searched.first(name)])
         searched.fit(name)
     known = len(searched.trials[spring].noise)
     place = searched.fits[spring].unit[-1]
@@ -140,3 +142,25 @@ def test_an_effect_is_tried_at_the_other_end_of_a_tube(searched):
     assert at_its_place(searched, spring)  # and the other effects where this one is found
     place = searched.fits[spring].unit[-1]
     assert searched.trials[rubbing].unit[-2:, -1] == pytest.approx([place, place])
+
+
+class Seeded(Search):
+    """A Search whose runs say with which seed they were run; those of friction fail."""
+
+    def _changes(self, candidate, unit, first_seed):
+        if candidate.name == FRICTION:
+            raise IntegrationError("thrown off")
+        return np.full((2, VALUES), first_seed) + unit[0]
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_runs_side_by_side_are_those_in_a_row(threads):
+    search = Seeded(None, white_null(np.ones(VALUES)), {}, threads=threads)
+    units = np.array([[0.1], [0.2], [0.3]])
+    search.screen([(STIFFNESS, units), (FRICTION, units[:1]), (HERTZ, units[:2])])
+    seeds = LANES // len(search.null.records)
+    first = 1000 + seeds * np.arange(6)
+    np.testing.assert_allclose(search.trials[STIFFNESS].change[:, 0], first[:3] + units[:, 0])
+    np.testing.assert_allclose(search.trials[HERTZ].change[:, 0], first[4:] + units[:2, 0])
+    assert [sentence for _, sentence in search.trials[FRICTION].failed] == ["thrown off"]
+    assert search.seed == 1000 + 6 * seeds and search.trials[HERTZ].screened == 2

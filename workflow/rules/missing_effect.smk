@@ -18,7 +18,7 @@ rule _missing_effect:
         f"{DISCREPANCY}/logs/missing_effect.log",
     benchmark:
         f"{DISCREPANCY}/benchmarks/missing_effect.tsv"
-    threads: 1
+    threads: 8  # or as many as there are: so many runs at a time
     resources:
         mem_mb=memory(2000),
         runtime=minutes(60),

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-# Before numpy is imported: one process is one core.
+# Before numpy is imported: threads are for runs, not for linear algebra.
 os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
 
 from vibroimpact.config.reading import check_config
@@ -20,5 +20,6 @@ engine = Engine(
     Path(snakemake.output.verdict).parent,
     snakemake.params.effort,
     draw,
+    snakemake.threads,
 )
 engine.run(verdict_origin(values, campaign, f"{values['seed']}, draw {draw}"))

@@ -5,17 +5,20 @@ the last one adds them up.
 import json
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Lock
 from time import process_time
 
 from vibroimpact.records import read_json, write_text
 
 # {"records": records that this process has simulated so far}
 SIMULATED = {"records": 0}
+COUNTING = Lock()
 
 
 def count_simulated(records):
     """Count records that were simulated just now."""
-    SIMULATED["records"] += records
+    with COUNTING:
+        SIMULATED["records"] += records
 
 
 class Meter:

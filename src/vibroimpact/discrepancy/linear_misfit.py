@@ -23,7 +23,6 @@ from .attach import attach
 from .linear_fit import REACH, coarse, descended, moved
 from .linear_stage import fit_modes, left, modelled_lines
 from .linearised import linearised, matched, same_modes
-from .nearest_model import followed
 from .other_lengths import Moved, parts, scaled
 from .strain import gauges_of
 
@@ -308,7 +307,7 @@ class LinearMisfit:
         points = self.bench.campaign["channel_point"].astype(float).copy()
         points[channel] = self._line.position(arc)
         bench = self.bench.again(self.bench.campaign.assign(channel_point=points))
-        bench.measured_fit = followed(bench, self.bench.measured_fit)
+        bench.followed = True  # with the other channels as they are, modes are found from the model
         return LinearMisfit(bench, self.freed, self.given_model)
 
     def place(self, mend):

@@ -13,7 +13,6 @@ from . import priors
 from .candidates import Pair, linear_candidates, unit_grid
 from .linear_stage import fit_modes, left
 from .linearised import matched
-from .measuring import Measuring
 from .nuisance import Nuisance, corrected
 from .sensed import of_modes, orders
 
@@ -100,23 +99,6 @@ def begun_from(bench, model):
         if found is None
         else (left(found, model), translated(found, model, bench.bare))
     )
-
-
-def followed(bench, fit):
-    """Return the ModalFit of a Workbench's lowest record with the modes of another fit of that
-    record, each begun from where that found it, and its delays.
-    """
-    signals, record = bench.signals, bench.linear_record
-    there = at_modes(bench.bare, fit)
-    late = Measuring(np.ones(len(fit.delay)), -fit.delay)
-    responses = bench.valid(signals.response[signals.lowest])
-    # what is late is the absolute motion
-    base = 0.0 if signals.base is None else bench.valid(signals.base[signals.lowest])
-    responses = late.delayed(responses + base, signals.rate) - base
-    found = fit_modes(
-        record, responses, there, signals.kinds, signals.noise_in_band, fit.modes, search=False
-    )
-    return replace(translated(found, there, bench.bare), delay=fit.delay)
 
 
 def at_modes(model, fit):

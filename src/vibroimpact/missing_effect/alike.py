@@ -54,8 +54,8 @@ def similar_too(search: Search, name: str) -> bool:
         and _similar(trial.candidate.effect, leading.effect)
         and (trial.screened > 1 or trial.candidate.location == leading.location)
     ]
+    search.screen([search.first(other) for other in found])
     for other in found:
-        search.run_first(other)
         search.fit(other)
     return bool(found)
 
@@ -67,12 +67,11 @@ def elsewhere_too(search: Search, values: Values, name: str) -> bool:
     """
     candidate, unit = candidate_named(name), search.fits[name].unit
     if candidate.location == ALONG:
-        search.run(name, np.append(unit[:-1], 1.0 - unit[-1]))
+        search.run([(name, np.append(unit[:-1], 1.0 - unit[-1]))])
         return True
     others = [*other_places(candidate, values), *elsewhere(candidate, values)]
     new = [other.name for other in others if other.name not in search.trials]
-    for other in new:
-        search.run(other, unit)
+    search.run([(other, unit) for other in new])
     return bool(new)
 
 
@@ -94,8 +93,8 @@ def at_its_place(search: Search, name: str) -> bool:
             there = first_points(other)[: 2 * len(EFFECTS[effect_id].parameters)]
             there[:, -1] = search.fits[name].unit[-1]
             if effect_id != leading.effect_id:
-                search.run(other.name, there)
+                search.run([(other.name, there)])
         else:
-            search.run_first(other.name, 2 * len(other.effect.parameters))
+            search.screen([search.first(other.name, 2 * len(other.effect.parameters))])
             search.fit(other.name)
     return True

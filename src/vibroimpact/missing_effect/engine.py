@@ -36,7 +36,8 @@ LEAST = 0.8  # chi-square per value of a model that explains a record
 @dataclass
 class Engine:
     """A checked Config against a campaign file; folder of the results; effort: a key of EFFORTS;
-    seed of all draws. cost {stage: CPU seconds}, simulated {stage: records}.
+    seed of all draws; threads: runs at a time, of which no number depends. cost {stage: CPU
+    seconds}, simulated {stage: records}.
     """
 
     config: object
@@ -44,6 +45,7 @@ class Engine:
     folder: Path
     effort: str = "standard"
     seed: int = 0
+    threads: int = 1
     cost: Stopwatch = field(default_factory=Stopwatch)
     simulated: dict = field(default_factory=dict)
 
@@ -116,8 +118,8 @@ class Engine:
             records = bench.signals.fit()
             if bench.reads_lowest:
                 records = records[records != bench.signals.lowest]
-            null = null_of(bench, records, 0)
-        return Search(bench, null, prepared.scales)
+            null = null_of(bench, records, 0, self.threads)
+        return Search(bench, null, prepared.scales, threads=self.threads)
 
     def refine(self, search: Search) -> None:
         """Run what may be the answer until it is known, its other places, what is like it and the

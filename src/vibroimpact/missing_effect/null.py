@@ -15,6 +15,7 @@ from vibroimpact.integration.kernels.lanes import LANES
 
 from . import constants
 from .nuisances import nuisance_draws
+from .side_by_side import side_by_side
 
 
 @dataclass(frozen=True)
@@ -125,8 +126,8 @@ class Null:
         return float(stats.chi2.sf(rest @ rest, self.values))
 
 
-def null_of(bench: Workbench, records: np.ndarray, seed: int) -> Null:
-    """Return the Null of records of a Workbench.
+def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) -> Null:
+    """Return the Null of records of a Workbench; threads: runs at a time.
 
     Its mean is that of the most probable nuisances, with which explanations are run too. What
     drawn nuisances change on average is in the covariance: left in the mean, it is in the change
@@ -134,13 +135,15 @@ def null_of(bench: Workbench, records: np.ndarray, seed: int) -> Null:
     """
     draws = nuisance_draws(bench, constants.NULL_DRAWS, seed)
     seeds = max(1, LANES // len(records))
-    rows = []
-    for number, there in enumerate(
-        [bench] * -(-constants.MEAN_RUNS // seeds)
-        + [bench.corrected_by(nuisance) for nuisance in draws]
-    ):
+    benches = [bench] * -(-constants.MEAN_RUNS // seeds)
+    benches += [bench.corrected_by(nuisance) for nuisance in draws]
+
+    def features(job):
+        number, there = job
         runs = bench.runs(records, seeds, seed + seeds * number)
-        rows.append(there.features(there.model(), runs).reshape(len(records), seeds, -1))
+        return there.features(there.model(), runs).reshape(len(records), seeds, -1)
+
+    rows = side_by_side(features, enumerate(benches), threads)
     central, drawn = (
         of_survivors(np.concatenate(part, axis=1))
         for part in (rows[: -len(draws)], rows[-len(draws) :])

@@ -26,8 +26,8 @@ def look_wider(search: Search, count: int) -> None:
         if not isinstance(search.trials[name].candidate, Pair)
     }
     idle = [name for name in alone if not seen_at_all(search.trials[name])]
+    search.screen([search.first(name) for name in idle])
     for name in idle:
-        search.run_first(name)
         search.fit(name)
     may = [
         name
@@ -56,7 +56,7 @@ def refine(search: Search, names: list[str], points: int) -> None:
 
     The first of them, unless it was run there; others near the likely ones.
     """
-    random = np.random.default_rng(search.seed)
+    random, rows = np.random.default_rng(search.seed), []
     for name in names:
         found, trial = search.fits[name], search.trials[name]
         chosen = [
@@ -67,7 +67,8 @@ def refine(search: Search, names: list[str], points: int) -> None:
         units = np.clip(found.samples[chosen] + near, 0.0, 1.0)
         if np.abs(trial.unit - found.unit).max(axis=1).min() > NEW:
             units[0] = found.unit
-        search.run(name, units)
+        rows.append((name, units))
+    search.run(rows)
 
 
 DECIDED = 7.0  # of log probability: what is so much less probable is out of the race

@@ -26,18 +26,19 @@ def screen(search: Search, names: list[str], values: Values) -> None:
     measurement at more; where no direction takes most of it away, also at single supports, where it
     explains most at all of them.
     """
-    for name in names:
-        search.run_first(name, 2 * len(candidate_named(name).effect.parameters))
+    counts = {name: 2 * len(candidate_named(name).effect.parameters) for name in names}
+    search.screen([search.first(name, count) for name, count in counts.items()])
     if not led(search):
-        for name in names:
-            at_all = search.trials[name]
-            for other in elsewhere(candidate_named(name), values):
-                if len(at_all.noise):
-                    unit = at_all.unit[telling(at_all, search.null.measured)]
-                    search.run_screened(other.name, unit)
+        search.screen(
+            [
+                (other.name, at_all.unit[telling(at_all, search.null.measured)])
+                for at_all in (search.trials[name] for name in names)
+                if len(at_all.noise)
+                for other in elsewhere(at_all.candidate, values)
+            ]
+        )
     search.learn()
-    for name in may_explain(search):
-        search.run_first(name)
+    search.screen([search.first(name) for name in may_explain(search)])
     search.look()
 
 

@@ -17,13 +17,17 @@ from .evidence import SomethingElse, fit
 from .first_points import first_points
 from .null import Null
 from .parameters import estimate
+from .side_by_side import side_by_side
 from .trials import AnyEmulator, Emulator, PairEmulator, Trial
+
+Row = tuple[str, np.ndarray]  # an explanation's name, units (point, parameter)
 
 
 @dataclass
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
-    Fits {name: Fit}. looked: see look; None: all that runs change is known.
+    Fits {name: Fit}. looked: see look; None: all that runs change is known. threads: runs at a
+    time.
     """
 
     bench: Workbench
@@ -33,36 +37,52 @@ class Search:
     fits: dict = field(default_factory=dict)
     seed: int = 1000
     looked: EffectDirections | None = None
+    threads: int = 1
 
-    def run(self, name: str, units: np.ndarray) -> None:
-        """Run an explanation at units (point, parameter) and fit it again."""
-        self._run(name, units)
-        self.fit(name)
+    def run(self, rows: list[Row]) -> None:
+        """Run explanations at units and fit them again."""
+        self._run(rows)
+        for name in dict.fromkeys(name for name, _ in rows):
+            self.fit(name)
 
-    def run_first(self, name: str, points: int | None = None) -> None:
-        """Run an explanation at those of so many of its first points, all where None, where it was
+    def screen(self, rows: list[Row]) -> None:
+        """Run explanations at units of screening."""
+        self._run(rows)
+        for name, units in rows:
+            if len(units):
+                self.trials[name].screened = len(self.trials[name].noise)
+
+    def first(self, name: str, points: int | None = None) -> Row:
+        """Return the Row of so many first points of an explanation, all where None, at which it was
         not run.
         """
         tried = self.trials[name].tried if name in self.trials else []
         first = first_points(candidate_named(name))[:points]
         new = [unit for unit in first if not any(np.array_equal(unit, other) for other in tried)]
-        if new:
-            self.run_screened(name, np.array(new))
+        return name, np.array(new).reshape(len(new), first.shape[1])
 
-    def run_screened(self, name: str, units: np.ndarray) -> None:
-        """Run an explanation at units (point, parameter) of screening."""
-        self._run(name, units)
-        self.trials[name].screened = len(self.trials[name].noise)
+    def _run(self, rows):
+        """Run explanations, each point a batch; what cannot be run is kept as failed."""
+        seeds = max(1, LANES // len(self.null.records))
+        jobs = []
+        for name, units in rows:
+            for unit in np.atleast_2d(units):
+                jobs.append((candidate_named(name), unit, self.seed + seeds * len(jobs)))
+        self.seed += seeds * len(jobs)
+        found = side_by_side(lambda job: self._tried(*job), jobs, self.threads)
+        for (candidate, unit, _), changes in zip(jobs, found, strict=True):
+            trial = self.trials.setdefault(candidate.name, Trial.empty(candidate, self.null.values))
+            if isinstance(changes, str):
+                trial.failed.append((unit, changes))
+            else:
+                trial.add(unit, changes)
 
-    def _run(self, name, units):
-        """Run an explanation at units (point, parameter); what cannot be run is kept as failed."""
-        candidate = candidate_named(name)
-        trial = self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
-        for unit in np.atleast_2d(units):
-            try:
-                trial.add(unit, self._changes(candidate, unit))
-            except (IntegrationError, ConfigError) as error:
-                trial.failed.append((unit, str(error)))
+    def _tried(self, candidate, unit, first_seed):
+        """Return changes (seed, value) of one batch of runs, or why there are none."""
+        try:
+            return self._changes(candidate, unit, first_seed)
+        except (IntegrationError, ConfigError) as error:
+            return str(error)
 
     def fit(self, name: str) -> None:
         """Fit an explanation again, if it has runs."""
@@ -90,13 +110,11 @@ class Search:
         """Return (unit, interval) of the parameters of an explanation: see parameters.estimate."""
         return estimate(self.emulator(name), self.null, self.fits[name])
 
-    def _changes(self, candidate, unit):
-        """Return changes (seed, value) of one batch of runs."""
+    def _changes(self, candidate, unit, first_seed):
         bench, records = self.bench, self.null.records
         physical = candidate.physical(unit, self.scales)
         seeds = max(1, LANES // len(records))
-        runs = bench.runs(records, seeds, self.seed)
-        self.seed += seeds
+        runs = bench.runs(records, seeds, first_seed)
         features = bench.features(
             bench.model(bench.variant(candidate, physical)),
             runs,

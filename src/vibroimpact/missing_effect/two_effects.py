@@ -13,8 +13,7 @@ from .search import Search
 def parts_alone(search: Search, pair: str) -> None:
     """Run each of two effects alone where both are thought to be: one may do without the other."""
     trial, found = search.trials[pair], search.fits[pair]
-    for part, unit in trial.candidate.parts(found.unit):
-        search.run(part.name, unit)
+    search.run([(part.name, unit) for part, unit in trial.candidate.parts(found.unit)])
 
 
 def seek_pairs(
@@ -23,7 +22,7 @@ def seek_pairs(
     """Run the leading explanations with a second effect each, of those that may explain what the
     first leaves and for which there is room; return the pairs' names.
     """
-    out = []
+    rows: dict[str, np.ndarray] = {}
     for first in leaders(search, firsts):
         found = search.fits[first]
         explains = search.explains(search.null.measured - found.mean)
@@ -37,11 +36,11 @@ def seek_pairs(
         for second in order[:seconds]:
             pair = Pair(own, candidate_named(second)).name
             reverse = Pair(candidate_named(second), own).name
-            if pair in search.trials or reverse in search.trials:
+            if {pair, reverse} & {*search.trials, *rows}:
                 continue
             rest = search.null.measured - found.mean
             trial = search.trials[second]
             near = trial.unit[np.argsort(np.sum((rest - trial.change) ** 2, axis=1))[:2]]
-            search.run(pair, np.hstack([np.tile(found.unit, (len(near), 1)), near]))
-            out.append(pair)
-    return out
+            rows[pair] = np.hstack([np.tile(found.unit, (len(near), 1)), near])
+    search.run(list(rows.items()))
+    return list(rows)

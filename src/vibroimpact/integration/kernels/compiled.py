@@ -54,7 +54,8 @@ def inlined(function: Function) -> Function:
 
 
 def entry_point(function: Function) -> Function:
-    """The compiled function, for calls from Python, its machine code cached on disk.
+    """The compiled function, for calls from Python, its machine code cached on disk. Other threads
+    of Python go on while it runs.
 
     There is no cache where no folder can be written, where the sources are not plain files, and
     where they have changed since this process imported them.
@@ -65,7 +66,7 @@ def entry_point(function: Function) -> Function:
             if compiled is not None:
                 return compiled
         _say_once(", ".join(f"no writing in {place}" for place in cache_places()))
-    return njit(**WITHOUT_REFERENCE_COUNTS)(function)
+    return njit(nogil=True, **WITHOUT_REFERENCE_COUNTS)(function)
 
 
 def _say_once(reason: str) -> None:
@@ -88,7 +89,7 @@ def _compiled_with_cache(function, folder):
     """The compiled function with its cache in a folder; None where numba cannot write there."""
     setting, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
-        compiled = njit(cache=True, **WITHOUT_REFERENCE_COUNTS)(function)
+        compiled = njit(cache=True, nogil=True, **WITHOUT_REFERENCE_COUNTS)(function)
     except RuntimeError:  # numba found no folder at all that it can write to
         return None
     finally:
