@@ -20,7 +20,7 @@ rule _missing_effect:
         f"{DISCREPANCY}/benchmarks/missing_effect.tsv"
     threads: 8  # or as many as there are: so many runs at a time
     resources:
-        mem_mb=memory(2000),
+        mem_mb=memory(3000),
         runtime=minutes(60),
     params:
         library=library("missing_effect"),
