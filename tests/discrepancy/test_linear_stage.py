@@ -2,8 +2,11 @@
 waveform.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.fft import prev_fast_len
 
 from vibroimpact.campaign.file import CampaignError, Channel, Level, campaign_dataset
 from vibroimpact.discrepancy import nuisance as linear
@@ -11,6 +14,7 @@ from vibroimpact.discrepancy.attach import attach, with_channel_points
 from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.discrepancy.linear_record import LinearRecord
 from vibroimpact.discrepancy.linear_stage import fit_modes
+from vibroimpact.discrepancy.modal_fit import ModalLines
 from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.excitation.random_force import band_limited_noise
 
@@ -235,3 +239,61 @@ def test_start_up_is_excluded_for_records_under_way(rig, study_config):
     assert bench.settled.all()
     assert np.flatnonzero(under_way.settled)[0] == 4 * RATE == SECONDS * RATE / 4
     assert not np.allclose(under_way.measured_features, bench.measured_features)
+
+
+def test_participations_follow_frequencies_and_damping(rig):
+    """Their slopes are those of the linear least squares, whose frequencies are moved a little."""
+    bench, fit = rig
+    lines = ModalLines(
+        bench.linear_record,
+        bench.linear_record.spectra(bench.signals.response[bench.signals.lowest]),
+        np.ones((len(PLACES), len(bench.linear_record.lines))),
+        bench.bare,
+        fit.modes,
+        fit.drive,
+        bench.signals.kinds,
+    )
+    seen = fit.participation != 0.0
+    logs = np.concatenate([fit.log_frequency, fit.log_damping])
+    basis = lines._basis(logs)
+    shapes = lines._participations(basis, seen)
+    _, slopes = lines._slopes((logs, shapes, basis, None), seen)
+    for number in range(len(logs)):
+        step = 1.0e-5 * np.eye(len(logs))[number]
+        sides = [lines._participations(lines._basis(logs + side), seen) for side in (step, -step)]
+        change = (sides[0] - sides[1]) / 2.0e-5
+        size = np.abs(slopes[..., number]).max()
+        on_time = fit.delay == 0.0  # where the fit leaves little
+        np.testing.assert_allclose(slopes[on_time, :, number], change[on_time], atol=0.1 * size)
+
+
+def test_two_modes_side_by_side_tell_their_sum(rig):
+    """Of two modes at nearly one frequency, a channel tells the sum of participations well and the
+    difference badly.
+    """
+    bench, fit = rig
+    omega = bench.bare.omega.copy()
+    pair = fit.modes[:2]
+    omega[pair[1]] = omega[pair[0]] * 1.0005
+    model = replace(bench.bare, omega=np.sort(omega), damping=np.full(len(omega), 1.0))
+    modes = np.flatnonzero(np.isin(model.omega, omega[pair]))
+    record = bench.linear_record
+    drive = np.ones((2, 1))
+    basis = record.responses(model.omega[modes], model.damping[modes], drive, "acceleration")
+    kinds, weights = ["acceleration"], np.full((1, len(record.lines)), 1.0e3)
+    lines = ModalLines(record, basis.sum(axis=0)[None], weights, model, modes, drive, kinds)
+    found = lines.fit(np.ones((1, 2), bool), np.ones(1), np.zeros(1), np.zeros(2))
+    np.testing.assert_allclose(found.participation, 1.0, rtol=1e-4)
+    own = found.joint_covariance[4:, 4:]
+    total, difference = (np.array(row) @ own @ np.array(row) for row in ([1, 1], [1, -1]))
+    assert difference > 100.0 * total > 0.0
+
+
+@pytest.mark.parametrize("from_rest", [True, False])
+def test_compared_length_is_quick_to_transform(from_rest):
+    force = np.zeros((1, 49157))  # of which the last four fifths are twice a prime, nearly
+    record = LinearRecord(force, RATE, (5.0, 276.0), from_rest)
+    length = (record.samples - record.first) // record.every
+    assert prev_fast_len(length, real=True) == length
+    wanted = 1.0 if from_rest else 0.8
+    assert 0.97 * wanted < record.every * length / force.shape[-1] <= wanted + 1e-4

@@ -18,6 +18,7 @@ from vibroimpact.missing_effect.alike import (
 from vibroimpact.missing_effect.effort import Effort
 from vibroimpact.missing_effect.first_points import first_points
 from vibroimpact.missing_effect.race import leaders, look_wider, race
+from vibroimpact.missing_effect.screening import led
 from vibroimpact.missing_effect.search import Search
 from vibroimpact.missing_effect.two_effects import parts_alone
 
@@ -164,3 +165,13 @@ def test_runs_side_by_side_are_those_in_a_row(threads):
     np.testing.assert_allclose(search.trials[HERTZ].change[:, 0], first[4:] + units[:2, 0])
     assert [sentence for _, sentence in search.trials[FRICTION].failed] == ["thrown off"]
     assert search.seed == 1000 + 6 * seeds and search.trials[HERTZ].screened == 2
+
+
+@pytest.mark.parametrize("beside, wanted", [(0.0, True), (45.0, False)])
+def test_one_direction_may_take_most_away(beside, wanted):
+    """Half of what is missing is the direction of no explanation that was run."""
+    noise = np.random.default_rng(2).standard_normal(VALUES)
+    measured = noise + changed(STIFFNESS, [0.25]) + beside * AXES[2]
+    search = Made(None, white_null(measured), dict.fromkeys(SCALES, 1.0))
+    search.screen([search.first(STIFFNESS, 2)])
+    assert led(search) == wanted

@@ -1,4 +1,6 @@
-"""Every constant that decides what is named, with its source."""
+"""Every constant that decides what is named, with its source; beside priors.EXPLAINED, which the
+linear stage has too.
+"""
 
 ELSE = "+?"  # after the name of an explanation beside something else
 
