@@ -1,4 +1,4 @@
-"""What makes a completed model worse on records that took no part, and the file in its place."""
+"""What makes a completed model worse, and the file in its place."""
 
 from vibroimpact.discrepancy.completed_model import not_offered
 from vibroimpact.discrepancy.misfit import closed_fraction, makes_worse
@@ -23,6 +23,14 @@ def test_file_of_a_withdrawn_model_says_what_was_tried():
     text = not_offered({"effects": DAMPING, "misfit": misfit})
     assert "contact damping" in text and "8.90 dB before and 10.50 dB after" in text
     assert all(line.startswith("#") for line in text.splitlines())
+
+
+def test_file_says_which_records_a_model_makes_worse():
+    misfit = {"fit": split(5.6, 8.1), "holdout": split(3.1, 2.4)}
+    text = not_offered({"effects": DAMPING, "misfit": misfit})
+    assert "fitted to" in text and "5.60 dB before and 8.10 dB after" in text
+    misfit = {"fit": split(9.0, 3.0), "holdout": split(3.1, 3.0)}
+    assert "hardly nearer" in not_offered({"effects": DAMPING, "misfit": misfit})
 
 
 def test_what_is_left_within_chance_is_no_growth():

@@ -10,6 +10,7 @@ from vibroimpact.records import plain_values
 from vibroimpact.reduction.structural_modifications import with_frequency_factors
 
 from .attach import attach
+from .misfit import makes_worse
 
 
 def updated_model(bench, decision, prepared):
@@ -43,17 +44,21 @@ def updated_model(bench, decision, prepared):
 
 
 def not_offered(withdrawn):
-    """Return the text in the place of a completed configuration that makes records worse: those
-    that took no part where there are some; withdrawn: content.Withdrawn in plain values.
+    """Return the text in the place of a completed configuration that is no better than the given
+    one; withdrawn: content.Withdrawn in plain values.
     """
     effects = " and ".join(row["id"].replace("_", " ") for row in withdrawn["effects"])
-    records, misfit = "the records that took no part", withdrawn["misfit"]["holdout"]
-    if misfit["before_dB"] is None:
-        records, misfit = "whole records, run anew,", withdrawn["misfit"]["fit"]
+    splits = {
+        "the records that took no part": withdrawn["misfit"]["holdout"],
+        "the records that it was fitted to, run anew,": withdrawn["misfit"]["fit"],
+    }
+    known = {name: row for name, row in splits.items() if row["before_dB"] is not None}
+    farther = {name: row for name, row in known.items() if makes_worse(row)}
+    records, misfit = next(iter((farther or known).items()))
     return (
         f"# No model is offered: {effects} was added, and {records} are\n"
-        f"# farther off with it, {misfit['before_dB']:.2f} dB before and"
-        f" {misfit['after_dB']:.2f} dB after.\n"
+        f"# {'farther off' if farther else 'hardly nearer'} with it,"
+        f" {misfit['before_dB']:.2f} dB before and {misfit['after_dB']:.2f} dB after.\n"
     )
 
 

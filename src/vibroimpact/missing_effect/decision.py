@@ -137,8 +137,8 @@ def of_family(
 
 
 def withdrawn_decision(decision: Decision) -> Decision:
-    """Return the Decision where what was chosen is not offered: it makes records worse that took no
-    part.
+    """Return the Decision where what was chosen is not offered: it makes records worse, or hardly
+    better.
     """
     return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
 

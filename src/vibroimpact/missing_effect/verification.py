@@ -2,7 +2,7 @@
 given, beside the measurement.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -87,7 +87,8 @@ class Closing:
     """benches: Workbenches of the model as given and of that with what was adopted; before, after:
     Verified of the model as given and of the completed one; misfit {split: row of
     verdict.json}; judged: the split of the records that took no part, "fit" where there are none;
-    worse: whether the misfit grows on them.
+    worse: whether the misfit grows on them or, of what the search chose, on those that it was
+    fitted to.
     """
 
     benches: tuple
@@ -137,7 +138,8 @@ def closing(
     except IntegrationError:
         rows = misfits(whole, before, before)
         return Closing(benches, before, before, rows, judged_split(rows), True)
-    return _judged(benches, before, after)
+    found = _judged(benches, before, after)
+    return replace(found, worse=any(misfit.makes_worse(row) for row in found.misfit.values()))
 
 
 def _judged(benches, before, after):

@@ -91,17 +91,17 @@ def withdrawn_sentence(verdict: Verdict) -> str:
     """Return what was tried and is not offered, empty where that is nothing."""
     if verdict.withdrawn is None:
         return ""
-    misfit = verdict.withdrawn.misfit.taking_no_part()
-    tried = in_words([effect.id for effect in verdict.withdrawn.effects])
-    numbers = (
-        ""
-        if misfit is None
-        else f": {digits(misfit.before_dB)} dB before, {digits(misfit.after_dB)} dB after"
-    )
-    return (
-        f"Tried and not offered: {tried}. It brings the fitted records nearer and makes those worse"
-        f" that took no part{numbers}."
-    )
+    misfit, tried = verdict.withdrawn.misfit, in_words([e.id for e in verdict.withdrawn.effects])
+    numbers = [
+        f"{name}, {digits(split.before_dB)} dB before, {digits(split.after_dB)} dB after"
+        for name, split in (
+            ("those that it was fitted to", misfit.fit),
+            ("those that took no part", misfit.taking_no_part()),
+        )
+        if split is not None and split.before_dB is not None
+    ]
+    told = ": " + "; ".join(numbers) if numbers else ""
+    return f"Tried and not offered: {tried}. It does not bring all records nearer{told}."
 
 
 def where_it_shows(verdict: Verdict) -> str:
@@ -133,7 +133,7 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     shown = sorted(effect.id for effect in verdict.shown_effects())
     withdrawn = verdict.withdrawn.effects if verdict.withdrawn else []
     if ids == sorted(effect.id for effect in withdrawn) and withdrawn:
-        return "makes records worse that took no part"
+        return "makes records worse"
     if ids == shown and first:
         return "the most probable" if verdict.verdict == "ambiguous" else "named"
     if ids == shown:
