@@ -1,0 +1,35 @@
+"""A completed model that makes any of its records worse is seen as worse."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from vibroimpact.discrepancy.misfit import closed_fraction
+from vibroimpact.missing_effect import verification
+
+
+def split(before, after, floor=1.2):
+    """A misfit of one split."""
+    closed = closed_fraction(before, after, floor)
+    return {"before_dB": before, "after_dB": after, "floor_dB": floor, "closed_fraction": closed}
+
+
+@pytest.mark.parametrize(
+    ("fit", "held_out", "worse"),
+    [
+        (split(5.6, 2.0), split(3.1, 2.0), False),
+        (split(5.6, 8.1), split(3.1, 2.0), True),
+        (split(5.6, 2.0), split(3.1, 4.4), True),
+        (split(5.6, 8.1), None, True),
+    ],
+)
+def test_growth_on_any_records_is_worse(fit, held_out, worse, monkeypatch):
+    nothing = {"before_dB": None, "after_dB": None, "floor_dB": None, "closed_fraction": None}
+    rows = {"fit": fit, "holdout": held_out or nothing}
+    monkeypatch.setattr(verification, "verified", lambda *_: None)
+    monkeypatch.setattr(verification, "misfits", lambda *_: rows)
+    bench = SimpleNamespace(
+        signals=SimpleNamespace(load=[1.0, 2.0]), model=lambda *_: None, variant=lambda *_: None
+    )
+    chosen = SimpleNamespace(candidate=SimpleNamespace(physical=lambda *_: {}), unit=None)
+    assert verification.closing(bench, bench, bench, chosen, {}).worse is worse
