@@ -123,7 +123,7 @@ def _relative_error(reduced: float, full: float) -> float:
 def _bases(group: DofGroup, basis: ConfigPart) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Return {name: (omega (mode,), shapes (dof, mode))}: the bases of BASES for one group."""
     vectors = basis_vectors(group, basis)
-    free_Hz = eigenmodes(group.stiffness, group.mass, basis.free_modes_to_Hz)[0] / (2.0 * np.pi)
+    free_Hz = group.free_modes(basis.free_modes_to_Hz)[0] / (2.0 * np.pi)
     bases = {}
     for name, (families, fraction) in BASES.items():
         chosen = {family: vectors[family] for family in families if family in vectors}

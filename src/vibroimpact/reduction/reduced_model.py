@@ -30,7 +30,6 @@ from .ritz_basis import (
     FAMILIES,
     DofGroup,
     basis_vectors,
-    eigenmodes,
     orthonormal_basis,
     uncoupled_groups,
 )
@@ -275,9 +274,7 @@ def _modes_on(
         require_definite(((each.dofs, each.mass, each.stiffness) for each in groups), names)
     if not keeps_all_modes(structure):
         omega, shapes = modal_basis(structure, groups, basis)
-        free = [
-            eigenmodes(group.stiffness, group.mass, basis.free_modes_to_Hz)[0] for group in groups
-        ]
+        free = [group.free_modes(basis.free_modes_to_Hz)[0] for group in groups]
         return omega, shapes, np.sort(np.concatenate(free)) / (2.0 * np.pi)
     omega, shapes = np.zeros(structure.dofs), np.zeros((structure.dofs, structure.dofs))
     for group in groups:

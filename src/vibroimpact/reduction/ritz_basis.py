@@ -8,7 +8,7 @@ Families (Thénint, Balmes and Corus 2012, section 2.3):
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -46,6 +46,15 @@ class DofGroup:
     stiffness: np.ndarray
     contact: np.ndarray
     contact_rows: np.ndarray
+    _free_modes: dict[float, tuple[np.ndarray, np.ndarray]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+
+    def free_modes(self, to_Hz: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return what `eigenmodes` does, of the motion without contact; computed once."""
+        if to_Hz not in self._free_modes:
+            self._free_modes[to_Hz] = eigenmodes(self.stiffness, self.mass, to_Hz, self.shift)
+        return self._free_modes[to_Hz]
 
     @cached_property
     def shift(self) -> float:
@@ -112,15 +121,18 @@ def rigid_body_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
 
 
 def eigenmodes(
-    stiffness: np.ndarray, mass: np.ndarray, frequency_to_Hz: float
+    stiffness: np.ndarray, mass: np.ndarray, frequency_to_Hz: float, shift: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return (omega (mode,) rad/s, mass-orthonormal shapes (dof, mode)) up to a frequency in Hz.
 
     Rigid-body modes have omega = 0 exactly. The problem is solved for the flexibility
     1/(omega² + shift), so that round-off is relative to each mode and not to the highest one, which
     on short elements is 1e12 times the first.
+
+    shift: rigid_body_shift of the two, where it is known.
     """
-    shift = rigid_body_shift(stiffness, mass)
+    if shift is None:
+        shift = rigid_body_shift(stiffness, mass)
     least = 1.0 / ((2.0 * np.pi * frequency_to_Hz) ** 2 + shift)
     flexibility, shapes = linalg.eigh(
         mass, stiffness + shift * mass, subset_by_value=[least, np.inf]
@@ -140,7 +152,7 @@ def basis_vectors(
     """
     vectors = {}
     if "free_modes" in families:
-        vectors["free_modes"] = eigenmodes(group.stiffness, group.mass, basis.free_modes_to_Hz)[1]
+        vectors["free_modes"] = group.free_modes(basis.free_modes_to_Hz)[1]
     if "constrained_modes" in families and len(group.contact):
         # Fixed contact points restrict the motion to the null space of their rows. Its basis is
         # orthonormal, so that nothing is badly scaled.
