@@ -11,6 +11,8 @@ from tests.white_null import white_null
 from vibroimpact.missing_effect import constants
 from vibroimpact.missing_effect.effect_directions import EffectDirections, told_of
 from vibroimpact.missing_effect.null import Null, scatter
+from vibroimpact.missing_effect.search import Search
+from vibroimpact.missing_effect.trials import Trial
 
 RECORDS, FEATURES, RUNS = 4, 30, 24
 RANDOM = np.random.default_rng(8)
@@ -97,6 +99,38 @@ def test_what_the_mean_is_off_by_is_no_direction(null):
     assert np.abs(none.along @ null.change(off)).max(initial=0.0) < 0.3 * np.linalg.norm(
         null.change(off)
     )
+
+
+def test_an_effect_counts_once_however_often_it_was_run():
+    axes = np.eye(5)
+    changes = np.array([*[30.0 * axes[0]] * 9, 40.0 * axes[1]])
+    weight = np.array([*[1.0 / 9.0] * 9, 1.0])
+    effects = EffectDirections.of(changes, np.full(10, 1.0e-6), white_null(np.zeros(5)), weight)
+    assert effects.share == pytest.approx([0.5, 0.5], abs=1.0e-6)
+
+
+def trial(change, screened):
+    """A Trial of one explanation that was run once, with hardly any scatter."""
+    candidate = SimpleNamespace(effect=SimpleNamespace(parameters=[None]))
+    known = Trial.empty(candidate, change.size)
+    known.add(np.zeros(1), np.array([change, change]))
+    known.screened = screened
+    return known
+
+
+def test_chance_is_learned_along_what_was_run_after_screening(null):
+    common = null.change(np.tile(NUISANCE, (RECORDS, 1)))
+    common *= 20.0 / np.linalg.norm(common)  # what all records share lies along the later one
+    aside = RANDOM.standard_normal(common.size)
+    aside *= 20.0 / np.linalg.norm(aside)
+    trials = {"first": trial(aside, 1), "later": trial(common, 0)}
+    search = Search(None, replace(null, measured=common), {}, trials)
+    search.learn()
+    assert np.linalg.norm(search.null.measured) < 0.7 * np.linalg.norm(common)
+    assert trials["later"].change[0] == pytest.approx(search.null.measured)
+    turned = search.null.measured.copy()
+    search.learn()  # the same runs tell no more
+    assert search.null.measured == pytest.approx(turned)
 
 
 def test_null_is_known_as_it_was_before_effects_were_run(null):

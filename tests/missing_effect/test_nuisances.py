@@ -66,3 +66,10 @@ def test_seen_modes_are_where_the_lowest_record_saw_them():
     assert seen.mean(axis=0) == pytest.approx(weight * shift, rel=0.02)
     assert seen.std(axis=0) == pytest.approx(scatter * np.sqrt(weight), rel=0.1)
     assert np.log(rows["frequency"])[:, 2].std() == pytest.approx(priors.FREQUENCY_SD, rel=0.05)
+
+
+def test_a_mode_three_sigma_off_is_corrected_as_far_as_it_is():
+    """No effect is named there: what is left of it would be told as one."""
+    shift = 3.0 * priors.FREQUENCY_SD
+    rows = scattered(bench_with(told=True, shift=shift))
+    assert np.log(rows["frequency"])[:, :2].mean(axis=0) == pytest.approx(shift, rel=0.02)

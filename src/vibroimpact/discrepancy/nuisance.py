@@ -203,10 +203,10 @@ def neutral(modes, channels):
 
 
 def plausible(pulls):
-    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them beyond the
-    limit of a correction, as a faulty channel's gain may be.
+    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them far off, as a
+    faulty channel's gain may be.
     """
-    return np.mean(np.abs(pulls) > priors.CORRECTION_LIMIT) <= priors.FEW_PULLED
+    return np.mean(np.abs(pulls) > priors.PULLED) <= priors.FEW_PULLED
 
 
 def corrected(model, nuisance, bare=None):

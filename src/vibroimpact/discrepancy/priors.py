@@ -10,11 +10,9 @@ SHAPE_SD = 0.003  # of a mode shape, relative to its largest value among the cha
 # of what an effect changes of a mode shape: frequencies that scatter before it acts mix its modes
 # otherwise
 SHAPE_LAW_SD = 0.01
-CORRECTION_LIMIT = (
-    2.0  # sigma: a nuisance is not corrected beyond it, so that it can not hide an effect
-)
-# of all nuisances beyond that limit: a lowest record that is not linear and pulls more tells the
-# bare model none
+PULLED = 2.0  # sigma: of few nuisances only is the lowest record's pull beyond it
+# of all nuisances: a lowest record that is not linear and pulls more so far tells the bare model
+# none
 FEW_PULLED = 0.15
 # sigma of the prior: mode_frequency_error, modal_damping and sensor_gain are named only with their
 # interval outside
@@ -58,6 +56,9 @@ LINEAR_RESIDUAL = 2.0
 # the linear structure
 UNREAD = 0.5
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
+# sigma: a nuisance is not corrected beyond it, so that it can not hide an effect; it is where one
+# is adopted, for nothing would mend a mode that is off by less
+CORRECTION_LIMIT = (2.0 * LINEAR_GAIN) ** 0.5
 LINEAR_SECOND = 8.0  # the same of two over the better of them
 # in all, those of the lowest record included: with more, what two codes of the first differ by
 # finds a name

@@ -21,9 +21,12 @@ class EffectDirections:
     share: np.ndarray
 
     @classmethod
-    def of(cls, changes: np.ndarray, noise: np.ndarray, null: Null) -> "EffectDirections":
+    def of(
+        cls, changes: np.ndarray, noise: np.ndarray, null: Null, weight: np.ndarray | None = None
+    ) -> "EffectDirections":
         """Return the EffectDirections of changes (run, value) with noise (run,), the variance of a
-        value; a change that is not seen has none.
+        value; a change that is not seen has none. weight (run,): how much each counts, all alike
+        where None.
 
         Changes are counted from the mean of the null's drawn runs. Its mean is of a few runs, and
         what it is off by is in every change and in the measurement: were it a direction, every
@@ -31,15 +34,16 @@ class EffectDirections:
         """
         changes = changes - null.drawn
         told = seen(changes, noise)
+        weight = np.ones(len(noise)) if weight is None else weight
+        weight = weight[told] / max(weight[told].sum(), 1.0e-300)
         whole = np.sum(changes[told] ** 2, axis=1)
-        unit = changes[told] / np.sqrt(whole)[:, None]
-        count = max(len(unit), 1)
-        scattered = np.sum(noise[told] * null.values / whole) / count**2
+        unit = changes[told] * np.sqrt(weight / whole)[:, None]
+        scattered = np.sum(weight**2 * noise[told] * null.values / whole)
         _, singular, along = linalg.svd(unit, full_matrices=False)
         # the largest singular value of scatter alone (Marchenko and Pastur 1967)
-        largest = scattered * (1.0 + np.sqrt(count / null.values)) ** 2
-        kept = singular**2 / count > largest
-        along, share = along[kept], singular[kept] ** 2 / count - scattered
+        largest = scattered * (1.0 + np.sqrt(max(len(unit), 1) / null.values)) ** 2
+        kept = singular**2 > largest
+        along, share = along[kept], singular[kept] ** 2 - scattered
         return cls(along, share / max(share.sum(), 1.0e-12))
 
 

@@ -26,7 +26,7 @@ Row = tuple[str, np.ndarray]  # an explanation's name, units (point, parameter)
 @dataclass
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
-    Fits {name: Fit}. looked: see look; None: all that runs change is known. threads: runs at a
+    Fits {name: Fit}. looked: see learn; None: all that runs change is known. threads: runs at a
     time.
     """
 
@@ -130,13 +130,16 @@ class Search:
         return self._directions({name: trial.screened for name, trial in self.trials.items()})
 
     def _directions(self, counts):
-        """Return the EffectDirections of the first runs of explanations {name: number}."""
-        trials = [(self.trials[name], count) for name, count in counts.items()]
+        """Return the EffectDirections of the first runs of explanations {name: number}, of which
+        each counts as much as another, however often it was run.
+        """
+        trials = [(self.trials[name], count) for name, count in counts.items() if count]
         nothing = np.zeros((0, self.null.values))  # where no explanation could be run
         return EffectDirections.of(
             np.vstack([nothing, *(trial.change[:count] for trial, count in trials)]),
             np.concatenate([[], *(trial.noise[:count] for trial, count in trials)]),
             self.null,
+            np.concatenate([[], *(np.full(count, 1.0 / count) for _, count in trials)]),
         )
 
     def of_families(self) -> dict[str, float]:
@@ -167,26 +170,35 @@ class Search:
         return dict(sorted(rows.items(), key=lambda row: -row[1]))
 
     def look(self) -> None:
-        """Look along the directions of all runs so far, and fit every explanation again.
-
-        Runs are known along them alone: their scatter is the same in all values, and that of
-        hundreds of values would hide what changes in a few directions.
-        """
-        runs = {name: len(trial.noise) for name, trial in self.trials.items()}
-        self.looked = self._directions(runs)
+        """Learn, and fit every explanation again."""
+        self.learn()
         for name in self.trials:
             self.fit(name)
+
+    def learn(self) -> None:
+        """Take what is known of chance along the directions of all runs so far into all that was
+        run, and look along them alone.
+
+        The covariance of a few runs is too small along what an effect changes in many values at
+        once, and an explanation whose direction it does not know explains chance. Runs are known
+        along these directions alone: their scatter is the same in all values, and that of hundreds
+        of values would hide what changes in a few directions.
+        """
+        self._in_units(self.null.out_of_units)
+        self.null = self.null.plain
+        self.looked = self._directions({name: len(t.noise) for name, t in self.trials.items()})
+        self.null = told_of(self.null, self.looked)
+        self._in_units(self.null.in_units)
+
+    def _in_units(self, turned):
+        """Turn all changes that were run into other units."""
+        for trial in self.trials.values():
+            trial.change = turned(trial.change)
+            trial.deviations = [turned(row) for row in trial.deviations]
 
     def something_else(self) -> SomethingElse:
         """Return the SomethingElse of all trials."""
         return SomethingElse(self.effects, self.null)
-
-    def learn(self) -> None:
-        """Take what is known of chance along the directions of effects into all that was run."""
-        self.null = told_of(self.null, self.effects)
-        for trial in self.trials.values():
-            trial.change = self.null.in_units(trial.change)
-            trial.deviations = [self.null.in_units(row) for row in trial.deviations]
 
     def explains(self, rest: np.ndarray) -> dict[str, float]:
         """Return {name: chi-square of rest (value,) that the best direction of an explanation's
