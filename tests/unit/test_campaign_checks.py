@@ -143,6 +143,15 @@ def test_round_tops_are_not_clipping():
         assert clipped_share(np.clip(signal, -limit, limit)) is not None
 
 
+def test_a_few_sampled_crests_are_not_clipping():
+    signal = 0.1 * np.random.default_rng(4).standard_normal(20_000)
+    for number, crest in enumerate(([0.9, 0.985, 0.99, 1.0, 0.995, 0.9], [0.9, 0.984, 0.9])):
+        for place in (2_000, 9_000):
+            start = place + 500 * number
+            signal[start : start + len(crest)] = crest
+    assert clipped_share(signal) is None
+
+
 def periodic(stated, clip=None):
     """made_up's beam under a multisine of 3000 samples, eight periods and a part, waves in place of
     its motion; stated: whether the file says so.

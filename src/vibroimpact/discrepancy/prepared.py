@@ -35,6 +35,7 @@ from .in_place import in_place
 from .linear_rows import held, nearest_linear
 from .lowest_record import read_lowest
 from .measuring import Measuring
+from .misfit import counted
 from .modal_fit import ModalFit
 from .nearest_model import translated
 from .nuisance import neutral, plausible
@@ -209,6 +210,13 @@ def prepare(config, campaign_path, draw=0):
                 },
             ]
             refusal = str(error)
+    if refusal is None and not counted(bench).any():
+        refusal = (
+            f"Of {', '.join(bench.signals.names)} none shows motion above its noise in any band, so"
+            " there is nothing to compare: repair what other checks name, or measure where the"
+            " structure moves."
+        )
+        checks = [*checks, check_row("content", "refuse", refusal)]
     if refusal is not None:
         return Prepared(checks, refusal)
     out = Prepared(

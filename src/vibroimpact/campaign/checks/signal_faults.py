@@ -6,6 +6,7 @@ import numpy as np
 
 TOP_SHARES = (0.01, 0.02, 0.04)  # widths of the bins at the extreme, as shares of it
 FEWEST_AT_TOP = 8  # samples in the outermost bin
+FEWEST_CRESTS = 5  # that they are of: those of one crest are no independent ones
 # Samples in the outermost bin over those in the next one: 3 for a sine, below 1 for random
 # vibration, more than this for a clipped signal.
 PILE_UP = 8.0
@@ -53,7 +54,8 @@ def clipped_share(signal: np.ndarray) -> float | None:
         for share in TOP_SHARES:
             inner = int(np.count_nonzero(near > (1.0 - share) * top))
             both = int(np.count_nonzero(near > (1.0 - 2.0 * share) * top))
-            if inner >= FEWEST_AT_TOP and inner > PILE_UP * max(both - inner, 1):
+            piled = inner >= FEWEST_AT_TOP and inner > PILE_UP * max(both - inner, 1)
+            if piled and _runs(side > (1.0 - share) * top) >= FEWEST_CRESTS:
                 most = max(most, inner)
         flat += most
     return flat / signal.size if flat else None
@@ -73,6 +75,11 @@ def _repeated_top(near: np.ndarray, top: float) -> int:
     beneath = counts[values < top * (1.0 - 1e-7)][-NEIGHBOURS:]
     flat = same > 0.5 * np.count_nonzero(near >= top * (1.0 - 1e-5))
     return int(same) if flat and same >= SAME_VALUE * max(int(beneath.max(initial=0)), 1) else 0
+
+
+def _runs(flags: np.ndarray) -> int:
+    """Return the number of runs of True."""
+    return int(flags[0]) + int(np.count_nonzero(flags[1:] & ~flags[:-1]))
 
 
 def _longest(flags: np.ndarray) -> int:
