@@ -8,7 +8,7 @@ from scipy.stats import qmc
 from tests.white_null import white_null
 from vibroimpact.missing_effect import constants, evidence
 from vibroimpact.missing_effect.effect_directions import EffectDirections
-from vibroimpact.missing_effect.evidence import SomethingElse, fit, log_likelihoods
+from vibroimpact.missing_effect.evidence import SomethingElse, fit, log_likelihood
 from vibroimpact.missing_effect.trials import Emulator, PairEmulator, Trial
 
 VALUES = 40
@@ -38,6 +38,13 @@ class Known:
         return directions, variance
 
 
+def likelihood(emulator, null, law=0.0):
+    """The log likelihood at 0.7 of the range, against nothing."""
+    mean, variance = emulator([[0.7]])
+    change = mean @ emulator.directions
+    return log_likelihood(change, variance + emulator.excess, emulator.directions, null, law)
+
+
 def normal(covariance):
     return stats.multivariate_normal(np.zeros(VALUES), covariance)
 
@@ -55,7 +62,7 @@ def trial_of(units, changes, noise):
 def test_likelihood_is_that_of_a_normal_law(law):
     measured = np.random.default_rng(1).standard_normal(VALUES) + 9.0 * AXES[0]
     emulator, null = Known(12.0, variance=4.0), null_with(measured)
-    (chance,), *_ = log_likelihoods(emulator, [[0.7]], null, law)
+    (chance,) = likelihood(emulator, null, law)
     change = 0.7 * 12.0 * AXES[0]
     covariance = np.eye(VALUES) + np.diag((law * change) ** 2) + 4.0 * np.outer(AXES[0], AXES[0])
     for group in (0, 1):
@@ -69,9 +76,9 @@ def test_likelihood_is_that_of_a_normal_law(law):
 def test_own_scatter_counts_as_what_is_not_known():
     """A measurement far along the direction that its own seeds scatter along is not so unlikely."""
     null = null_with(20.0 * AXES[0])
-    wanted = log_likelihoods(Known(12.0, variance=3.0), [[0.7]], null, 0.0)[0]
-    assert log_likelihoods(Known(12.0, excess=3.0), [[0.7]], null, 0.0)[0] == pytest.approx(wanted)
-    assert log_likelihoods(Known(12.0), [[0.7]], null, 0.0)[0] < wanted - 10.0
+    wanted = likelihood(Known(12.0, variance=3.0), null)
+    assert likelihood(Known(12.0, excess=3.0), null) == pytest.approx(wanted)
+    assert likelihood(Known(12.0), null) < wanted - 10.0
 
 
 def test_evidence_is_the_integral_over_the_prior(monkeypatch):

@@ -127,11 +127,31 @@ class Likelihoods:
 
     @classmethod
     def of(cls, emulator: AnyEmulator, units: np.ndarray, null: Null) -> "Likelihoods":
-        """Return the Likelihoods at units (point, parameter)."""
-        rows = [log_likelihoods(emulator, units, null, law) for law, _ in constants.LAWS]
+        """Return the Likelihoods at units (point, parameter).
+
+        A change that does not bring the model nearer to the measurement is not allowed: it explains
+        nothing, however wide its law is and however little is known of it. Of these it is only told
+        which leaves less, as if its law were known; where others are allowed, not even that.
+        """
+        mean, variance = emulator(units)
+        change = mean @ emulator.directions
+        seen = np.sum(change**2, axis=1) > constants.SEEN
+        rest = null.measured - change
+        left = np.sum(rest**2, axis=1)
+        allowed = seen & (left < null.measured @ null.measured)
         prior = np.log([prior for _, prior in constants.LAWS])
-        chance = np.array([row[0] for row in rows]) + prior[:, None]
-        return cls(chance, *rows[0][1:])
+        chance = np.tile(prior[:, None], (1, len(change)))
+        if allowed.any():
+            scatter = variance[allowed] + emulator.excess
+            for row, (law, _) in zip(chance, constants.LAWS, strict=True):
+                row[allowed] += log_likelihood(
+                    change[allowed], scatter, emulator.directions, null, law
+                )
+        else:
+            chance -= 0.5 * left + null.chance
+        along, open_ = emulator.open_along(units, emulator.directions, variance)
+        may_be_left = left - hidden(rest @ along.T, open_)
+        return cls(chance, allowed, seen, left + variance.sum(axis=1), may_be_left)
 
     @property
     def over_laws(self) -> np.ndarray:
@@ -169,44 +189,40 @@ def _proposal(near, best):
     )
 
 
-def log_likelihoods(
-    emulator: AnyEmulator, units: np.ndarray, null: Null, law: float
-) -> tuple[np.ndarray, ...]:
-    """Return (log likelihood against nothing, allowed, seen, chi-square that is expected to be
-    left, least that may be), (point,) each, at units (point, parameter).
+def log_likelihood(
+    change: np.ndarray, scatter: np.ndarray, directions: np.ndarray, null: Null, law: float
+) -> np.ndarray:
+    """Return (point,) the log likelihood, against nothing, of a change (point, value) with a
+    variance scatter (point, direction) along orthonormal directions (direction, value): what runs
+    do not show and what an explanation scatters by more than the null.
 
-    The covariance is that of the null, what an explanation scatters by more, what its law may
-    differ by, and what the emulator does not know along its directions. A change that does not
-    bring the model nearer to the measurement is not allowed: it explains nothing, however wide its
-    law is and however little is known of it.
+    The covariance is that of the null, this scatter, and what a law may differ by: a share `law` of
+    each value, and LAW_COMMON as much of all values of a group of channels together.
     """
-    mean, variance = emulator(units)
-    change = mean @ emulator.directions
-    diagonal = 1.0 + (law * change) ** 2
-    scatter = np.sqrt(variance + emulator.excess)
-    parts = [scatter[:, :, None] * emulator.directions]
-    for group in np.unique(null.groups):
-        parts.append((constants.LAW_COMMON * law * change * (null.groups == group))[:, None])
-    columns = np.concatenate(parts, axis=1)
+    count = len(directions)
+    weight = 1.0 / (1.0 + (law * change) ** 2)
     rest = null.measured - change
-    weighted = columns / diagonal[:, None]
-    inner = np.eye(columns.shape[1]) + weighted @ columns.transpose(0, 2, 1)
-    along = np.einsum("pkv,pv->pk", weighted, rest)
+    sd = np.sqrt(scatter)
+    first, second = np.triu_indices(count)
+    groups = [null.groups == group for group in np.unique(null.groups)]
+    common = [constants.LAW_COMMON * law * change[:, own] for own in groups]
+    inner = np.zeros((len(change), *[count + len(groups)] * 2))
+    inner[:, first, second] = weight @ (directions[first] * directions[second]).T
+    inner[:, second, first] = inner[:, first, second]
+    inner[:, :count, :count] *= sd[:, :, None] * sd[:, None, :]
+    along = np.zeros(inner.shape[:2])
+    along[:, :count] = sd * ((weight * rest) @ directions.T)
+    for number, (own, row) in enumerate(zip(groups, common, strict=True), start=count):
+        weighted = weight[:, own] * row
+        inner[:, :count, number] = sd * (weighted @ directions[:, own].T)
+        inner[:, number, :count] = inner[:, :count, number]
+        inner[:, number, number] = np.sum(weighted * row, axis=1)
+        along[:, number] = np.sum(weighted * rest[:, own], axis=1)
+    inner += np.eye(inner.shape[1])
     solved = np.linalg.solve(inner, along[..., None])[..., 0]
-    square = np.sum(rest**2 / diagonal, axis=1) - np.sum(along * solved, axis=1)
-    size = np.sum(np.log(diagonal), axis=1) + np.linalg.slogdet(inner)[1]
-    seen = np.sum(change**2, axis=1) > constants.SEEN
-    left = np.sum(rest**2, axis=1)
-    nearer = left < null.measured @ null.measured
-    along, open_ = emulator.open_along(units, emulator.directions, variance)
-    may_be_left = left - hidden(rest @ along.T, open_)
-    return (
-        -0.5 * (square + size) - null.chance,
-        seen & nearer,
-        seen,
-        left + variance.sum(axis=1),
-        may_be_left,
-    )
+    square = np.sum(rest**2 * weight, axis=1) - np.sum(along * solved, axis=1)
+    size = np.linalg.slogdet(inner)[1] - np.sum(np.log(weight), axis=1)
+    return -0.5 * (square + size) - null.chance
 
 
 class SomethingElse:
