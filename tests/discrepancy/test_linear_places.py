@@ -54,3 +54,24 @@ def test_a_place_two_spans_from_the_best_point_is_found(named, monkeypatch):
     placed = linear_places.placed(SimpleNamespace(values=values), None, found, SIZES, tables)
     assert places.arc_length_m(placed.candidate.location) == pytest.approx(at, abs=2.0e-3)
     assert tables == {placed.candidate.name: "table"}
+
+
+def test_a_mass_at_the_free_end_stays_there(named, monkeypatch):
+    """There is nowhere to look beyond it."""
+    values, mass, arcs = named
+    end = places.length_m(values)
+    tip = places.between(end)
+    values = places.with_place(values, tip)
+    known = arcs | {tip: places.arc_lengths(values, [tip])[0]}
+
+    def gain(arc):
+        return 1000.0 * arc / end
+
+    def fitted(_bench, _changes, candidate, _unit, _sizes):
+        return result(candidate, gain(places.arc_length_m(candidate.location)))
+
+    monkeypatch.setattr(linear_places, "fitted", fitted)
+    found = [result(replace(mass, location=place), gain(arc)) for place, arc in known.items()]
+    assert (
+        linear_places.placed(SimpleNamespace(values=values), None, found, SIZES, tables={}) is None
+    )

@@ -58,13 +58,14 @@ def placed(bench, changes, found, sizes, tables):
         looked[0.5 * (below + above)] = -loss(0.5 * (below + above))
     own = max(looked, key=looked.get)
     near = sorted({*ends, *looked})
-    at = optimize.minimize_scalar(
+    below, above = [arc for arc in near if arc < own], [arc for arc in near if arc > own]
+    optimize.minimize_scalar(
         loss,
-        bounds=(max(arc for arc in near if arc < own), min(arc for arc in near if arc > own)),
+        bounds=(max(below, default=own), min(above, default=own)),
         method="bounded",
         options={"xatol": NEAR_M, "maxiter": TURNS},
-    ).x
-    result = results[at]
+    )
+    result = max(filter(None, results.values()), key=lambda row: row.gain, default=None)
     if result is None or result.gain <= best.gain + priors.PARAMETER_COST:
         return None
     tables[result.candidate.name] = table_of(bench, result.candidate, sizes, changes)

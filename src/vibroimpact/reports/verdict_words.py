@@ -133,7 +133,7 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     shown = sorted(effect.id for effect in verdict.shown_effects())
     withdrawn = verdict.withdrawn.effects if verdict.withdrawn else []
     if ids == sorted(effect.id for effect in withdrawn) and withdrawn:
-        return "makes records worse"
+        return "makes records worse, or hardly better"
     if ids == shown and first:
         return "the most probable" if verdict.verdict == "ambiguous" else "named"
     if ids == shown:

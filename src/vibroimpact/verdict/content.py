@@ -179,7 +179,7 @@ class Cost(_Content):
 
 
 class Withdrawn(_Content):
-    """Effects that were added and are not offered: they make records worse."""
+    """Effects that were added and are not offered: they make records worse, or hardly better."""
 
     effects: list[FoundEffect] = Field(description="What was added.")
     misfit: MisfitBySplit = Field(description="Misfit without and with them.")
@@ -252,7 +252,7 @@ class Verdict(_Content):
         default="N", description="Unit of the loads: m/s² where the base moved, N of forces."
     )
     withdrawn: Withdrawn | None = Field(
-        default=None, description="What was tried and made records worse."
+        default=None, description="What was tried and made records worse, or hardly better."
     )
 
     @model_validator(mode="after")
