@@ -13,6 +13,8 @@ NOT_YET_TYPED = (
     "completion",
     "discrepancy",
     "figures",
+    "linear_stage",
+    "observation",
     "validation",
 )
 PACKAGES = sorted(

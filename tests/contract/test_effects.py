@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.candidates import Candidate
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.linear_stage.candidates import Candidate
 from vibroimpact.reduction.reduced_model import build_model
 
 CATALOGUE = {

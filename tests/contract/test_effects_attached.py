@@ -9,13 +9,13 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.attach import attach, with_channel_points
-from vibroimpact.discrepancy.candidates import Candidate
-from vibroimpact.discrepancy.scales import scales
-from vibroimpact.discrepancy.signals import signals_of
 from vibroimpact.effects.places import length_m
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage.candidates import Candidate
+from vibroimpact.linear_stage.scales import scales
+from vibroimpact.observation.attached_model import attach, with_channel_points
+from vibroimpact.observation.signals import signals_of
 
 RATE, GAP = 2048.0, 2.8886e-4
 OF_THE_MODEL = [

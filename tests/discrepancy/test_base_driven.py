@@ -13,15 +13,15 @@ from vibroimpact.campaign.force_kinds import base_channels, shown_load_unit
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.completion.own_records import Unusable, own_records
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.candidates import linear_candidates, local_candidates, not_testable
-from vibroimpact.discrepancy.comparable import comparison_problems
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.linear_rows import held
-from vibroimpact.discrepancy.measuring import Measuring
 from vibroimpact.discrepancy.power_balance import drive_channel
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage.candidates import linear_candidates, local_candidates, not_testable
+from vibroimpact.linear_stage.effect_table import held
+from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.comparable import comparison_problems
+from vibroimpact.observation.sensor_chain import Measuring
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

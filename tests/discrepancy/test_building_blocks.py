@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.candidates import PLACES, Candidate, Pair, candidate_named, spread
 from vibroimpact.discrepancy.covariance import shrunk
-from vibroimpact.discrepancy.features import (
+from vibroimpact.discrepancy.discrepancy_map import clusters
+from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
+from vibroimpact.discrepancy.next_measurement import next_measurement
+from vibroimpact.linear_stage.candidates import PLACES, Candidate, Pair, candidate_named, spread
+from vibroimpact.linear_stage.linear_analysis import read_s
+from vibroimpact.linear_stage.nuisance import plausible
+from vibroimpact.linear_stage.workbench import Workbench
+from vibroimpact.observation.features import (
     COARSE,
     FeatureLayout,
     compressed,
     record_features,
 )
-from vibroimpact.discrepancy.mapping import clusters
-from vibroimpact.discrepancy.misfit import closed_fraction, excess, floor_of
-from vibroimpact.discrepancy.next_measurement import next_measurement
-from vibroimpact.discrepancy.nuisance import plausible
-from vibroimpact.discrepancy.prepared import read_s
-from vibroimpact.discrepancy.workbench import Workbench
 
 RATE = 2048.0
 

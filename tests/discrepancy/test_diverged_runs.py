@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.forward import Forces, simulate_records
-from vibroimpact.discrepancy.survivors import of_survivors
+from vibroimpact.discrepancy.divergence_filter import of_survivors
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.observation.simulated_records import Forces, simulate_records
 from vibroimpact.reduction.reduced_model import build_model
 
 RATE, FAR = 20480, 1.0

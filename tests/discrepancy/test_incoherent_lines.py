@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.discrepancy.other_source import BLOCK, FREE, incoherent
+from vibroimpact.linear_stage.other_source import BLOCK, FREE, incoherent
 
 LINES = 40 * BLOCK
 

@@ -9,17 +9,17 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.candidates import Pair, candidate_named
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.in_place import gain_of_spring
-from vibroimpact.discrepancy.linear_fit import LinearChanges
-from vibroimpact.discrepancy.lowest_record import told_apart
-from vibroimpact.discrepancy.nearest_model import translated
-from vibroimpact.discrepancy.prepared import adopt, prepare, workbench
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.effects.places import between
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage.candidates import Pair, candidate_named
+from vibroimpact.linear_stage.effect_fit import LinearChanges
+from vibroimpact.linear_stage.linear_analysis import adopt, prepare, workbench
+from vibroimpact.linear_stage.lowest_record import told_apart
+from vibroimpact.linear_stage.nearest_model import translated
+from vibroimpact.linear_stage.nonlinear_substitutes import gain_of_spring
+from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 RATE, SECONDS, GAP = 2048.0, 12.0, 2.8886e-4
 PLACES = {

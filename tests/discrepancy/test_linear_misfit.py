@@ -10,13 +10,13 @@ import pytest
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.acting_place import acting_place
-from vibroimpact.discrepancy.drift import drift_of
-from vibroimpact.discrepancy.linear_findings import linear_findings
-from vibroimpact.discrepancy.linear_misfit import LinearMisfit
-from vibroimpact.discrepancy.other_source import other_sources
-from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.linear_stage.acting_place import acting_place
+from vibroimpact.linear_stage.drift import drift_of
+from vibroimpact.linear_stage.findings import linear_findings
+from vibroimpact.linear_stage.goodness_of_fit import LinearMisfit
+from vibroimpact.linear_stage.other_source import other_sources
+from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact_truth.campaign import Plan, make_campaign
 
 LOW = ((0.5, 1.3, "fit"), (0.6, 1.3, "holdout"))

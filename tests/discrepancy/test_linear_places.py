@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy import linear_places
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.linear_fit import LinearResult
 from vibroimpact.effects import places
+from vibroimpact.linear_stage import effect_places as linear_places
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.effect_fit import LinearResult
 
 SIZES = {}
 

@@ -9,14 +9,14 @@ import pytest
 from scipy.fft import prev_fast_len
 
 from vibroimpact.campaign.file import CampaignError, Channel, Level, campaign_dataset
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach, with_channel_points
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.linear_record import LinearRecord
-from vibroimpact.discrepancy.linear_stage import fit_modes
-from vibroimpact.discrepancy.modal_fit import ModalLines
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.modal_fit import ModalLines
+from vibroimpact.linear_stage.mode_identification import fit_modes
+from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
+from vibroimpact.observation.attached_model import attach, with_channel_points
+from vibroimpact.observation.linear_record import LinearRecord
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
 PLACES = {

@@ -7,9 +7,9 @@ import pytest
 
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
-from vibroimpact.discrepancy.driven import driven_channels
-from vibroimpact.discrepancy.features import compressed, feature_layout
-from vibroimpact.discrepancy.mapping import regions, significant, z_of
+from vibroimpact.discrepancy.discrepancy_map import regions, significant, z_of
+from vibroimpact.discrepancy.driven_channels import driven_channels
+from vibroimpact.observation.features import compressed, feature_layout
 
 RECORDS, CHANNELS, BANDS, SEEDS = 4, 5, 24, 16
 

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.comparable import channel_rows, contact_force_rows
-from vibroimpact.discrepancy.driven import driven_channels
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.linear_stage import fit_modes
-from vibroimpact.discrepancy.nearest_model import BandSpectra
-from vibroimpact.discrepancy.prepared import largest_motion, mixed_up
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
+from vibroimpact.discrepancy.driven_channels import driven_channels
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.linear_analysis import largest_motion, mixed_up
+from vibroimpact.linear_stage.mode_identification import fit_modes
+from vibroimpact.linear_stage.nearest_model import BandSpectra
+from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.comparable import channel_rows, contact_force_rows
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

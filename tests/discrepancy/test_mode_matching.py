@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.linearised import same_modes
+from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.linearised import same_modes
 from vibroimpact.reduction.reduced_model import build_model
 
 PLATE = {

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.prepared import Prepared, taken_for_linear
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.linear_analysis import Prepared, taken_for_linear
 
 PAIR = "added_mass@apex+modal_damping@structure"
 

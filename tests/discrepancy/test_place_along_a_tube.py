@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.candidates import Candidate, local_candidates
-from vibroimpact.discrepancy.scales import searched
 from vibroimpact.effects import places
 from vibroimpact.effects.places import ALONG
+from vibroimpact.linear_stage.candidates import Candidate, local_candidates
+from vibroimpact.linear_stage.scales import searched
 from vibroimpact.missing_effect.first_points import first_points
 from vibroimpact.missing_effect.search import neutral_unit
 

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 from vibroimpact.campaign.file import fill_missing
-from vibroimpact.discrepancy.features import feature_layout, record_features
-from vibroimpact.discrepancy.forward import steps_per_second
-from vibroimpact.discrepancy.signals import signals_of
-from vibroimpact.discrepancy.slower import slower
+from vibroimpact.observation.decimation import slower
+from vibroimpact.observation.features import feature_layout, record_features
+from vibroimpact.observation.signals import signals_of
+from vibroimpact.observation.simulated_records import steps_per_second
 
 INTEGRATION = SimpleNamespace(steps_per_second=20480, scheme="exact")
 SECONDS, TOP_HZ = 8.0, 200.0

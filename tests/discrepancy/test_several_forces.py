@@ -7,13 +7,13 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.signals import excited_band
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.driven import driven_channels
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.prepared import mixed_up
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
+from vibroimpact.discrepancy.driven_channels import driven_channels
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.linear_analysis import mixed_up
+from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
-from vibroimpact.discrepancy.prepared import prepare
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage.linear_analysis import prepare
 
 RATE, SAMPLES, GAP = 2048.0, 24576, 2.8886e-4
 

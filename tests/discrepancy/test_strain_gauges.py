@@ -9,16 +9,16 @@ from tests.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
 from vibroimpact.completion.own_records import own_records
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy import nuisance as linear
-from vibroimpact.discrepancy.attach import attach, with_channel_points
-from vibroimpact.discrepancy.comparable import channel_rows, strain_rows
-from vibroimpact.discrepancy.driven import driven_channels
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
+from vibroimpact.discrepancy.driven_channels import driven_channels
 from vibroimpact.discrepancy.misfit import counted
-from vibroimpact.discrepancy.prepared import largest_motion, mixed_up, motion_of_strains
-from vibroimpact.discrepancy.strain import as_displacements, gauges_of
-from vibroimpact.discrepancy.workbench import Workbench, corrected_nuisance
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.linear_analysis import largest_motion, mixed_up, motion_of_strains
+from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
+from vibroimpact.observation.attached_model import attach, with_channel_points
+from vibroimpact.observation.comparable import channel_rows, strain_rows
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
+from vibroimpact.observation.strain import as_displacements, gauges_of
 
 RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
 X, Y, Z = np.eye(3)

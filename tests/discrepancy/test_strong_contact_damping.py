@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tests.sound_campaign import sound_campaign
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.forward import Forces, simulate_records
-from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.workbench import Workbench
+from vibroimpact.observation.simulated_records import Forces, simulate_records
 
 STRONG = {"damping": 1000.0}  # N s/m per plate
 CANDIDATE = candidate_named("contact_damping@all")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.missing_effect.decision import (
     decide,
     exactly_alike,

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.effects.places import STOP
+from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.missing_effect.rows import bounds, effects_of
 
 SCALES = {"gap": 2.0e-4, "one": 1.0, "mass": 1.0}

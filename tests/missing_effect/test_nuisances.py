@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.nuisance import Reading
+from vibroimpact.linear_stage.nuisance import Reading
 from vibroimpact.missing_effect.nuisances import nuisance_draws
 
 COUNT, MODES, CHANNELS = 4000, 3, 2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.white_null import white_null
-from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.missing_effect.probabilities import averaged, posterior
 from vibroimpact.missing_effect.race import contenders
 from vibroimpact.missing_effect.search import Search

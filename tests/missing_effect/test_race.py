@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tests.white_null import white_null
-from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.missing_effect.alike import (
     at_its_place,
     elsewhere_too,

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.missing_effect.engine import Engine
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 RATE, SECONDS, WIDER, NOISE, GAINS = 2048.0, 14.0, 1.4, 0.01, 0.02
 X, Y, DRIVE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-0.2121, 0.0, 0.9121)

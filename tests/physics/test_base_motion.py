@@ -9,11 +9,11 @@ from vibroimpact.campaign.base_motion import integrated, relative_to_base
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.signals import signals_of
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear.responses import frf
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.signals import signals_of
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact_truth.campaign import Plan, forces
 from vibroimpact_truth.campaign import simulate_records as true_records

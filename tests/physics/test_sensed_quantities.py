@@ -9,10 +9,10 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy import forward
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.observation import simulated_records as forward
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 UNITS = {"displacement": "m", "velocity": "m s-1", "acceleration": "m s-2"}
 MOTIONS = tuple(UNITS)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.forward import Forces, simulate_records
 from vibroimpact.integration.batch import Schedule, rest_state
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.observation.simulated_records import Forces, simulate_records
 
 GAP = 2.8886e-4
 RATE = 20480

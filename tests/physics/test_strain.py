@@ -5,9 +5,9 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.attach import attach
-from vibroimpact.discrepancy.forward import Forces, schedule_of, simulate_records
-from vibroimpact.discrepancy.strain import as_displacements, speed_per_strain
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
+from vibroimpact.observation.strain import as_displacements, speed_per_strain
 
 LENGTH, RADIUS, WALL, YOUNG = 1.2, 0.01, 0.001, 2.0e11
 INERTIA = 0.25 * np.pi * (RADIUS**4 - (RADIUS - WALL) ** 4)

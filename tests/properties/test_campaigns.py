@@ -14,9 +14,9 @@ from vibroimpact.campaign.file import CampaignError, checked_description, measur
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.completion.own_records import Unusable, own_records
 from vibroimpact.config.reading import load_config
-from vibroimpact.discrepancy.comparable import comparison_problems
-from vibroimpact.discrepancy.prepared import usable_campaign
-from vibroimpact.discrepancy.signals import signals_of
+from vibroimpact.linear_stage.linear_analysis import usable_campaign
+from vibroimpact.observation.comparable import comparison_problems
+from vibroimpact.observation.signals import signals_of
 
 ROOT = Path(__file__).parents[2]
 SMALL = ("gap", "channel_point", "channel_direction", "force_channel_point", "load_rms", "repeat")

@@ -12,8 +12,8 @@ from vibroimpact.campaign.contract import contract_problems
 from vibroimpact.campaign.file import fill_missing, write_campaign
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.reserved_names import name_problem
-from vibroimpact.discrepancy.comparable import comparison_problems
-from vibroimpact.discrepancy.prepared import prepare
+from vibroimpact.linear_stage.linear_analysis import prepare
+from vibroimpact.observation.comparable import comparison_problems
 
 ROOT = Path(__file__).parents[2]
 

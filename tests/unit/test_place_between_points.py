@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.effects import places
+from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.reduction.reduced_model import build_model
 
 

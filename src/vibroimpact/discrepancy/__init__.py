@@ -1,1 +1,1 @@
-"""Where simulation and measurement disagree, and what the lowest record tells of it."""
+"""Where simulation and measurement disagree: misfit, map, invariances, energy, completed model."""

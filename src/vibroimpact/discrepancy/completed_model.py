@@ -6,10 +6,10 @@ import numpy as np
 import yaml
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.observation.attached_model import attach
 from vibroimpact.records import plain_values
 from vibroimpact.reduction.structural_modifications import with_frequency_factors
 
-from .attach import attach
 from .misfit import makes_worse
 
 

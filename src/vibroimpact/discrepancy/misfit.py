@@ -5,10 +5,10 @@ There is one definition of the closed share, and one place where it is worked ou
 
 import numpy as np
 
+from vibroimpact.observation.strain import STRAIN
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
-from .strain import STRAIN
 
 ABOVE_NOISE_DB = 6.0
 # A channel answers to motion across its direction too, by 1 % at best (transverse sensitivity, ISO

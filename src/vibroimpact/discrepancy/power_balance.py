@@ -5,10 +5,10 @@ channel sits at the drive and looks along the force.
 import numpy as np
 
 from vibroimpact.campaign.force_kinds import base_channels
+from vibroimpact.observation.sensed_motion import moving
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
-from .sensed import moving
 
 DRIVE_M = 5.0e-3  # a channel nearer to the drive than this is at it
 ALONG = 0.999  # cosine between the channel and the force

@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import (
+from vibroimpact.effects.effect import Effect, Values
+from vibroimpact.effects.places import ALONG
+from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.linear_stage.candidates import (
     AT_A_POINT,
     Pair,
     candidate_named,
     elsewhere,
     other_places,
 )
-from vibroimpact.effects.effect import Effect, Values
-from vibroimpact.effects.places import ALONG
-from vibroimpact.effects.registry import EFFECTS
 
 from .first_points import first_points
 from .search import Search

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
-from vibroimpact.discrepancy.explained import share_explained
-from vibroimpact.discrepancy.nuisance import Nuisance
+from vibroimpact.discrepancy.share_explained import share_explained
+from vibroimpact.linear_stage.candidates import Candidate, Pair, candidate_named
+from vibroimpact.linear_stage.nuisance import Nuisance
 from vibroimpact.verdict.content import Conclusion
 
 from . import constants

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named
 from vibroimpact.discrepancy.cost import SIMULATED
-from vibroimpact.discrepancy.explained import share_explained
-from vibroimpact.discrepancy.prepared import Prepared, prepare, workbench
-from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.discrepancy.share_explained import share_explained
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.linear_analysis import Prepared, prepare, workbench
+from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.stopwatch import Stopwatch
 
 from . import alike, constants, race, screening, so_far, two_effects, verdict

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.stats import qmc
 
-from vibroimpact.discrepancy.candidates import Candidate
 from vibroimpact.effects.places import ALONG
+from vibroimpact.linear_stage.candidates import Candidate
 
 # By the number of parameters.
 FIRST = {

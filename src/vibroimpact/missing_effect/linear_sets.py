@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.prepared import Prepared
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.linear_analysis import Prepared
 
 from . import constants
 from .decision import Sets

@@ -5,9 +5,9 @@ damping and gains, given what the lowest record tells of them.
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.discrepancy import nuisance as linear
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.workbench import Workbench
 
 
 def nuisance_draws(bench: Workbench, count: int, seed: int) -> list[linear.Nuisance]:

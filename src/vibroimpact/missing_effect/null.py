@@ -7,11 +7,11 @@ import numpy as np
 from scipy import linalg, stats
 
 from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
-from vibroimpact.discrepancy.driven import bursting, driven_channels
-from vibroimpact.discrepancy.features import FeatureLayout, compressed
-from vibroimpact.discrepancy.survivors import of_survivors
-from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.discrepancy.divergence_filter import of_survivors
+from vibroimpact.discrepancy.driven_channels import bursting, driven_channels
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.linear_stage.workbench import Workbench
+from vibroimpact.observation.features import FeatureLayout, compressed
 
 from . import constants
 from .nuisances import nuisance_draws

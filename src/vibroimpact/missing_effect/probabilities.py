@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import logsumexp
 
-from vibroimpact.discrepancy.candidates import candidate_named
+from vibroimpact.linear_stage.candidates import candidate_named
 
 from . import constants
 from .search import Search

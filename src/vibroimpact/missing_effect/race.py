@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import Pair
+from vibroimpact.linear_stage.candidates import Pair
 
 from .effect_directions import seen
 from .effort import Effort

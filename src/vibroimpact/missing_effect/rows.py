@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.prepared import Prepared
-from vibroimpact.discrepancy.scales import clearance
 from vibroimpact.effects.effect import Values
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.scales import clearance
 
 from .decision import Decision
 

@@ -3,9 +3,9 @@ more.
 """
 
 from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.candidates import candidate_named, elsewhere
-from vibroimpact.discrepancy.explained import share_explained
+from vibroimpact.discrepancy.share_explained import share_explained
 from vibroimpact.effects.effect import Values
+from vibroimpact.linear_stage.candidates import candidate_named, elsewhere
 
 from .search import LITTLE, Search, telling
 

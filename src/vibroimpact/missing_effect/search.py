@@ -6,11 +6,11 @@ import numpy as np
 from scipy.special import logsumexp
 
 from vibroimpact.config.reading import ConfigError
-from vibroimpact.discrepancy.candidates import Candidate, Pair, candidate_named
-from vibroimpact.discrepancy.workbench import Workbench
 from vibroimpact.effects.places import ALONG
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.linear_stage.candidates import Candidate, Pair, candidate_named
+from vibroimpact.linear_stage.workbench import Workbench
 
 from .effect_directions import EffectDirections, seen, told_of
 from .evidence import SomethingElse, fit

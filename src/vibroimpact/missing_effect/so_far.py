@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import candidate_named
-from vibroimpact.discrepancy.prepared import Prepared
-from vibroimpact.discrepancy.signals import Signals
+from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.observation.signals import Signals
 from vibroimpact.records import plain_values, write_text
 
 from . import constants

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.discrepancy.candidates import Candidate, Pair
+from vibroimpact.linear_stage.candidates import Candidate, Pair
 
 from . import constants
 from .effect_directions import EffectDirections

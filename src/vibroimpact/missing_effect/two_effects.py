@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from vibroimpact.discrepancy.candidates import Pair, candidate_named
+from vibroimpact.linear_stage.candidates import Pair, candidate_named
 
 from .race import leaders
 from .search import Search

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.discrepancy import mapping, misfit, power_balance
+from vibroimpact.discrepancy import discrepancy_map as mapping
+from vibroimpact.discrepancy import misfit, power_balance
 from vibroimpact.discrepancy.completed_model import not_offered, updated_model
 from vibroimpact.discrepancy.invariances import broken_invariances, one_sided_rows
 from vibroimpact.discrepancy.next_measurement import next_measurement
-from vibroimpact.discrepancy.prepared import Prepared
 from vibroimpact.effects.effect import Values
+from vibroimpact.linear_stage.linear_analysis import Prepared
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.discrepancy import mapping, misfit, priors
-from vibroimpact.discrepancy.survivors import survivors
-from vibroimpact.discrepancy.workbench import Workbench
+from vibroimpact.discrepancy import discrepancy_map as mapping
+from vibroimpact.discrepancy import misfit, priors
+from vibroimpact.discrepancy.divergence_filter import survivors
 from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.linear_stage.workbench import Workbench
 
 from . import constants
 from .decision import Chosen

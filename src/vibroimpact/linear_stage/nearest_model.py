@@ -8,13 +8,13 @@ from itertools import islice
 import numpy as np
 
 from vibroimpact.config.reading import ConfigError
+from vibroimpact.discrepancy import priors
+from vibroimpact.observation.sensed_motion import of_modes, orders
 
-from . import priors
 from .candidates import Pair, linear_candidates, unit_grid
-from .linear_stage import fit_modes, left
 from .linearised import matched
+from .mode_identification import fit_modes, left
 from .nuisance import Nuisance, corrected
-from .sensed import of_modes, orders
 
 BANDS_PER_OCTAVE = 8
 # a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however

@@ -9,19 +9,19 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.discrepancy.cost import count_simulated
 from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
 from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
+from vibroimpact.observation.attached_model import attach, with_channel_points
+from vibroimpact.observation.features import feature_layout, record_features
+from vibroimpact.observation.linear_record import LinearRecord
+from vibroimpact.observation.moving_base import driven_by_base
+from vibroimpact.observation.signals import signals_of
+from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 from . import nuisance as linear
-from .attach import attach, with_channel_points
-from .base_driven import driven_by_base
-from .cost import count_simulated
-from .features import feature_layout, record_features
-from .forward import Forces, schedule_of, simulate_records
-from .linear_record import LinearRecord
-from .linear_stage import fit_modes
 from .linearised import linearised
-from .signals import signals_of
+from .mode_identification import fit_modes
 
 FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
 TOUCHES = (

@@ -14,14 +14,11 @@ from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.misfit import counted
 from vibroimpact.effects.places import length_m
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.units import TIME_DERIVATIVES
-
-from . import priors
-from .adopted import adopt
-from .candidates import candidate_named, local_candidates, not_testable
-from .comparable import (
+from vibroimpact.observation.comparable import (
     LEFT_OUT,
     campaign_problems,
     channel_rows,
@@ -31,18 +28,21 @@ from .comparable import (
     left_out,
     strain_rows,
 )
-from .in_place import in_place
-from .linear_rows import held, nearest_linear
+from vibroimpact.observation.decimation import slower
+from vibroimpact.observation.sensed_motion import differentiated, kind_groups
+from vibroimpact.observation.sensor_chain import Measuring
+from vibroimpact.observation.strain import STRAIN, speed_per_strain
+from vibroimpact.units import TIME_DERIVATIVES
+
+from .adopted import adopt
+from .candidates import candidate_named, local_candidates, not_testable
+from .effect_table import held, nearest_linear
 from .lowest_record import read_lowest
-from .measuring import Measuring
-from .misfit import counted
 from .modal_fit import ModalFit
 from .nearest_model import translated
+from .nonlinear_substitutes import in_place
 from .nuisance import neutral, plausible
 from .scales import scales
-from .sensed import differentiated, kind_groups
-from .slower import slower
-from .strain import STRAIN, speed_per_strain
 from .workbench import Workbench, corrected_nuisance
 
 

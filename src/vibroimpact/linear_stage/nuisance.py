@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
+from vibroimpact.discrepancy import priors
+from vibroimpact.observation.strain import by_family, gauges_of
 from vibroimpact.reduction.modal_model import NEAR
 
-from . import priors
 from .linearised import same_modes
-from .strain import by_family, gauges_of
 
 # of a mode's largest participation among the channels: below it a channel says nothing of the mode
 SEEN = 0.05

@@ -6,18 +6,19 @@ from dataclasses import asdict
 
 import numpy as np
 
-from . import priors
+from vibroimpact.discrepancy import priors
+from vibroimpact.discrepancy.driven_channels import driven_channels
+from vibroimpact.discrepancy.share_explained import share_explained
+
 from .acting_place import acting_place
 from .adopted import adopt
 from .candidates import candidate_named
-from .driven import driven_channels
-from .explained import share_explained
+from .effect_fit import LinearChanges
+from .effect_table import held, linear_rows, nameable
+from .findings import linear_findings
+from .goodness_of_fit import LinearMisfit
 from .lags import driven_modes
-from .linear_findings import linear_findings
-from .linear_fit import LinearChanges
-from .linear_misfit import LinearMisfit
-from .linear_rows import held, linear_rows, nameable
-from .linear_stage import left
+from .mode_identification import left
 from .nearest_model import fit_from_nearest, translated
 from .scales import searched
 from .workbench import corrected_nuisance

@@ -7,13 +7,12 @@ from functools import cache
 
 import numpy as np
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Parameter
 from vibroimpact.effects.places import ALONG
 from vibroimpact.effects.registry import EFFECTS
-
-from . import priors
-from .measuring import measuring_of, places
+from vibroimpact.observation.sensor_chain import measuring_of, places
 
 ALONE = "@alone"
 AT_A_POINT = frozenset(

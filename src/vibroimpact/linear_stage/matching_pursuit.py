@@ -9,8 +9,9 @@ shape and frequency.
 import numpy as np
 from scipy import linalg, optimize
 
+from vibroimpact.observation.sensed_motion import kind_groups
+
 from .modal_fit import combined
-from .sensed import kind_groups
 
 SPACING = 2.0e-3  # of ln frequency between the resonances that are tried
 BESIDE = 6  # of them: nearer ones are the same mode

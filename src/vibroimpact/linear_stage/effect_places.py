@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 from scipy import optimize
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.effects import places
 
-from . import priors
 from .candidates import AT_A_POINT
-from .linear_fit import fitted
-from .linear_naming import table_of
+from .effect_fit import fitted
+from .effect_readings import table_of
 
 NEAR_M = 2.0e-4  # closer is not looked
 TURNS = 20

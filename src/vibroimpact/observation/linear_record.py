@@ -5,7 +5,7 @@ from copy import copy
 import numpy as np
 from scipy import fft
 
-from .sensed import differentiated
+from .sensed_motion import differentiated
 
 DISCARDED = 0.2  # of a record that did not start from rest
 RATE_PER_BAND = 5.0  # rate at which responses are formed, in units of the band's upper end

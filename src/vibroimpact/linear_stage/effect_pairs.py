@@ -6,8 +6,8 @@ import numpy as np
 
 from . import nuisance as linear
 from .candidates import Pair, candidate_named, unit_grid
-from .linear_fit import fitted
-from .linear_naming import reading_under
+from .effect_fit import fitted
+from .effect_readings import reading_under
 
 GRID = {
     1: 13,

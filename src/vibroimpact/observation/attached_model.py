@@ -14,8 +14,8 @@ from vibroimpact.config.schema import Sensors
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.reduced_model import build_model
 
-from .base_driven import driven_by_base, further_drive_shapes
-from .sensed import moving, of_modes
+from .moving_base import driven_by_base, further_drive_shapes
+from .sensed_motion import moving, of_modes
 from .strain import STRAIN, gauged_model
 
 SAME_POINT_M = 1.0e-3

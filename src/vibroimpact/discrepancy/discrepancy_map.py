@@ -7,12 +7,12 @@ import xarray as xr
 from scipy import stats
 
 from vibroimpact.campaign.force_kinds import base_channels, load_unit
+from vibroimpact.observation.features import BLEND, compressed
 from vibroimpact.units import SI_OF_KIND
 
 from . import priors
 from .covariance import feature_sd, free_directions
-from .driven import driven_channels
-from .features import BLEND, compressed
+from .driven_channels import driven_channels
 from .misfit import counted
 
 SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands

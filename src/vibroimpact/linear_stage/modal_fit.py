@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
-from .sensed import kind_groups
+from vibroimpact.observation.sensed_motion import kind_groups
 
 ITERATIONS = 12  # of Gauss-Newton at most
 RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise

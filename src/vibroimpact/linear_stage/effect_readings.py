@@ -11,7 +11,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from . import nuisance as linear
 from .candidates import unit_grid
-from .linear_fit import LinearResult
+from .effect_fit import LinearResult
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
 NUISANCES = (

@@ -11,7 +11,7 @@ from vibroimpact.campaign.file import measured_values, valid_count
 from vibroimpact.campaign.signals import campaign_signals, excited_band
 from vibroimpact.integration.output_filter import PASS_FRACTION
 
-from .forward import steps_per_second
+from .simulated_records import steps_per_second
 
 FEWEST = 8.0  # samples in a period at the upper end of the excited band
 STOPPED_DB = 80.0  # what would fold back, as the output filter of a simulation stops it

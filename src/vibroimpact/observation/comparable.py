@@ -22,8 +22,8 @@ from vibroimpact.geometry.sections import outer_width
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.units import UnitError, si_factor
 
-from .measuring import NO_CHANNELS
-from .sensed import CONTACT_FORCE, SENSED, across, support_at
+from .sensed_motion import CONTACT_FORCE, SENSED, across, support_at
+from .sensor_chain import NO_CHANNELS
 from .strain import STRAIN
 
 READ = ", ".join(SENSED).replace("_", " ")

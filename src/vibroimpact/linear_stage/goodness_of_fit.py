@@ -15,16 +15,16 @@ from scipy import interpolate, linalg, stats
 
 from vibroimpact.campaign.file import CampaignError
 from vibroimpact.config.reading import ConfigError, check_config
+from vibroimpact.discrepancy import priors
 from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.strain import gauges_of
 
 from . import nuisance as linear
-from . import priors
-from .attach import attach
-from .linear_fit import REACH, coarse, descended, moved
-from .linear_stage import fit_modes, left, modelled_lines
+from .effect_fit import REACH, coarse, descended, moved
 from .linearised import linearised, matched, same_modes
+from .mode_identification import fit_modes, left, modelled_lines
 from .other_lengths import Moved, parts, scaled
-from .strain import gauges_of
 
 ALONG = 97  # places along the tube at which shapes are computed; between them splines
 TRIED = 241  # places along the tube that a channel is tried at

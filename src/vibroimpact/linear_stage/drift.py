@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg, stats
 
-from .linear_record import DISCARDED, LinearRecord
-from .linear_stage import fit_modes
-from .measuring import Measuring
+from vibroimpact.observation.linear_record import DISCARDED, LinearRecord
+from vibroimpact.observation.sensor_chain import Measuring
+
+from .mode_identification import fit_modes
 from .nearest_model import at_modes
 
 LEAST = 1.0e-4  # of a frequency, one sigma: below it the fits of two halves are not told apart

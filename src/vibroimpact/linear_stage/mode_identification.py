@@ -9,11 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.observation.sensed_motion import differentiated, kind_groups, of_modes, orders
+from vibroimpact.observation.strain import STRAIN, as_displacements, gauges_of
+
 from .lags import driven_modes, from_phases, lags
+from .matching_pursuit import assigned, pursued
 from .modal_fit import LARGEST_LOG_DAMPING, ModalLines, combined, responses_of, without_base
-from .pursuit import assigned, pursued
-from .sensed import differentiated, kind_groups, of_modes, orders
-from .strain import STRAIN, as_displacements, gauges_of
 
 MODEL_ERROR = (
     3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite

@@ -5,13 +5,13 @@ and whether it may be named.
 import numpy as np
 
 from vibroimpact.campaign.force_kinds import FORCE, base_channels
+from vibroimpact.discrepancy import priors
 
-from . import priors
 from .candidates import Candidate, candidate_named, linear_candidates
-from .linear_fit import LinearChanges, fitted
-from .linear_naming import calibrate, table_of
-from .linear_pairs import best_pairs
-from .linear_places import placed
+from .effect_fit import LinearChanges, fitted
+from .effect_pairs import best_pairs
+from .effect_places import placed
+from .effect_readings import calibrate, table_of
 
 # of the best effects are fitted with the model itself: between the points of a table a stinger was
 # read 8 % off

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .sensed import orders
+from vibroimpact.observation.sensed_motion import orders
 
 LONGEST_LAG_S = 0.02
 HEARD, FEWEST = 3.0, 50  # times the noise of a line, and so many lines

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from . import priors
-from .linear_stage import unexplained_lines
+from vibroimpact.discrepancy import priors
+
 from .modal_fit import RESIDUAL_SHARE
+from .mode_identification import unexplained_lines
 
 BLOCK = 9  # lines: fitted by 4 values, a straight line for the force and one for the ends
 FREE = 4

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.discrepancy import priors
 from vibroimpact.effects.places import length_m, stations
 from vibroimpact.geometry.directions import transverse_directions
+from vibroimpact.observation.attached_model import displacement_shapes
+from vibroimpact.observation.sensed_motion import differentiated
+from vibroimpact.observation.strain import STRAIN
 
-from . import priors
-from .attach import displacement_shapes
 from .other_source import BLOCK, FREE, incoherent_rest
-from .sensed import differentiated
-from .strain import STRAIN
 
 PLACES = 64  # along the tube
 ANGLES = np.deg2rad(np.arange(0.0, 180.0, 15.0))  # of the force across the tube

@@ -8,10 +8,10 @@ import numpy as np
 from scipy import linalg, optimize
 
 from vibroimpact.config.reading import ConfigError, check_config
+from vibroimpact.discrepancy import priors
+from vibroimpact.observation.attached_model import attach
 
 from . import nuisance as linear
-from . import priors
-from .attach import attach
 from .linearised import linearised, matched, same_modes
 
 COARSE_MESH = {"elements_per_span": 8, "elements_per_bend": 32}

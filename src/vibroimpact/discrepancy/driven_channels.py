@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from vibroimpact.observation.sensed_motion import motion_there
+
 from . import priors
-from .sensed import motion_there
 
 
 def bursting(bench, records, driven):

@@ -15,10 +15,10 @@ from scipy import optimize
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects import places
+from vibroimpact.observation.attached_model import attach
 
 from . import nuisance as linear
-from .attach import attach
-from .linear_fit import LinearChanges
+from .effect_fit import LinearChanges
 from .linearised import linearised
 
 LEAST_SHARE = 0.5  # of the gain of what was adopted: at right places it is all of it

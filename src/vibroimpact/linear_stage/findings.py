@@ -5,10 +5,10 @@ checks: a model that does not fit, where to look first, and power that the force
 import numpy as np
 
 from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.discrepancy import priors
 
-from . import priors
 from .drift import drift_of
-from .linear_misfit import LinearMisfit
+from .goodness_of_fit import LinearMisfit
 from .nearest_model import translated
 from .other_source import other_sources
 

@@ -15,7 +15,7 @@ from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
 
-from .sensed import force_weights, of_modes, orders
+from .sensed_motion import force_weights, of_modes, orders
 
 # Of the gap: how far off its place an obstacle is, drawn for every run. No plate is centred better.
 # From 1e-6 a tube that is driven in one plane takes most of a record to leave it: 12 dB too little
