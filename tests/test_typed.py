@@ -11,10 +11,8 @@ LIBRARY = Path(__file__).parents[1] / "src" / "vibroimpact"
 NOT_YET_TYPED = (
     "acceptance",
     "completion",
-    "discrepancy",
     "figures",
     "linear_stage",
-    "observation",
     "validation",
 )
 PACKAGES = sorted(

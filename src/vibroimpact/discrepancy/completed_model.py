@@ -1,21 +1,25 @@
-"""The completed model as a configuration that runs: effects, corrected frequencies and damping of
-its modes.
-"""
+"""The completed model as a configuration: effects, corrected frequencies and damping of modes."""
+
+from typing import Any
 
 import numpy as np
+import xarray as xr
 import yaml
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.effects.effect import Values
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.records import plain_values
 from vibroimpact.reduction.structural_modifications import with_frequency_factors
 
 from .misfit import makes_worse
+from .protocols import DecisionLike, NuisanceLike, PreparedLike, WorkbenchLike
 
 
-def updated_model(bench, decision, prepared):
-    """Return the text of the completed configuration: effects, corrected modes; gains of channels
-    as a comment, for they are not of the model.
+def updated_model(bench: WorkbenchLike, decision: DecisionLike, prepared: PreparedLike) -> str:
+    """Return the YAML text of the completed configuration: effects and corrected modes.
+
+    Gains of channels are a comment, because they are no part of the model.
     """
     values = bench.values
     if decision.chosen is not None:
@@ -43,9 +47,10 @@ def updated_model(bench, decision, prepared):
     return "\n".join([*lines, yaml.safe_dump(plain_values(values), sort_keys=False, width=140)])
 
 
-def not_offered(withdrawn):
-    """Return the text in the place of a completed configuration that is no better than the given
-    one; withdrawn: content.Withdrawn in plain values.
+def not_offered(withdrawn: dict[str, Any]) -> str:
+    """Return the text in place of a completed configuration that is no better than the given one.
+
+    withdrawn: verdict.content.Withdrawn in plain values.
     """
     effects = " and ".join(row["id"].replace("_", " ") for row in withdrawn["effects"])
     splits = {
@@ -62,18 +67,19 @@ def not_offered(withdrawn):
     )
 
 
-def computed_modes(values, campaign):
-    """Return (mode,): the number that each mode of a configuration in plain values has among those
-    computed, before frequency factors let some pass others.
+def computed_modes(values: Values, campaign: xr.Dataset) -> np.ndarray:
+    """Return (mode,): the index of each mode among the modes without frequency factors.
+
+    values: configuration in plain values. Factors may change the order of the modes.
     """
     computed = attach(check_config(values | {"mode_frequency_factors": []}, "model"), campaign)
     return with_frequency_factors(computed.omega, values["mode_frequency_factors"])[1]
 
 
-def with_nuisance(values, nuisance, computed):
-    """Return the configuration in plain values with the corrected frequencies and damping ratios of
-    its first modes; computed (mode,): the numbers among the computed modes of those that the
-    nuisance corrects.
+def with_nuisance(values: Values, nuisance: NuisanceLike, computed: np.ndarray) -> Values:
+    """Return the configuration in plain values with corrected frequencies and damping ratios.
+
+    computed (mode,): indices of the corrected modes as computed_modes gives them.
     """
     count = int(nuisance.modes.max(initial=-1)) + 1
     factors = [

@@ -1,16 +1,20 @@
-"""The covariance of a record's features: their scatter from seed to seed, and what two codes differ
-by.
+"""The covariance of a record's features: their scatter over seeds, and the model discrepancy.
+
+Model discrepancy is the difference between two correct codes of the same physics.
 """
 
 import numpy as np
 
+from vibroimpact.observation.features import FeatureLayout
+
 from . import priors
 
 
-def shrunk(rows, freedom):
-    """Return the covariance (feature, feature) of compressed deviations rows (run, feature) with as
-    many degrees of freedom, shrunk towards its diagonal (O. Ledoit, M. Wolf, J. Multivariate Anal.
-    88, 2004).
+def shrunk(rows: np.ndarray, freedom: int) -> np.ndarray:
+    """Return the covariance (feature, feature) of deviations, shrunk towards its diagonal.
+
+    rows (run, feature): compressed deviations from a mean. freedom: their degrees of freedom.
+    O. Ledoit, M. Wolf, J. Multivariate Anal. 88, 2004.
     """
     sd = np.sqrt(np.maximum(np.sum(rows**2, axis=0) / freedom, 1.0e-12))
     unit = rows / sd
@@ -26,14 +30,16 @@ def shrunk(rows, freedom):
     return ((1.0 - shrink) * off + np.eye(len(sd))) * np.outer(sd, sd)
 
 
-def feature_sd(layout):
-    """Return (feature,): one sigma of what two codes differ by."""
+def feature_sd(layout: FeatureLayout) -> np.ndarray:
+    """Return (feature,): one sigma of the difference between two codes."""
     return np.array([priors.FEATURE_SD[kind] for kind in layout.kind])
 
 
-def free_directions(layout, driven):
-    """Return (direction, feature): common levels of channels driven (channel,) by the force and of
-    those not, one sigma each.
+def free_directions(layout: FeatureLayout, driven: np.ndarray) -> np.ndarray:
+    """Return (direction, feature): one sigma of a level difference between two codes that is common
+    to all driven channels, and of one common to all others.
+
+    driven (channel,) bool: see driven_channels.
     """
     rows = []
     for group in (True, False):

@@ -1,34 +1,41 @@
-"""The discrepancy map: measured against simulated band powers per record, channel and band, with z
-from seeds, and clusters of bands.
+"""The discrepancy map: measured over simulated band powers per record, channel and band, their z
+scores, and clusters of bands.
 """
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy import stats
 
 from vibroimpact.campaign.force_kinds import base_channels, load_unit
-from vibroimpact.observation.features import BLEND, compressed
+from vibroimpact.observation.features import BLEND, FeatureLayout, compressed
 from vibroimpact.units import SI_OF_KIND
 
 from . import priors
 from .covariance import feature_sd, free_directions
 from .driven_channels import driven_channels
 from .misfit import counted
+from .protocols import ComparisonLike, NullLike
 
-SMOOTH = (0.25, 0.5, 0.25)  # a variance from few seeds is shared with the neighbouring bands
+SMOOTH = (0.25, 0.5, 0.25)  # weights of neighbouring bands in a variance from few seeds
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
 SHOWN_SEEDS = 4
-FREEDOM = 15  # of the t law of z, whose variance is of some 16 runs
-PEAK = 0.5  # of the largest difference in dB: bands beside it that differ by as much belong to it
+FREEDOM = 15  # degrees of freedom of the t law of z: a variance has about 16 runs
+PEAK = 0.5  # share of the largest difference in dB from which neighbouring bands join its cluster
+
+Compared = tuple[np.ndarray, np.ndarray, np.ndarray]  # (D, z, sd) of z_of
 
 
-def z_of(bench, null, seeds, model=None):
-    """Return (D, z, sd), each (record, channel, band): the measured band powers against seeds
-    (record, seed, feature) of a model, in dB, in standard deviations, and these in dB.
+def z_of(
+    bench: ComparisonLike, null: NullLike, seeds: np.ndarray, model: np.ndarray | None = None
+) -> Compared:
+    """Return (D, z, sd), each (record, channel, band): measured less simulated band powers in dB,
+    in standard deviations, and the standard deviations in dB.
 
-    They are those of the covariance that the verdict is decided by; differences beyond what
-    features.BLEND says are drawn in there too. null: Null of the model; model (record, feature):
-    mean of one with an effect, of whose change a share is uncertain as its law.
+    seeds (record, seed, feature): of the simulation. null, model: see standard_deviation. The
+    covariance is that of the verdict. As there, differences beyond features.BLEND are compressed in
+    z.
     """
     layout = bench.layout
     difference = layout.power(bench.measured_features) - layout.power(seeds).mean(axis=1)
@@ -37,10 +44,15 @@ def z_of(bench, null, seeds, model=None):
     return difference, drawn_in / sd, sd
 
 
-def standard_deviation(bench, null, seeds, model=None):
-    """Return (record, feature): one sigma of a measured record about the mean of a model; arguments
-    as of z_of. A record that the verdict reads by its modes alone has that of its seeds and of what
-    two codes differ by.
+def standard_deviation(
+    bench: ComparisonLike, null: NullLike, seeds: np.ndarray, model: np.ndarray | None = None
+) -> np.ndarray:
+    """Return (record, feature): one sigma of a measured record about the mean of a model.
+
+    seeds (record, seed, feature): of the model. null: Null of the model without an effect. model
+    (record, feature): mean of the model with an effect, whose law adds an uncertainty in proportion
+    to the change of the features; None without. Records outside null.records have the variance of
+    their seeds and that of two codes.
     """
     layout, common = bench.layout, free_directions(bench.layout, driven_channels(bench))
     variance = smoothed(seeds.var(axis=1, ddof=1), layout) * (1.0 + 1.0 / seeds.shape[1])
@@ -52,9 +64,9 @@ def standard_deviation(bench, null, seeds, model=None):
     return np.sqrt(variance)
 
 
-def smoothed(variance, layout):
-    """Return variances (record, feature), those of band powers shared with the neighbouring bands:
-    they are of few seeds.
+def smoothed(variance: np.ndarray, layout: FeatureLayout) -> np.ndarray:
+    """Return variances (record, feature), those of band powers averaged over neighbouring bands
+    with the weights SMOOTH.
     """
     out = variance.copy()
     out[:, layout.kind == "power"] = np.apply_along_axis(
@@ -65,9 +77,11 @@ def smoothed(variance, layout):
     return out
 
 
-def significant(z, chosen):
-    """Return (record, channel, band) bool: cells beyond chance at a false-discovery rate, the error
-    rate of the verdict (Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57, 1995).
+def significant(z: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return (record, channel, band) bool: the significant cells among the chosen ones.
+
+    The false-discovery rate is priors.SIGNIFICANT, the error rate of the verdict (Y. Benjamini, Y.
+    Hochberg, J. R. Stat. Soc. B 57, 1995).
     """
     p = 2.0 * stats.t.sf(np.abs(z), FREEDOM)
     inside = np.sort(p[chosen])
@@ -77,9 +91,13 @@ def significant(z, chosen):
     return chosen & (p <= inside[passed[-1]]) if passed.size else np.zeros_like(chosen)
 
 
-def regions(bench, difference, z, chosen):
-    """Return the clusters of significant neighbouring bands, as verdict.json has them, the
-    strongest first.
+def regions(
+    bench: ComparisonLike, difference: np.ndarray, z: np.ndarray, chosen: np.ndarray
+) -> list[dict[str, Any]]:
+    """Return the rows of `regions` of verdict.json: clusters of significant bands, the largest |z|
+    first.
+
+    difference, z, chosen: (record, channel, band), as of z_of and significant.
     """
     marked, edges, signals = significant(z, chosen), bench.layout.edges, bench.signals
     found = []
@@ -102,26 +120,29 @@ def regions(bench, difference, z, chosen):
     return sorted(found, key=lambda row: -abs(row["z"]))
 
 
-def clusters(difference, marked):
-    """Return [(band,)]: runs of marked bands of one sign within PEAK of their largest difference,
-    from the largest down; difference, marked (band,).
+def clusters(difference: np.ndarray, marked: np.ndarray) -> list[np.ndarray]:
+    """Return [(band,)]: indices of neighbouring marked bands of one sign, the largest first.
+
+    difference, marked: (band,). A cluster extends to PEAK of its largest difference.
     """
-    left, out = marked.copy(), []
-    while left.any():
-        top = int(np.argmax(np.where(left, np.abs(difference), 0.0)))
-        inside = left & (difference * np.sign(difference[top]) >= PEAK * np.abs(difference[top]))
+    remaining, out = marked.copy(), []
+    while remaining.any():
+        top = int(np.argmax(np.where(remaining, np.abs(difference), 0.0)))
+        inside = remaining & (
+            difference * np.sign(difference[top]) >= PEAK * np.abs(difference[top])
+        )
         low, high = top, top
         while low > 0 and inside[low - 1]:
             low -= 1
-        while high + 1 < len(left) and inside[high + 1]:
+        while high + 1 < len(remaining) and inside[high + 1]:
             high += 1
         out.append(np.arange(low, high + 1))
-        left[low : high + 1] = False
+        remaining[low : high + 1] = False
     return out
 
 
-def nearest(bench, low, high):
-    """Return [Hz] of the modes in a band, or the one nearest to its middle."""
+def nearest(bench: ComparisonLike, low: float, high: float) -> list[float]:
+    """Return the frequencies in Hz of the modes in a band, or of the one nearest to its middle."""
     frequencies = bench.bare.frequencies[bench.bare.frequencies < 3.0 * bench.layout.edges[-1]]
     inside = frequencies[(frequencies >= low) & (frequencies <= high)]
     middle = np.sqrt(low * high)
@@ -134,7 +155,7 @@ def nearest(bench, low, high):
 
 
 def _about(long_name, units="", comment=""):
-    """Return the attributes of a variable; UDUNITS has no decibel, which stands in a comment."""
+    """Return the attributes of a variable. Decibels are a comment: UDUNITS does not have them."""
     given = {"units": units, "long_name": long_name, "comment": comment}
     return {name: text for name, text in given.items() if text}
 
@@ -169,9 +190,13 @@ MAP_ABOUT = {
 }
 
 
-def map_dataset(bench, compared, seeds, responses):
-    """Return the map as a Dataset: compared: as z_of returns it; seeds (record, seed, feature);
-    responses (record, shown seed, channel, sample) of the same model with noise.
+def map_dataset(
+    bench: ComparisonLike, compared: Compared, seeds: np.ndarray, responses: np.ndarray
+) -> xr.Dataset:
+    """Return the map as a Dataset.
+
+    compared: as z_of returns it. seeds (record, seed, feature). responses (record, shown seed,
+    channel, sample): of the same model, with noise.
     """
     difference, z, sd = compared
     layout, signals = bench.layout, bench.signals
@@ -208,7 +233,7 @@ def map_dataset(bench, compared, seeds, responses):
             values = bench.campaign[f"{role}_{part}"].values.astype(float)
             data[f"{role}_{part}"] = ((role, "xyz"), values)
     bases = base_channels(bench.campaign)
-    # the place of an acceleration of the base is of no account, and not drawn
+    # an acceleration of the base has no place
     data["force_channel_point"][1][bases] = np.nan
     about = MAP_ABOUT | {"load_rms": MAP_ABOUT["load_rms"] | {"units": load_unit(bench.campaign)}}
     described = {name: (*variable, about[name]) for name, variable in data.items()}

@@ -1,19 +1,17 @@
-"""Runs that were thrown off, and those that were not: a structure that was measured was not, so it
-is compared with the latter.
-"""
+"""Discard diverged runs: a measured structure did not diverge."""
 
 import numpy as np
 
 from vibroimpact.integration.contact_convergence import IntegrationError
 
-LEAST = 0.5  # of the runs of every record
+LEAST = 0.5  # share of the runs of every record that must remain
 
 
-def survivors(features):
-    """Return (record, run) the indices of runs of features (record, run, feature) that are finite,
-    as many of every record.
+def survivors(features: np.ndarray) -> np.ndarray:
+    """Return (record, kept run) the indices of the finite runs, the same number for every record.
 
-    Raises IntegrationError where fewer than half of a record's are.
+    features: (record, run, feature). Raises IntegrationError where fewer than half of a record's
+    runs are finite.
     """
     stayed = np.isfinite(features).all(axis=-1)
     count = stayed.sum(axis=1).min()
@@ -25,6 +23,6 @@ def survivors(features):
     return np.array([np.flatnonzero(row)[:count] for row in stayed])
 
 
-def of_survivors(features):
+def of_survivors(features: np.ndarray) -> np.ndarray:
     """Return (record, kept run, feature) of features (record, run, feature), see survivors."""
     return np.take_along_axis(features, survivors(features)[..., None], axis=1)

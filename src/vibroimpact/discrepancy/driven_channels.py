@@ -1,28 +1,29 @@
-"""Which channels the force drives, and which of the others show but a few bursts."""
+"""Which channels the force drives, and which of the others have only a few bursts."""
 
 import numpy as np
 
 from vibroimpact.observation.sensed_motion import motion_there
 
 from . import priors
+from .protocols import ComparisonLike
 
 
-def bursting(bench, records, driven):
+def bursting(bench: ComparisonLike, records: np.ndarray, driven: np.ndarray) -> np.ndarray:
     """Return (record, feature) bool: features of channels that the force does not drive and whose
-    measured record is a few bursts over noise.
+    measured record has a few bursts above the noise.
 
-    Motion across the force is an instability: whether and when it breaks out for a moment is no
-    property that two codes of one tube share, and the power of the record is that of the moment.
-    Such features tell no more than to within features.BLEND.
+    records (record,): indices. driven (channel,) bool: see driven_channels. Motion across the force
+    is an instability. Two codes of one tube do not agree on whether and when it sets in, and the
+    power of the record is that of the bursts. Such features are known to within features.BLEND.
     """
     layout, measured = bench.layout, bench.measured_features[records]
     peaked = measured[:, layout.kind == "kurtosis"] > priors.BURST
     return (peaked & ~driven)[:, layout.channel]
 
 
-def driven_channels(bench):
-    """Return (channel,): whether the linear structure answers to a force there; a contact force,
-    whether it does at its support.
+def driven_channels(bench: ComparisonLike) -> np.ndarray:
+    """Return (channel,) bool: whether the linear structure responds to a force at the channel, for
+    a contact force at its support.
     """
     shapes, drive = motion_there(bench.bare, bench.signals.kinds), np.abs(bench.bare.drive_shapes)
     size = (np.abs(shapes)[:, :, None] * drive[:, None, :]).max(axis=(0, 2))

@@ -1,4 +1,6 @@
-"""The invariance lights: which exact properties of the bare model the measurement breaks."""
+"""The exact properties of the bare model that the measurement breaks."""
+
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -6,14 +8,18 @@ from scipy import stats
 from vibroimpact.campaign.checks.stated import check_row
 
 from . import priors
+from .protocols import ComparisonLike, NullLike, PreparedLike
 
 MIRROR_Z, SCALING_DB = 4.0, 1.0
 
 
-def broken_invariances(bench, null, prepared, power=False):
-    """Return [T1, ...]: the tests that fail beyond the seeds' scatter. T1 linearity below contact,
-    T2 scaling, T3 parity, T4 mirror, T5 power balance (power: see power_balance.broken), T6
-    stationarity.
+def broken_invariances(
+    bench: ComparisonLike, null: NullLike, prepared: PreparedLike, power: bool = False
+) -> list[str]:
+    """Return [T1, ...]: the tests that fail beyond the scatter of the seeds.
+
+    T1 linearity below contact, T2 scaling, T3 parity, T4 mirror, T5 power balance (power: see
+    power_balance.broken), T6 stationarity.
     """
     layout, measured = bench.layout, bench.measured_features[null.records]
     spread = np.sqrt(
@@ -37,14 +43,16 @@ def broken_invariances(bench, null, prepared, power=False):
     return out
 
 
-def one_sided(bench, null, measured, mean):
-    """Return (record, channel, z) of the skewness that is farthest from that of a model, None where
-    all of them are as near as chance allows.
+def one_sided(
+    bench: ComparisonLike, null: NullLike, measured: np.ndarray, mean: np.ndarray
+) -> tuple[int, int, float] | None:
+    """Return (record, channel, z) of the skewness that differs most from the model, None where no
+    difference is significant.
 
     measured, mean (record, feature): of the measurement and of the model. Where every law of a
-    model is odd (round holes, centred, no dead load), responses to a force of no skewness have
-    none. z is in standard deviations of a t law of the seeds; the level of the largest of all is
-    priors.SIGNIFICANT.
+    model is odd (round holes, centred, no dead load), responses to a force without skewness have
+    none. z is in standard deviations and follows a t law of the seeds; the significance level of
+    the largest of all is priors.SIGNIFICANT.
     """
     layout = bench.layout
     chosen = layout.kind == "skewness"
@@ -57,9 +65,13 @@ def one_sided(bench, null, measured, mean):
     return int(record), int(layout.channel[chosen][channel]), largest
 
 
-def one_sided_rows(bench, null, measured, completed):
-    """Return [row] where the measurement is lopsided and the model is not: whether the completed
-    model, of mean features (record, feature), is so too. Nothing where it is not.
+def one_sided_rows(
+    bench: ComparisonLike, null: NullLike, measured: np.ndarray, completed: np.ndarray
+) -> list[dict[str, Any]]:
+    """Return a row of checks on whether the completed model has the skewness of the measurement.
+
+    No row where the bare model has it. measured, completed (record, feature): of the measurement
+    and mean of the completed model.
     """
     before = one_sided(bench, null, measured, null.mean)
     if before is None:
@@ -92,8 +104,8 @@ def one_sided_rows(bench, null, measured, completed):
 
 
 def _scaling(bench, null, measured):
-    """Return the RMS in dB by which D differs between records of one load and different gaps: q/gap
-    no longer depends on F/gap alone.
+    """Return the largest RMS in dB by which D differs between records of one load and different
+    gaps, where it should depend on force over gap alone.
     """
     difference = bench.layout.power(measured - null.mean)
     load, gap = np.round(bench.signals.load[null.records], 3), bench.signals.gap[null.records]

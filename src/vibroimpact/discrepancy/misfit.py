@@ -1,7 +1,9 @@
-"""The misfit between measurement and simulation, its floor, and how much of it an effect closes.
+"""The misfit between measurement and simulation, its floor, and the fraction an effect closes.
 
-There is one definition of the closed share, and one place where it is worked out: closed_fraction.
+closed_fraction is the only definition of that fraction.
 """
+
+from typing import Any
 
 import numpy as np
 
@@ -9,17 +11,19 @@ from vibroimpact.observation.strain import STRAIN
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
+from .protocols import ComparisonLike
 
 ABOVE_NOISE_DB = 6.0
-# A channel answers to motion across its direction too, by 1 % at best (transverse sensitivity, ISO
-# 16063-31): what is farther below the strongest channel is not known to be what it should measure.
+# A channel also senses motion across its direction, 1 % at best (transverse sensitivity, ISO
+# 16063-31). A signal farther below the strongest channel may be that of another direction.
 BELOW_STRONGEST_DB = 40.0
 
 
-def counted(bench):
-    """Return (record, channel, band) bool: where the measurement is 6 dB above the noise, and no
-    farther than 40 dB below the strongest channel of its record and band, all as displacements;
-    strains beside strains.
+def counted(bench: ComparisonLike) -> np.ndarray:
+    """Return (record, channel, band) bool: the cells that count in the misfit.
+
+    They are 6 dB above the noise, and at most 40 dB below the strongest channel of their record and
+    band. Motions are compared as displacements, and strains with strains only.
     """
     layout, signals = bench.layout, bench.signals
     power = layout.power(bench.measured_features)
@@ -38,36 +42,41 @@ def counted(bench):
     return (power > noise + ABOVE_NOISE_DB) & strong
 
 
-def level_distance(difference, chosen):
-    """Return the RMS in dB of (record, channel, band) over the chosen; 0 where none is."""
+def level_distance(difference: np.ndarray, chosen: np.ndarray) -> float:
+    """Return the RMS in dB of differences (record, channel, band) over chosen cells, 0 for none."""
     return float(np.sqrt(np.mean(difference[chosen] ** 2))) if chosen.any() else 0.0
 
 
-def excess(distance, floor):
-    """Return what a distance in dB has beyond its floor."""
+def excess(distance: float, floor: float) -> float:
+    """Return the root of the squared distance less the squared floor in dB; 0 below the floor."""
     return float(np.sqrt(max(0.0, distance**2 - floor**2)))
 
 
-def closed_fraction(before, after, floor):
-    """Return 1 - excess after / excess before; None where there was next to nothing before."""
+def closed_fraction(before: float, after: float, floor: float) -> float | None:
+    """Return 1 - excess after / excess before; None where the excess before is negligible.
+
+    before, after: distances in dB. floor: dB.
+    """
     least = priors.NO_EXCESS * floor
     first = excess(before, floor)
     return None if first <= least else 1.0 - excess(after, floor) / first
 
 
-def makes_worse(row):
-    """Return whether a completed model makes a misfit grow, {before_dB, after_dB, floor_dB}: what
-    is left is more than before and beyond chance.
+def makes_worse(row: dict[str, Any]) -> bool:
+    """Return whether the misfit with the completed model is larger than before and beyond chance.
+
+    row: {before_dB, after_dB, floor_dB}.
     """
     if row["after_dB"] is None:
         return False
-    left = excess(row["after_dB"], row["floor_dB"])
-    return row["after_dB"] > row["before_dB"] and left > priors.NO_EXCESS * row["floor_dB"]
+    remaining = excess(row["after_dB"], row["floor_dB"])
+    return row["after_dB"] > row["before_dB"] and remaining > priors.NO_EXCESS * row["floor_dB"]
 
 
-def floor_of(power, chosen):
-    """Return the distance in dB between two seeds of a model, RMS over all pairs: power (record,
-    seed, channel, band).
+def floor_of(power: np.ndarray, chosen: np.ndarray) -> float:
+    """Return the distance in dB between two seeds of a model, RMS over all pairs.
+
+    power (record, seed, channel, band): dB. chosen (record, channel, band) bool.
     """
     total, count = 0.0, 0
     for one in range(power.shape[1]):
@@ -77,12 +86,20 @@ def floor_of(power, chosen):
     return float(np.sqrt(total / max(count, 1)))
 
 
-def misfit_of(bench, records, chosen, before, after, completed):
+def misfit_of(
+    bench: ComparisonLike,
+    records: np.ndarray,
+    chosen: np.ndarray,
+    before: np.ndarray,
+    after: np.ndarray,
+    completed: np.ndarray,
+) -> dict[str, float | None]:
     """Return {before_dB, after_dB, floor_dB, closed_fraction} on some records.
 
-    before, after: (record, feature) means of all records; completed: (record, seed, feature) of the
-    completed model. As the mean of several seeds scatters less than one seed, the distance of
-    measurement to mean is brought to that of two single runs.
+    chosen (record, channel, band) bool, before, after (record, feature): cells and means over seeds
+    of all records. completed (record, seed, feature): of the completed model. The mean of several
+    seeds scatters less than one seed: the distance from measurement to mean is corrected to that of
+    two single runs.
     """
     layout = bench.layout
     measured = layout.power(bench.measured_features)[records]
@@ -90,15 +107,15 @@ def misfit_of(bench, records, chosen, before, after, completed):
     seeds = completed.shape[1]
     floor = floor_of(layout.power(completed)[records], inside)
     own = floor**2 / 2.0 * (1.0 - 1.0 / seeds)
-    distances = [
+    before_dB, after_dB = (
         float(
             np.hypot(level_distance(measured - layout.power(mean)[records], inside), np.sqrt(own))
         )
         for mean in (before, after)
-    ]
+    )
     return {
-        "before_dB": distances[0],
-        "after_dB": distances[1],
+        "before_dB": before_dB,
+        "after_dB": after_dB,
         "floor_dB": floor,
-        "closed_fraction": closed_fraction(*distances, floor),
+        "closed_fraction": closed_fraction(before_dB, after_dB, floor),
     }

@@ -1,4 +1,6 @@
-"""What to measure next where two effects can not be told apart."""
+"""What to measure next where two effects explain a campaign equally well."""
+
+from collections.abc import Collection, Iterable
 
 SENTENCES = {
     frozenset({"gap", "sensor_gain"}): (
@@ -28,9 +30,9 @@ SENTENCES = {
 }
 
 
-def next_measurement(sets):
-    """Return the sentence for an ambiguity set (list of lists of ids), None where it has one
-    member.
+def next_measurement(sets: Collection[Iterable[str]]) -> str | None:
+    """Return the sentence for an ambiguity set (list of lists of ids), None where it has fewer than
+    two members.
     """
     ids = {effect for row in sets for effect in row}
     if len(sets) < 2:

@@ -1,23 +1,26 @@
-"""The power balance: what the force puts into the structure, measured and simulated, where a
-channel sits at the drive and looks along the force.
+"""The power balance: measured and simulated input power of the force, where a channel measures at
+the drive point along the force.
 """
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.observation.sensed_motion import moving
 from vibroimpact.units import TIME_DERIVATIVES
 
 from . import priors
+from .protocols import ComparisonLike
 
-DRIVE_M = 5.0e-3  # a channel nearer to the drive than this is at it
-ALONG = 0.999  # cosine between the channel and the force
+DRIVE_M = 5.0e-3  # largest distance of a channel at the drive point
+ALONG = 0.999  # least |cosine| between the channel and the force
 POWER_Z = 4.0
 
 
-def drive_channel(campaign):
-    """Return (channel, sense 1 or -1) of a motion at the first force and along it, None where there
-    is none; a moving base acts at no point.
+def drive_channel(campaign: xr.Dataset) -> tuple[int, float] | None:
+    """Return (channel, sense 1.0 or -1.0) of a motion at the first force and along it.
+
+    None where there is no such channel, and with a moving base, which acts at no point.
     """
     if base_channels(campaign).any():
         return None
@@ -37,9 +40,12 @@ def drive_channel(campaign):
     return (int(found[0]), float(np.sign(cosine[found[0]]))) if found.size else None
 
 
-def input_power(force, response, kind, rate, band_Hz):
-    """Return W, the mean of force times velocity in a band (Hz): force (sample,) N, response
-    (sample,) of a kind of motion in SI.
+def input_power(
+    force: np.ndarray, response: np.ndarray, kind: str, rate: float, band_Hz: tuple[float, float]
+) -> float:
+    """Return the mean of force times velocity in a band, in W.
+
+    force (sample,): N. response (sample,): SI, of a kind of motion. rate, band_Hz: Hz.
     """
     window = np.hanning(len(force))
     omega = 2.0 * np.pi * np.fft.rfftfreq(len(force), 1.0 / rate)
@@ -51,9 +57,11 @@ def input_power(force, response, kind, rate, band_Hz):
     )
 
 
-def broken(bench, simulated):
-    """Return whether the measured input power of any record is beyond what seeds and two gains
-    allow; simulated (record, seed, channel, sample).
+def broken(bench: ComparisonLike, simulated: np.ndarray) -> bool:
+    """Return whether the measured input power of any record differs from the simulated one by more
+    than the scatter of the seeds and the gains of two channels allow.
+
+    simulated: (record, seed, channel, sample).
     """
     found = drive_channel(bench.campaign)
     if found is None:

@@ -1,9 +1,10 @@
-"""What a discrepancy run leaves in its folder, read back for the figures and the page."""
+"""The results of a discrepancy run, read from its folder for the figures and the page."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -14,20 +15,23 @@ from vibroimpact.verdict.file import read_verdict
 
 @dataclass(frozen=True)
 class Results:
-    """Verdict, maps before and after (None where there is none), rows of
-    ranking.csv, contents of candidates/*.json, best first.
+    """The results of a discrepancy run.
+
+    before, after: the maps with the model as given and as completed, None where there is none.
+    ranking: rows of ranking.csv. candidates: contents of candidates/*.json, best first.
     """
 
     verdict: Verdict
     before: xr.Dataset | None
     after: xr.Dataset | None
-    ranking: list
-    candidates: list
+    ranking: list[dict[str, Any]]
+    candidates: list[dict[str, Any]]
 
 
-def read_results(folder):
-    """Return the Results of a folder. Files other than verdict.json may be missing, and maps empty,
-    where the campaign was refused.
+def read_results(folder: str | Path) -> Results:
+    """Return the Results of a folder.
+
+    Where the campaign was refused, files other than verdict.json may be missing and maps empty.
     """
     folder = Path(folder)
     verdict = read_verdict(folder / "verdict.json")
@@ -48,21 +52,21 @@ def read_results(folder):
 NO_VALUE = ("None", "", "nan")
 
 
-def best_places(rows):
-    """Return the rows of a ranking without those that were screened only, of effects that a row
-    before them shows at another place.
+def best_places(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the rows of a ranking, best first, without those that were only screened and whose
+    effects are in a row before at another place.
     """
     shown, kept = set(), []
     for row in rows:
         ids = row["ids"] if isinstance(row["ids"], str) else "+".join(row["ids"])
-        closely = str(row.get("heldout_score")) not in NO_VALUE or str(row.get("tested")) == "True"
-        if closely or ids not in shown:
+        tested = str(row.get("heldout_score")) not in NO_VALUE or str(row.get("tested")) == "True"
+        if tested or ids not in shown:
             kept.append(row)
         shown.add(ids)
     return kept
 
 
 def _map(path):
-    """Return the map of a file, None where there is no file or nothing in it."""
+    """Return the map of a file, None where there is no file or no map in it."""
     data = read_dataset(path, MAKE_AGAIN) if path.is_file() else None
     return data if data is not None and "D" in data else None

@@ -1,17 +1,19 @@
-"""A campaign's channels and forces on the model: the reduced model with the campaign's sensors and
-drives in place of the study's.
-"""
+"""The reduced model with the channels and forces of a campaign as its sensors and drives."""
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.file import CampaignError, support_ratios
 from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.config.schema import Sensors
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
+from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
 from .moving_base import driven_by_base, further_drive_shapes
@@ -21,23 +23,22 @@ from .strain import STRAIN, gauged_model
 SAME_POINT_M = 1.0e-3
 
 
-def attach(config, campaign):
-    """Return the ModalModel of `config` that has the campaign's channels as sensors and its forces
-    as drives, and nothing else to keep.
+def attach(config: ConfigPart, campaign: xr.Dataset) -> ModalModel:
+    """Return the ModalModel of `config` with the campaign's channels as sensors and its forces as
+    drives, without shape line and stresses.
 
-    config: a checked Config or StageSettings of a tube. Sensors are the displacements along
-    channel_direction, positive in its sense, in the order of the channels; the strain of the outer
-    fibre there for a strain gauge; none of it, zero, for a contact force. A campaign on a moving
-    base has as drives the accelerations of the base, in the place of those of the configuration.
-    Raises CampaignError
-    when a channel or force is farther than 5 mm from the structure; the message lists all of them.
+    config: a checked Config or StageSettings of a tube. The sensors are in the order of the
+    channels: displacements, positive along channel_direction; for a strain gauge the strain of the
+    outer fibre; for a contact force zero. With a campaign on a moving base, the drives are the
+    accelerations of the base. Raises CampaignError when a channel or force is more than 5 mm off
+    the structure or a direction is no vector.
     """
     forces = ~base_channels(campaign)
-    places, directions, names = (
+    places, directions, stored_names = (
         np.concatenate([campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values])
         for key in ("point", "direction", "name")
     )
-    directions, names = directions.astype(float), [*map(str, names)]
+    directions, names = directions.astype(float), [*map(str, stored_names)]
     _require_directions(directions, names)
     channels = campaign.sizes["channel"]
     bases = directions[channels:][~forces]
@@ -48,14 +49,13 @@ def attach(config, campaign):
     config = driven_by_base(config, campaign)
     try:
         model, displacements = displacement_shapes(
-            config, places, {number: directions[number] for number in gauged}
+            config, places, {int(number): directions[number] for number in gauged}
         )
     except ValueError as error:
         raise CampaignError(_sentence(str(error), names)) from None
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
-    acting = (
-        along.copy()
-    )  # a force may act beside its stated direction, a sensor's direction is what it is
+    # excitation.turn_deg turns the forces; the sensors keep their directions
+    acting = along.copy()
     angle = getattr(config.excitation, "turn_deg", 0.0)
     for number in range(channels, len(places)) if angle else ():
         acting[number] = turned_direction(along[number], angle, turn_axis(config, places[number]))
@@ -78,12 +78,15 @@ def attach(config, campaign):
     return gauged_model(attached, gauged) if len(gauged) else attached
 
 
-def displacement_shapes(config, places, normals=None):
-    """Return (ModalModel, (mode, place, 3)): the displacements of a configuration's structure at
-    places (place, 3) m. Raises ValueError for one that is farther than 5 mm from it.
+def displacement_shapes(
+    config: ConfigPart,
+    places: Sequence[Sequence[float]] | np.ndarray,
+    normals: Mapping[int, np.ndarray] | None = None,
+) -> tuple[ModalModel, np.ndarray]:
+    """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
 
-    normals: {number of a place: outward normal (3,)} of strain gauges there, whose shapes are the
-    last of the model's sensors.
+    normals: {index of a place: outward normal (3,)} of strain gauges there; their shapes are the
+    last of the model's sensors. Raises ValueError for a place more than 5 mm off the structure.
     """
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
     sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
@@ -96,9 +99,11 @@ def displacement_shapes(config, places, normals=None):
     return model, moved.reshape(model.modes, len(places), 3)
 
 
-def with_channel_points(config, campaign):
-    """Return the configuration with a named point at every channel where it has none: what sits
-    there, or was put there with it, may be missing in it. A support's load cell is no such thing.
+def with_channel_points(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
+    """Return the configuration with a named point at every channel that measures a motion.
+
+    A part at the sensor, or the sensor itself, may be missing in the model there. No point is added
+    within SAME_POINT_M of another, for a strain or for a contact force.
     """
     points, taken = dict(config.points), list(config.points.values())
     names, places = campaign["channel_name"].values, campaign["channel_point"].values
@@ -106,9 +111,7 @@ def with_channel_points(config, campaign):
         name, place = names[channel], places[channel]
         if all(np.linalg.norm(np.subtract(place, other)) > SAME_POINT_M for other in taken):
             new = re.sub(r"[^A-Za-z0-9_.-]", "_", str(name))
-            while (
-                new in points
-            ):  # a channel may bear the name of a point elsewhere, which the model means
+            while new in points:  # a named point elsewhere may have the name of the channel
                 new = f"at_{new}"
             points[new] = tuple(map(float, place))
             taken.append(place)
@@ -116,8 +119,9 @@ def with_channel_points(config, campaign):
 
 
 def _ratio_of_points(campaign, model):
-    """Return (contact point,) the clearance there over the record's nominal one. Raises
-    CampaignError when the campaign counts other supports.
+    """Return (contact_point,) the clearance over the nominal gap of the record.
+
+    Raises CampaignError when the campaign does not have as many supports as the model.
     """
     ratios = support_ratios(campaign)
     if ratios is None:
@@ -130,13 +134,13 @@ def _ratio_of_points(campaign, model):
     return ratios[model.support_of_point]
 
 
-def config_sensors(points):
-    """Return the section record.sensors with all three directions of some points."""
+def config_sensors(points: tuple[str, ...]) -> Sensors:
+    """Return the section record.sensors with all three directions of named points."""
     return Sensors(points=points, directions=("x", "y", "z"))
 
 
 def _require_directions(directions, names):
-    """Raise CampaignError for a direction that is no direction."""
+    """Raise CampaignError for a direction that is not finite or has no length."""
     for direction, name in zip(directions, names, strict=True):
         if not np.isfinite(direction).all() or np.linalg.norm(direction) < 1.0e-6:
             raise CampaignError(
@@ -145,7 +149,7 @@ def _require_directions(directions, names):
 
 
 def _sentence(message, names):
-    """A message about place_<number> as one about the channel of that number."""
+    """Return a message with the channel's name in place of place_<number>."""
     for number in reversed(range(len(names))):
         message = message.replace(f"point place_{number}", f"channel {names[number]}")
     return message

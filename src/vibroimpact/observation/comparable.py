@@ -1,13 +1,11 @@
-"""What of a campaign is compared with a model, and why a campaign and a model can not be compared.
+"""Which channels of a campaign are compared with a model, and why a comparison is not possible.
 
-Simulated are motions of a tube under forces in N or on a moving base, strains of its outer fibre,
-and the forces of its supports on it. Nothing else is simulated in their place: other channels are
-left out, and what leaves too little is refused, both with a sentence.
+The model simulates motions of a tube under forces in N or on a moving base, strains of its outer
+fibre, and the forces of its supports on it. Other channels are left out. A campaign with too little
+left is refused. Each comes with a sentence that says why.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,29 +14,32 @@ from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, force_units, support_ratios
 from vibroimpact.campaign.force_kinds import BASE, FORCE, base_channels
 from vibroimpact.config.name_checks import TUBES
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import Centreline, build_centreline
 from vibroimpact.geometry.directions import unit_vector
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.units import UnitError, si_factor
 
 from .sensed_motion import CONTACT_FORCE, SENSED, across, support_at
 from .sensor_chain import NO_CHANNELS
+from .signals import Signals
 from .strain import STRAIN
 
 READ = ", ".join(SENSED).replace("_", " ")
 LEFT_OUT = "channels"  # name of the check
-ACROSS = 0.1  # cosine between a contact force and the directions in which its support acts
-# Cosine between the outward normal at a gauge and the tube: what is more along it is no normal. A
-# chord of a bend is off its tangent by less.
+ACROSS = 0.1  # least |cosine| between a contact force and a direction in which its support acts
+# Largest |cosine| between the outward normal at a gauge and the tangent of the tube. The chord of a
+# bend deviates from its tangent by less.
 LEANS = 0.2
 ON_AXIS = 0.99  # least |cosine| of that normal with an axis of a section that is not round
-NO_DIRECTION = 1.0e-6  # length below which a vector has no direction
+NO_DIRECTION = 1.0e-6  # a shorter vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
 
 def channel_faults(campaign: xr.Dataset) -> dict[int, str]:
-    """Return {channel: sentence} of the channels that no model is compared with."""
+    """Return {channel index: sentence} of the channels that can not be compared with any model."""
     faults = {}
     for channel in range(campaign.sizes["channel"]):
         name, kind = (str(campaign[f"channel_{key}"].values[channel]) for key in ("name", "kind"))
@@ -56,13 +57,13 @@ def channel_faults(campaign: xr.Dataset) -> dict[int, str]:
 
 
 def compared_channels(campaign: xr.Dataset) -> np.ndarray:
-    """Return (channel,) bool, whether a model is compared with a channel."""
+    """Return (channel,) bool, whether a channel is compared with a model."""
     faults = channel_faults(campaign)
     return np.array([channel not in faults for channel in range(campaign.sizes["channel"])])
 
 
 def channel_rows(campaign: xr.Dataset) -> list[dict]:
-    """Return the rows of checks that tell which channels are left out."""
+    """Return a row of checks for each channel that is left out of the comparison."""
     names = campaign["channel_name"].values
     return [
         _left_out(str(names[channel]), sentence)
@@ -70,10 +71,10 @@ def channel_rows(campaign: xr.Dataset) -> list[dict]:
     ]
 
 
-def contact_force_rows(model: Any, signals: Any) -> list[dict]:
-    """Return the rows of checks that tell which contact forces are left out beside a model.
+def contact_force_rows(model: ModalModel, signals: Signals) -> list[dict]:
+    """Return a row of checks for each contact force that is left out of the comparison.
 
-    model: ModalModel attached to the campaign; signals: its Signals.
+    model: attached to the campaign. signals: of the campaign.
     """
     rows = []
     for channel in np.flatnonzero(np.asarray(signals.kinds) == CONTACT_FORCE):
@@ -89,8 +90,8 @@ def contact_force_rows(model: Any, signals: Any) -> list[dict]:
     return rows
 
 
-def strain_rows(config: Any, campaign: xr.Dataset) -> list[dict]:
-    """Return the rows of checks that tell which strains are left out beside a model of a tube."""
+def strain_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
+    """Return a row of checks for each strain that is left out of the comparison with a tube."""
     rows = []
     for channel in np.flatnonzero(campaign["channel_kind"].values == STRAIN):
         normal, point = (
@@ -105,8 +106,9 @@ def strain_rows(config: Any, campaign: xr.Dataset) -> list[dict]:
 
 
 def _no_gauge(structure, point, normal):
-    """Return why a gauge at a point (3,) of a TubeStructure, with an outward normal (3,), tells no
-    bending strain of it, None where it does.
+    """Return why a gauge does not measure a bending strain of the model, None where it does.
+
+    structure: TubeStructure. point (3,): m. normal (3,): outward unit normal at the gauge.
     """
     place = structure.centreline.locate(point, "the gauge")
     along = abs(structure.centreline.direction(place) @ normal)
@@ -128,7 +130,7 @@ def _no_gauge(structure, point, normal):
 
 
 def _not_a_support(model, channel):
-    """Return why a channel can be no force of a support of the model, None where it can."""
+    """Return why a channel is not the force of a support of the model, None where it is."""
     support = support_at(model, model.sensor_positions[channel])
     if support is None:
         return (
@@ -144,7 +146,7 @@ def _not_a_support(model, channel):
 
 
 def left_out(checks: list[dict]) -> set[str]:
-    """Return the names of channels that rows of checks leave out of a comparison with a model."""
+    """Return the names of the channels that rows of checks leave out of the comparison."""
     return {row["channel"] for row in checks if row["check"] == LEFT_OUT and row["channel"]}
 
 
@@ -152,10 +154,10 @@ def _left_out(name: str, sentence: str) -> dict:
     return check_row(LEFT_OUT, "warn", f"{sentence}.", channel=name)
 
 
-def model_problems(config: Any, on_base: bool = False) -> list[str]:
-    """Return sentences on why no campaign can be compared with a model.
+def model_problems(config: ConfigPart, on_base: bool = False) -> list[str]:
+    """Return sentences on why a model can not be compared with any campaign.
 
-    on_base: whether the campaign measured the motion of the base in the place of a force.
+    on_base: whether the campaign measured the motion of the base instead of a force.
     """
     problems = []
     if config.structure.kind not in TUBES:
@@ -179,9 +181,9 @@ def model_problems(config: Any, on_base: bool = False) -> list[str]:
 
 
 def campaign_problems(campaign: xr.Dataset) -> list[str]:
-    """Return sentences on why a campaign can be compared with no model.
+    """Return sentences on why a campaign can not be compared with any model.
 
-    campaign: keeps the contract; its signals are not looked at.
+    campaign: keeps the contract; its signals are not read.
     """
     problems = []
     faults = channel_faults(campaign)
@@ -223,7 +225,7 @@ def campaign_problems(campaign: xr.Dataset) -> list[str]:
     return problems
 
 
-def comparison_problems(config: Any, campaign: xr.Dataset) -> list[str]:
+def comparison_problems(config: ConfigPart, campaign: xr.Dataset) -> list[str]:
     """Return sentences on why a campaign can not be compared with a model.
 
     config: a checked Config.
@@ -237,7 +239,7 @@ def comparison_problems(config: Any, campaign: xr.Dataset) -> list[str]:
 
 
 def _mixed_problems(campaign, bases):
-    """Yield a sentence where the base moved and forces acted as well."""
+    """Yield a sentence where a campaign has both forces and accelerations of the base."""
     if bases.any() and not bases.all():
         force, base = int(np.argmin(bases)), int(np.argmax(bases))
         names = campaign["force_channel_name"].values
@@ -250,12 +252,12 @@ def _mixed_problems(campaign, bases):
 
 
 def _length_of(campaign, channel):
-    """Return the length of the stated direction of a force channel, NaN where it is not known."""
+    """Return the length of the direction vector of a force channel, NaN where it is unknown."""
     return float(np.linalg.norm(campaign["force_channel_direction"].values[channel].astype(float)))
 
 
 def _nowhere(campaign: xr.Dataset, what: str, channel: int) -> bool:
-    """Whether the place or the direction of a channel is not known."""
+    """Return whether the place or the direction of a channel is unknown."""
     point, direction = (
         campaign[f"{what}_{key}"].values[channel].astype(float) for key in ("point", "direction")
     )
@@ -263,7 +265,7 @@ def _nowhere(campaign: xr.Dataset, what: str, channel: int) -> bool:
 
 
 def _gap_problems(config, campaign):
-    """Yield a sentence about a gap that the tube can not have."""
+    """Yield a sentence for gaps that are larger than the width of the tube."""
     width = outer_width(config.structure.section)
     for name in ("gap", "support_gap"):
         values = campaign[name].values.astype(float) if name in campaign else np.zeros(0)
@@ -299,7 +301,7 @@ def _place_problems(config, campaign):
 
 
 def _off(line: Centreline, point: np.ndarray, place: str) -> str | None:
-    """Return a sentence where a point (3,) in m is not on the tube, else None."""
+    """Return a sentence where a point (3,) in m is not on the tube, None where it is."""
     try:
         line.locate(point, place)
     except ValueError as error:

@@ -1,8 +1,8 @@
-"""What is compared: band powers, coherences, skewness and peakedness of a record, with the
-measuring noise in both.
+"""The features that are compared: band powers, coherences, skewness and kurtosis of a record.
 
-Every feature is in units in which its scatter is about even over the level: decibels for powers,
-Fisher's z for coherences and correlations, the cube root of skewness, the logarithm of kurtosis.
+Both measured and simulated records contain the measuring noise. Features are scaled so that their
+scatter hardly depends on their level: decibels for powers, Fisher's z for coherences and
+correlations, the cube root of skewness, the logarithm of kurtosis.
 """
 
 from dataclasses import dataclass
@@ -11,11 +11,13 @@ from functools import cached_property
 import numpy as np
 from scipy import fft
 
+from .signals import Signals
+
 COARSE = 8  # bands of the coherences
 SEGMENT_S = 5.0
 LEAST_SEGMENTS = 7
 SAME_POINT_M = 1.0e-3
-# variance in SI of a channel that does not move: its shape is taken for that of noise
+# variance in SI below which a channel does not move: it is given the shape of noise
 STILL = 1.0e-100
 BLEND = {
     "power": 10.0,
@@ -24,38 +26,38 @@ BLEND = {
     "quad": 1.0,
     "skewness": 0.5,
     "kurtosis": 0.5,
-}  # larger differences are drawn in
+}  # larger differences are compressed, see `compressed`
 
 
 @dataclass(frozen=True)
 class FeatureLayout:
-    """Which features a record of a campaign has.
+    """The features of a record of a campaign.
 
-    edges (band + 1,), coarse (coarse + 1,) Hz; pairs [(channel, channel)]: two directions at one
-    point; kind, channel, band (feature,): what each feature is; band is -1 where it has none.
+    rate: Hz. edges (band + 1,), coarse (coarse + 1,): Hz. pairs [(channel, channel)]: two
+    directions at one point. kind, channel, band (feature,): of each feature; band -1 for none.
     """
 
     rate: float
     edges: np.ndarray
     coarse: np.ndarray
-    pairs: list
+    pairs: list[tuple[int, int]]
     kind: np.ndarray
     channel: np.ndarray
     band: np.ndarray
 
     @cached_property
-    def blend(self):
-        """Return (feature,): where differences begin to be drawn in."""
+    def blend(self) -> np.ndarray:
+        """Return (feature,): the difference beyond which each feature is compressed."""
         return np.array([BLEND[kind] for kind in self.kind])
 
-    def power(self, features):
-        """Return (..., channel, band) dB from features (..., feature)."""
+    def power(self, features: np.ndarray) -> np.ndarray:
+        """Return the band powers (..., channel, band) in dB of features (..., feature)."""
         chosen = np.flatnonzero(self.kind == "power")
         return features[..., chosen].reshape(*features.shape[:-1], -1, len(self.edges) - 1)
 
 
-def feature_layout(signals, points):
-    """Return the FeatureLayout of Signals; points (channel, 3) m."""
+def feature_layout(signals: Signals, points: np.ndarray) -> FeatureLayout:
+    """Return the FeatureLayout of Signals; points (channel, 3): places of the channels in m."""
     channels = len(signals.names)
     pairs = [
         (a, b)
@@ -81,9 +83,9 @@ def feature_layout(signals, points):
     )
 
 
-def record_features(layout, force, response):
-    """Return (feature,) of one record: force (sample,), response (channel, sample), both of valid
-    samples.
+def record_features(layout: FeatureLayout, force: np.ndarray, response: np.ndarray) -> np.ndarray:
+    """Return (feature,) of one record: force (sample,), response (channel, sample), valid samples
+    only.
     """
     samples = response.shape[-1]
     length = fft.next_fast_len(
@@ -105,8 +107,8 @@ def record_features(layout, force, response):
     fine = _sums(frequency[lines], layout.edges)
     coarse = _sums(frequency[lines], layout.coarse)
     values = [10.0 * np.log10(np.maximum(power[:-1] @ fine, 1.0e-300)).ravel()]
-    # coherence from spectra summed over lines would mix phases: it is averaged line by line, by
-    # power
+    # Spectra summed over lines would mix phases: coherence is averaged over lines, weighted by
+    # power.
     coherent = np.abs(cross) ** 2 / np.maximum(power[-1], 1.0e-300)
     share = (coherent @ coarse) / np.maximum(power[:-1] @ coarse, 1.0e-300)
     values.append(np.arctanh(np.sqrt(np.clip(share, 0.0, 0.9999))).ravel())
@@ -134,23 +136,22 @@ def record_features(layout, force, response):
 
 
 def _mean_product(one, other):
-    """Return (channel, line): the mean over segments of one times the conjugate of the other,
-    (channel, segment, line) each.
+    """Return (channel, line): the mean over segments of one times the conjugate of the other.
+
+    one, other: (channel, segment, line).
     """
     return np.einsum("csl,csl->cl", one, np.broadcast_to(other, one.shape).conj()) / one.shape[1]
 
 
-def compressed(difference, layout):
-    """Differences (..., feature) of features with those beyond BLEND drawn in: an exact match of
-    what is far off is not asked for.
+def compressed(difference: np.ndarray, layout: FeatureLayout) -> np.ndarray:
+    """Return differences (..., feature) of features, linear well below BLEND and logarithmic
+    above, so that large differences do not dominate.
     """
     return layout.blend * np.arcsinh(difference / layout.blend)
 
 
 def _sums(frequency, edges):
-    """Return (line, band) 0 or 1: the lines of each band; a band that no line falls into takes the
-    nearest.
-    """
+    """Return (line, band) 0 or 1: the lines of each band, the nearest one where a band has none."""
     inside = (frequency[:, None] >= edges[:-1]) & (frequency[:, None] < edges[1:])
     middle = np.sqrt(edges[:-1] * edges[1:])
     for band in np.flatnonzero(~inside.any(axis=0)):

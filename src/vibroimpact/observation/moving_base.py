@@ -1,43 +1,52 @@
-"""A model on a moving base: the study's excitation base_motion, with the directions of a campaign.
+"""A model on a moving base: the excitation base_motion along the directions of a campaign.
 
 Motions are relative to the base, supports and obstacles move with it, and the drive shapes are
 those of excitation.force_vectors.
 """
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.config.excitation import BandSignal, BaseMotion, highest_frequency
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.reduction.modal_model import ModalModel
 
-LOWEST_HZ = 1.0  # of a signal where the model states none: it plays no part in a comparison
+LOWEST_HZ = 1.0  # of a signal where the model states no band; a comparison does not depend on it
 DEFAULT_HIGHEST_HZ = 200.0
 
 
-def driven_by_base(config, campaign):
-    """Return the configuration whose excitation is the motion of the base along the campaign's
-    first base acceleration; itself where the campaign measured forces.
+def driven_by_base(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
+    """Return the configuration excited by the motion of the base along the campaign's first base
+    acceleration; unchanged where the campaign measured forces.
 
-    config: a checked Config. The signal of its base_motion stays, a force in a band gives its band.
+    config: a checked Config. A base_motion keeps its signal, a band-limited force its band.
     """
     if not base_channels(campaign).any():
         return config
     direction = base_directions(campaign)[0]
-    # what a study identifies from its force it does not from a motion of the base
+    # identification works from the force of a study, not from a motion of the base
     return config.model_copy(
         update={"excitation": _along(config.excitation, direction), "identification": None}
     )
 
 
-def base_directions(campaign):
+def base_directions(campaign: xr.Dataset) -> np.ndarray:
     """Return (base channel, 3): the stated directions of the accelerations of the base."""
     directions = campaign["force_channel_direction"].values.astype(float)
     return directions[base_channels(campaign)]
 
 
-def further_drive_shapes(config, directions, build):
+def further_drive_shapes(
+    config: ConfigPart,
+    directions: Sequence[Sequence[float]] | np.ndarray,
+    build: Callable[[ConfigPart], ModalModel],
+) -> list[np.ndarray]:
     """Return [(mode, 1)] drive shapes per m/s² of the base along directions (base channel, 3).
 
-    config: of the model; build(config) gives its ModalModel.
+    config: of the model. build: returns the ModalModel of a configuration.
     """
     return [
         build(
@@ -48,7 +57,7 @@ def further_drive_shapes(config, directions, build):
 
 
 def _along(excitation, direction):
-    """Return the section BaseMotion along a direction (3,) in place of an excitation."""
+    """Return the section BaseMotion along a direction (3,), in place of an excitation."""
     direction = tuple(map(float, np.asarray(direction, float)))
     if excitation.kind == "base_motion":
         return excitation.model_copy(update={"direction": direction, "obstacles": "moving"})

@@ -1,41 +1,47 @@
-"""What each channel of a campaign measures, in terms of what a simulation gives: the displacement
-of a point differentiated in time, the strain of an outer fibre, or the force of a support on the
-structure.
+"""What each channel of a campaign measures, as a quantity of the simulation: a displacement
+differentiated in time, the strain of an outer fibre, or the force of a support on the structure.
 """
+
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.units import TIME_DERIVATIVES
 
 from .strain import STRAIN, as_displacements
 
 CONTACT_FORCE = "contact_force"
 SENSED = ("acceleration", "velocity", "displacement", STRAIN, CONTACT_FORCE)
-AT_SUPPORT_M = 5.0e-3  # from the line through a support's contact points
+AT_SUPPORT_M = 5.0e-3  # largest distance from the line through a support's contact points
 
 
-def moving(kinds):
+def moving(kinds: Collection[str]) -> np.ndarray:
     """Return (channel,) bool: whether channels of kinds (channel,) measure a motion."""
     return np.array([kind in TIME_DERIVATIVES for kind in kinds], bool)
 
 
-def of_modes(kinds):
-    """Return (channel,) bool: whether channels of kinds (channel,) show the modes by themselves, a
-    motion or a strain; a contact force does not, which there is none of until a support is touched.
+def of_modes(kinds: Collection[str]) -> np.ndarray:
+    """Return (channel,) bool: whether channels of kinds (channel,) respond linearly to the modes.
+
+    A motion and a strain do. A contact force does not: it is zero without contact.
     """
     return moving(kinds) | np.array([kind == STRAIN for kind in kinds], bool)
 
 
-def orders(kinds):
-    """Return (channel,) int: how often each channel's displacement is differentiated; 0 for a
-    strain, which is in phase with displacements, and for a contact force.
+def orders(kinds: Collection[str]) -> np.ndarray:
+    """Return (channel,) int: the order of the time derivative of displacement that each measures.
+
+    It is 0 for a strain, which is in phase with displacements, and for a contact force.
     """
     return np.array([TIME_DERIVATIVES.get(kind, 0) for kind in kinds], int)
 
 
-def differentiated(omega, kind):
-    """Return (line,) the factor from displacement, or strain, to what a channel of a kind measures
-    at omega (line,) in rad/s; 0 for a contact force, which a linear structure has none of.
+def differentiated(omega: np.ndarray, kind: str) -> np.ndarray:
+    """Return (line,) the factor from displacement, or strain, to what a channel measures.
+
+    omega (line,): rad/s. kind: of the channel; the factor of a contact force is 0, because a linear
+    structure has none.
     """
     if kind == STRAIN:
         return np.ones_like(omega)
@@ -45,15 +51,17 @@ def differentiated(omega, kind):
     return -(omega**2) if order == 2 else (1j * omega) ** order
 
 
-def kind_groups(kinds):
-    """Return {kind: (channel,) bool} of the kinds that channels of kinds (channel,) have."""
+def kind_groups(kinds: Sequence[str] | np.ndarray) -> dict[str, np.ndarray]:
+    """Return {kind: (channel,) bool} for every kind in kinds (channel,), in their order."""
     kinds = np.asarray(kinds)
     return {str(kind): kinds == kind for kind in dict.fromkeys(kinds.tolist())}
 
 
-def support_at(model, position):
-    """Return the index of the support whose contact points lie about a position (3,) m, None where
-    there is none within AT_SUPPORT_M of the line through them.
+def support_at(model: ModalModel, position: Sequence[float] | np.ndarray) -> int | None:
+    """Return the index of the support at a position (3,) in m.
+
+    None where the position is more than AT_SUPPORT_M off the line through the contact points of any
+    support.
     """
     away = [
         _distance(
@@ -64,22 +72,22 @@ def support_at(model, position):
     return int(np.argmin(away)) if away and min(away) < AT_SUPPORT_M else None
 
 
-def across(model, support):
-    """Return (2, 3): the directions of the two resultants of a support, those at its middle."""
+def across(model: ModalModel, support: int) -> np.ndarray:
+    """Return (2, 3): the directions of the two resultants of a support, at its middle point."""
     points = np.flatnonzero(model.support_of_point == support)
     return model.contact_directions[points[len(points) // 2]]
 
 
-def force_weights(model, kinds):
-    """Return (force channel, 2 support): what each channel of kind CONTACT_FORCE measures of the
-    two resultants of every support on the structure, positive along its direction.
+def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
+    """Return (contact force channel, 2 support): the weights of the two resultants of every support
+    in what each channel of kind CONTACT_FORCE measures, positive along its direction.
 
-    model: attached to the campaign, whose sensors are the channels. Raises ValueError for a channel
-    that is at no support.
+    model: attached to the campaign, its sensors are the channels. Raises ValueError for a channel
+    of an unknown kind and for a contact force at no support.
     """
     pressed = np.flatnonzero(~of_modes(kinds))
     weights = np.zeros((len(pressed), 2 * len(model.support_names)))
-    for row, channel in zip(weights, pressed, strict=True):
+    for row, channel in zip(weights, pressed.tolist(), strict=True):
         support = support_at(model, model.sensor_positions[channel])
         if kinds[channel] != CONTACT_FORCE or support is None:
             raise ValueError(
@@ -93,10 +101,11 @@ def force_weights(model, kinds):
     return weights
 
 
-def motion_there(model, kinds):
-    """Return (mode, channel): the displacement that each channel measures, for a strain one that is
-    as large (see strain.as_displacements), and for a contact force that of its support's points
-    along it, which is what the force answers to.
+def motion_there(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
+    """Return (mode, channel): the shape of each channel as a displacement.
+
+    A strain is scaled as in strain.as_displacements. A contact force has the mean displacement of
+    the contact points of its support, along its direction.
     """
     shapes = as_displacements(model).copy()
     pressed = np.flatnonzero(~of_modes(kinds))

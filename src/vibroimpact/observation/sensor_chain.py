@@ -1,26 +1,30 @@
-"""What a faulty measuring chain does to simulated records: gains and delays of channels, and a
-force that is not the one measured.
+"""Faults of the measuring chain applied to simulated records: gains and delays of channels, and a
+gain of the force.
 """
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
 
-# Places of a measuring fault beside the channels: no channel may have such a name.
+# Locations of a fault other than single channels: no channel may have such a name.
 NO_CHANNELS = ("force", "responses", "force_and_responses")
 
 
 @dataclass(frozen=True)
 class Measuring:
-    """gain (channel,); delay (channel,) s; force_gain: measured force over the true one."""
+    """Gains and delays of a measuring chain.
+
+    gain (channel,): measured over true. delay (channel,): s. force_gain: measured over true force.
+    """
 
     gain: np.ndarray
     delay: np.ndarray
     force_gain: float = 1.0
 
-    def delayed(self, responses, rate):
-        """Return (..., channel, sample) responses as they are read late."""
+    def delayed(self, responses: np.ndarray, rate: float) -> np.ndarray:
+        """Return responses (..., channel, sample) with the delays applied; rate: Hz."""
         if not np.any(self.delay):
             return responses
         length = fft.next_fast_len(responses.shape[-1] + 64, real=True)
@@ -31,15 +35,20 @@ class Measuring:
         )
 
 
-def places(names):
-    """Return the places of a measuring fault: every channel, the force, all responses together,
-    force and responses together.
+def places(names: Iterable[str]) -> list[str]:
+    """Return the locations of a fault: every channel, the force, all responses, force and responses
+    together.
     """
     return [*names, *NO_CHANNELS]
 
 
-def measuring_of(effect_id, parameters, location, names):
-    """Return the Measuring of sensor_gain or sensor_delay at a location."""
+def measuring_of(
+    effect_id: str, parameters: Mapping[str, float], location: str, names: Sequence[str]
+) -> Measuring:
+    """Return the Measuring of the effect sensor_gain or sensor_delay at a location.
+
+    parameters: {"factor": ...} or {"delay": s}. location: one of places(names). names (channel,).
+    """
     gain, delay, force = np.ones(len(names)), np.zeros(len(names)), 1.0
     chosen = np.array([location in (name, "responses", "force_and_responses") for name in names])
     if effect_id == "sensor_gain":

@@ -1,11 +1,10 @@
-"""A campaign as arrays: forces and responses in SI, the excited band, the noise of every
-channel.
-"""
+"""A campaign as arrays: forces and responses in SI, the excited band, the noise of channels."""
 
 import itertools
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.base_motion import base_motion, relative_to_base
 from vibroimpact.campaign.force_kinds import shown_load_unit
@@ -13,33 +12,33 @@ from vibroimpact.campaign.signals import campaign_signals, excited_band
 
 BANDS = 24
 QUIET = 0.75  # of half the sampling frequency: where the anti-alias filter begins
-QUIET_ABOVE = 1.6  # times the band's upper end
-LEAST_QUIET = 50  # lines above the band: with fewer, the record was not sampled to tell its noise
-BELOW, LEAST_LINES, MOST_LINES = (
-    5.0,
-    40,
-    500,
-)  # the spectrum is looked at from this much below the band; lines of a part of it
-# sigma of the median of n lines is this over sqrt(n) of it: 1 / ln 2 for exponentials, sqrt(1.5)
-# for neighbours under a Hann window
+QUIET_ABOVE = 1.6  # times the upper end of the band: where the range without excitation begins
+LEAST_QUIET = 50  # lines in that range: with fewer, the noise is read in the band
+# The spectrum is divided into parts from the band's lower end over BELOW on; lines of a part.
+BELOW, LEAST_LINES, MOST_LINES = 5.0, 40, 500
+# Relative sigma of the median of n lines, times sqrt(n): 1 / ln 2 for exponentials, times sqrt(1.5)
+# for neighbours under a Hann window.
 MEDIAN_SCATTER = 1.77
 SEGMENT_S = 4.0
 RESOLUTION = 1.0e-6  # of a channel's largest response: no recorder resolves less of its range
-ALIKE = (
-    4.0  # sigma: the least of some dozens of parts lies two below their mean, and none far above it
-)
+SAME_LOAD = 9  # decimals of a load in N: loads equal to so many are one level
+# sigma: the least of some dozens of parts lies two below their mean, and none far above it
+ALIKE = 4.0
 
 
 @dataclass(frozen=True)
 class Signals:
-    """force (record, force_channel, sample) N, or m/s² of a base, response (record, channel,
-    sample) SI, relative to the base, NaN beyond a record's valid samples.
+    """The signals of a campaign in SI units, NaN beyond the valid samples of a record.
 
-    rate Hz; band_Hz: excited; kinds, names (channel,); gap (record,) m; load (record,) RMS in
-    load_unit; split, record_names (record,); noise (channel,): RMS of white measuring noise over
-    the whole range to half the sampling frequency; from_rest; sources: attributes of the file;
-    base (record, channel, sample): the base's own motion that was taken out of each channel, None
-    where the structure was driven by forces.
+    force (record, force_channel, sample): N, or m/s² of the base.
+    response (record, channel, sample): relative to the base.
+    rate: sampling frequency, Hz. band_Hz: the excited band. kinds, names (channel,).
+    gap (record,): m. load (record,): RMS of the first force, in load_unit.
+    split, record_names (record,).
+    noise (channel,): RMS of white measuring noise over the range to half the sampling frequency.
+    from_rest: whether records begin at rest.
+    base (record, channel, sample): the base's own motion, subtracted from each channel; None where
+    forces drove the structure.
     """
 
     force: np.ndarray
@@ -58,34 +57,42 @@ class Signals:
     base: np.ndarray | None = None
 
     @property
-    def lowest(self):
+    def lowest(self) -> int:
         """Return the record of the lowest load; of several the one with the widest gap."""
-        order = np.lexsort((-np.nan_to_num(self.gap, nan=np.inf), np.round(self.load, 9)))
-        return int(order[0])
+        return lowest_of(self.load, self.gap)
 
     @property
-    def edges(self):
-        """Return (BANDS + 1,) Hz: logarithmic bands over the excited band."""
+    def edges(self) -> np.ndarray:
+        """Return (BANDS + 1,) in Hz: the edges of logarithmic bands over the excited band."""
         return np.geomspace(*self.band_Hz, BANDS + 1)
 
     @property
-    def noise_in_band(self):
+    def noise_in_band(self) -> np.ndarray:
         """Return (channel,): RMS of the noise within the excited band."""
         return self.noise * np.sqrt((self.band_Hz[1] - self.band_Hz[0]) / (0.5 * self.rate))
 
-    def fit(self):
-        """Return the records of the split "fit"; all where none is named so."""
+    def fit(self) -> np.ndarray:
+        """Return the records not of the split "holdout"; all records where all of them are."""
         chosen = np.flatnonzero(self.split != "holdout")
         return chosen if len(chosen) else np.arange(len(self.load))
 
-    def holdout(self):
+    def holdout(self) -> np.ndarray:
         """Return the records of the split "holdout"."""
         return np.flatnonzero(self.split == "holdout")
 
 
-def signals_of(campaign, longest_s=None):
-    """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given;
-    band, noise and loads are those of whole records.
+def lowest_of(load: np.ndarray, gap: np.ndarray) -> int:
+    """Return the index of the lowest of load (record,); of equal ones that of the widest gap.
+
+    Loads are rounded to SAME_LOAD digits, since repeats of one force differ by rounding.
+    """
+    return int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), np.round(load, SAME_LOAD)))[0])
+
+
+def signals_of(campaign: xr.Dataset, longest_s: float | None = None) -> Signals:
+    """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given.
+
+    Band, noise and loads are those of whole records.
     """
     absolute = campaign_signals(campaign).require_units()
     measured = relative_to_base(absolute)
@@ -97,10 +104,10 @@ def signals_of(campaign, longest_s=None):
     band = excited_band(force, rate)
     load = np.sqrt(np.nanmean(force[:, 0] ** 2, axis=-1))
     gap = measured.gap
-    lowest = int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), load))[0])
+    lowest = lowest_of(load, gap)
     read = noise_of(campaign, (force[lowest], response[lowest]), rate, band, measured.factors)
     noise = np.maximum(read, RESOLUTION * np.sqrt(np.nanmean(response**2, axis=-1)).max(axis=0))
-    # what is simulated is as noisy: a measurement with less is made so too
+    # simulations get at least RESOLUTION of noise: a measurement with less is raised to that
     quiet, rng = np.flatnonzero(noise > read), np.random.default_rng(7)
     lacking = np.sqrt(noise[quiet] ** 2 - read[quiet] ** 2)[:, None]
     response[:, quiet] += lacking * rng.standard_normal(response[:, quiet].shape)
@@ -123,8 +130,9 @@ def signals_of(campaign, longest_s=None):
 
 
 def _base_of(absolute, valid, kept):
-    """Return the `base` of Signals of CampaignSignals as measured, NaN where valid (record, sample)
-    is not; kept: samples.
+    """Return the `base` of Signals, cut to `kept` samples.
+
+    absolute: CampaignSignals as measured. valid (record, sample) bool: NaN where it is False.
     """
     motions = base_motion(absolute)
     if motions is None:
@@ -135,16 +143,23 @@ def _base_of(absolute, valid, kept):
     return np.where(valid[:, None], out, np.nan)[..., :kept]
 
 
-def noise_of(campaign, lowest, rate, band, factors=1.0):
-    """Return (channel,) RMS of the noise in SI: as the campaign says, or the least density of the
-    lowest record's spectrum above the band; of what the forces do not explain within it, where
-    there is nothing above.
+def noise_of(
+    campaign: xr.Dataset,
+    lowest: tuple[np.ndarray, np.ndarray],
+    rate: float,
+    band: tuple[float, float],
+    factors: np.ndarray | float = 1.0,
+) -> np.ndarray:
+    """Return (channel,) RMS of the noise in SI, as stated by the campaign.
 
-    lowest: (force (force_channel, sample), response (channel, sample)) of that record; factors
-    (channel,): SI units per unit in which the campaign says it.
+    Without a statement, it is the least spectral density of the record of the lowest load. Where
+    that has too few lines above the band, it is what the forces do not explain in the band.
 
-    Where the lowest record touches, impacts fill the range above the band: noise is what parts of
-    the spectrum that are as low as the lowest have, within their scatter.
+    lowest: (force (force_channel, sample), response (channel, sample)) of that record. rate: Hz.
+    band: Hz. factors (channel,): SI units per stored unit.
+
+    With contact, impacts fill the range above the band. So the density is the mean over the parts
+    of the spectrum that are as low as the lowest one, within their scatter.
     """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float) * factors
@@ -159,21 +174,26 @@ def noise_of(campaign, lowest, rate, band, factors=1.0):
     power = np.abs(np.fft.rfft(window * valid, axis=-1)) ** 2
     edges = _edges(*np.searchsorted(frequency, [band[0] / BELOW, QUIET * 0.5 * rate]))
     lines = np.diff(edges)
-    # from the median: lines of noise are exponentials, and a few of something else do not count
+    # The lines of noise follow an exponential law. Its median ignores a few lines of other origin.
     density = np.array(
         [np.median(power[:, low:high], axis=-1) for low, high in itertools.pairwise(edges)]
     ) / np.log(2.0)
-    # as a factor: of some dozens of narrow parts one has half of the density, and would leave out
-    # all others
+    # The scatter is a factor: the least of some dozens of narrow parts has half of the density, and
+    # would otherwise exclude all others.
     least = np.min(density * np.exp(ALIKE * MEDIAN_SCATTER / np.sqrt(lines))[:, None], axis=0)
     share = lines[:, None] * (density <= least)
     return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
 
 
-def unexplained(force, response, rate, band):
-    """Return (channel,) RMS, over the range to half the rate, of white noise as dense as what the
-    forces (force_channel, sample) explain least of the responses (channel, sample): in the band of
-    BANDS in which that is least, for between its peaks a response is explained best.
+def unexplained(
+    force: np.ndarray, response: np.ndarray, rate: float, band: tuple[float, float]
+) -> np.ndarray:
+    """Return (channel,) RMS, over the range to half the rate, of the noise that is not coherent
+    with the forces.
+
+    force (force_channel, sample), response (channel, sample). rate: Hz. band: Hz. The density is
+    that of the part with the least, of BANDS parts of the band: between the peaks of a response the
+    forces explain it best.
     """
     length = min(response.shape[-1], round(SEGMENT_S * rate))
     starts = range(0, response.shape[-1] - length + 1, length // 2)
@@ -200,8 +220,9 @@ def unexplained(force, response, rate, band):
 
 
 def _edges(first, last):
-    """Return the lines between parts of a spectrum's lines from first to last: narrow where lines
-    are few, never wider than MOST_LINES.
+    """Return the line numbers that divide the lines from first to last into parts.
+
+    A part has half as many lines as lie below it, LEAST_LINES to MOST_LINES.
     """
     edges = [first]
     while edges[-1] < last:

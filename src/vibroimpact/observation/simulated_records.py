@@ -1,12 +1,15 @@
-"""Simulating a campaign's records: the measured force on the model, the response as its sensors
-would have kept it.
+"""Simulated records of a campaign: the response of the model to the measured force, as the sensors
+record it.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
+import xarray as xr
 
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.random_force import resample_measured
 from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
@@ -14,29 +17,33 @@ from vibroimpact.integration.kernels.decimation import RATIO, SLOTS
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
+from vibroimpact.reduction.modal_model import ModalModel
 
 from .sensed_motion import force_weights, of_modes, orders
 
-# Of the gap: how far off its place an obstacle is, drawn for every run. No plate is centred better.
-# From 1e-6 a tube that is driven in one plane takes most of a record to leave it: 12 dB too little
-# across that plane at first contact, where 1e-4 to 1e-2 agree with each other and a settled tube.
+# Largest random offset of an obstacle, as a share of the gap, drawn for every run. No plate is
+# centred better. With 1e-6, a tube driven in one plane takes most of a record to leave it: 12 dB
+# too little across that plane at first contact. Results with 1e-4 to 1e-2 agree with each other and
+# with a tube in its steady state.
 IMPERFECTION = 1.0e-3
-LOST = (
-    0.25  # of a batch at most: a structure that is thrown off more often is none that was measured
-)
+LOST = 0.25  # largest share of diverged runs in a batch: a measured structure did not diverge
 NO_GAP_M = 1.0  # where a record has no clearance
 
 
-def schedule_of(campaign, integration, duration_s):
-    """Return the Schedule of runs from rest at the campaign's sampling frequency."""
+def schedule_of(campaign: xr.Dataset, integration: ConfigPart, duration_s: float) -> Schedule:
+    """Return the Schedule of runs from rest at the campaign's sampling frequency.
+
+    integration: section of a configuration.
+    """
     sampling = float(campaign.attrs["sampling_frequency"])
     steps = steps_per_second(sampling, integration)
     return Schedule(steps, sampling, 0.0, duration_s, integration.scheme)
 
 
-def steps_per_second(sampling, integration):
-    """Return the steps of a run that is kept at a sampling frequency: at least those of the model's
-    configuration, and as many as the output filter needs.
+def steps_per_second(sampling: float, integration: ConfigPart) -> float:
+    """Return the integration steps per second of a run recorded at a sampling frequency in Hz.
+
+    They are at least those of the section `integration` and those that the output filter needs.
     """
     needed = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
     return RATIO * max(LEAST_STAGES, needed) * sampling
@@ -45,13 +52,13 @@ def steps_per_second(sampling, integration):
 class Forces:
     """The measured forces of a campaign at the integration step, cut to the schedule's length.
 
-    force: (record, force_channel, time) N as measured; values(record) -> (step, force_channel) N,
-    one more than the steps (the first is one step before time 0).
+    force (record, force_channel, time): N as measured. values(record) -> (step, force_channel) in
+    N, one more than the steps: the first is one step before time 0.
     """
 
-    def __init__(self, force, schedule):
+    def __init__(self, force: np.ndarray, schedule: Schedule):
         self.force, self.schedule = np.asarray(force, float), schedule
-        self.values = lru_cache(maxsize=None)(self._values)
+        self.values: Callable[[int], np.ndarray] = lru_cache(maxsize=None)(self._values)
 
     def _values(self, record):
         rate, sampling = self.schedule.steps_per_second, self.schedule.sampling_frequency
@@ -64,15 +71,22 @@ class Forces:
         return out
 
 
-def simulate_records(model, schedule, forces, runs, kinds):
-    """Return (run, channel, sample) float32: the response of every run (record, gap in m, seed),
-    LANES of them at a time.
+def simulate_records(
+    model: ModalModel,
+    schedule: Schedule,
+    forces: Forces,
+    runs: Sequence[tuple[int, float, int]],
+    kinds: Sequence[str] | np.ndarray,
+) -> np.ndarray:
+    """Return (run, channel, sample) float32: the responses of runs, LANES of them at a time.
 
-    kinds: (channel,) of the campaign, see sensed.SENSED; each channel is simulated as its own.
-    Raises ValueError for another kind, and for a contact force that is at no support. A run that
-    diverges is NaN where few of its batch do, IntegrationError where more. Before a record begins,
-    the structure rests under its dead loads, against its supports where it must. A run's seed draws
-    the small offset of the obstacles that makes two runs of an impacting tube differ.
+    model: attached to the campaign. runs: (record, gap in m, seed) of each; a gap that is not
+    finite stands for none. kinds (channel,): see sensed_motion.SENSED.
+
+    Before a record begins, the structure is at rest under its dead loads, in contact where they
+    press it against a support. The seed of a run draws small offsets of the obstacles, so that two
+    runs of an impacting tube differ. A diverged run is NaN. Raises ValueError for another kind and
+    for a contact force at no support, IntegrationError where more than LOST of a batch diverge.
     """
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
     moves, weights = of_modes(kinds), force_weights(model, kinds)
@@ -95,7 +109,7 @@ def simulate_records(model, schedule, forces, runs, kinds):
         initial = rest_state(model, schedule, gaps, offsets, seat)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
 
-        lost = set()
+        lost: set[int] = set()
 
         def drive(at, count, batch=batch, lead=lead, lost=lost):
             silent = min(max(lead - at, 0), count)
@@ -119,7 +133,7 @@ def simulate_records(model, schedule, forces, runs, kinds):
             try:
                 integrate_batch(model, led, gaps, offsets, drive, receive, initial)
                 break
-            except IntegrationError as error:  # again, with no force on what was thrown off
+            except IntegrationError as error:  # repeat, without force on the diverged runs
                 if error.case is None or error.case in lost or len(lost) + 1 > LOST * len(batch):
                     raise error.of([f"run {run} of record {at}" for at, _, run in batch]) from error
                 lost.add(error.case)
@@ -128,8 +142,9 @@ def simulate_records(model, schedule, forces, runs, kinds):
 
 
 def _led(schedule):
-    """Return (Schedule, steps): with as long a start-up as the output filter looks back, so that it
-    sees a structure that does not rest at zero at rest.
+    """Return (Schedule, steps) with a start-up as long as the memory of the output filter.
+
+    The filter then starts on a structure at rest, also where the rest position is not zero.
     """
     ticks = schedule.filter.delay + SLOTS
     return replace(schedule, start_up=ticks * RATIO / schedule.steps_per_second), ticks * RATIO
