@@ -12,7 +12,6 @@ NOT_YET_TYPED = (
     "acceptance",
     "completion",
     "figures",
-    "linear_stage",
     "validation",
 )
 PACKAGES = sorted(

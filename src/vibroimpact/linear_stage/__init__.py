@@ -1,1 +1,3 @@
-"""What the lowest record tells: modes, sensors, linear effects, and whether the model fits it."""
+"""The linear stage: modes, sensor delays and linear effects identified from the lowest record, and
+whether the linear model fits it.
+"""

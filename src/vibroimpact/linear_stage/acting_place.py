@@ -1,10 +1,13 @@
-"""Where along a tube a force acts that the lowest record holds beside the measured one.
+"""The place along a tube of a force that acts in the lowest record besides the measured one: part
+of the check for other sources.
 
-What is no linear response to the measured force is the linear response to another one: of a spring,
-a rub, a stop, or a source that was not measured. How it goes in time is not known, so every line
-has an amplitude of its own; between channels a line has the ratios of the transfer functions from
-where the force acts.
+What is not a linear response to the measured force is the linear response to another force: of a
+spring, a rub, a stop, or a source that was not measured. Its time history is unknown, so every line
+has its own amplitude. The ratios between channels are those of the transfer functions from the
+place where the force acts.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -18,33 +21,37 @@ from vibroimpact.observation.sensed_motion import differentiated
 from vibroimpact.observation.strain import STRAIN
 
 from .other_source import BLOCK, FREE, incoherent_rest
+from .workbench import Workbench
 
 PLACES = 64  # along the tube
 ANGLES = np.deg2rad(np.arange(0.0, 180.0, 15.0))  # of the force across the tube
-LEAST_CHANNELS = 3  # two have one ratio, which some place always has
-CLEAR = 4.0  # times what chance leaves: less tells of no place
-EXPLAINED = 0.7  # of it: where less is, more than one force acts
-TOLD = 0.34  # of the tube: what may be anywhere in more is not told
+LEAST_CHANNELS = 3  # two have one ratio, which some place always gives
+CLEAR = 4.0  # times the power by chance: less identifies no place
+EXPLAINED = 0.7  # of the power: where one force explains less, several act
+TOLD = 0.34  # of the tube: a longer interval of places is not reported
 
 
 @dataclass(frozen=True)
 class ActingPlace:
-    """Arc lengths in m between which the force may act and where it acts most likely; direction
-    (3,) there; share of what is no linear response to the measured force that it explains; support:
-    the name of one that is there, None where there is none.
+    """A force besides the measured one.
+
+    low_m, high_m: arc lengths between which it acts. arc_length_m: the most likely one.
+    direction (3,): there.
+    share: of the power that is not a linear response to the measured force which it explains.
+    support: the name of one at that place, None for none.
     """
 
     low_m: float
     arc_length_m: float
     high_m: float
-    direction: tuple[float, float, float]
+    direction: tuple[float, ...]
     share: float
     support: str | None
 
 
-def acting_place(bench):
+def acting_place(bench: Workbench) -> ActingPlace | None:
     """Return the ActingPlace of the lowest record of a Workbench; None where its structure is no
-    tube, noise explains the record, or the channels do not tell one place from most others.
+    tube, noise explains the record, or the channels do not determine the place.
     """
     length, read = length_m(bench.values), bench.signals.kinds != STRAIN
     if length is None or read.sum() < LEAST_CHANNELS:
@@ -62,7 +69,7 @@ def acting_place(bench):
     by_place = explained.max(axis=1)
     best = int(np.argmax(by_place))
     left = power - by_place[best]
-    # neither gains of channels nor the model's shapes are known better
+    # the uncertainty by gains of channels and by the shapes of the model
     known = max(1.0, left / values) * priors.LINEAR_GAIN + priors.GAIN_SD**2 * power
     likely = np.flatnonzero(by_place > by_place[best] - known)
     step = length / PLACES
@@ -94,7 +101,7 @@ def _support(model, places, within):
 def _explained(bench, rest, noise, places, axes):
     """Return (place, angle): the power of rest (channel, block, BLOCK), over noise (channel,
     block), that one force at each of places (place, 3) at each angle between axes (place, 2, 3)
-    explains; strains are not read, whose shapes are not among displacements.
+    explains; strains are left out, as their shapes are not among the displacements.
     """
     read = bench.signals.kinds != STRAIN
     model, shapes = displacement_shapes(
@@ -106,8 +113,9 @@ def _explained(bench, rest, noise, places, axes):
     lines = np.arange(rest[0].size)
     omega = 2.0 * np.pi * bench.linear_record.frequency[lines]
     receptance = 1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega)
-    along = np.zeros((2, len(places), len(lines)), complex)  # transfer functions with the rest
-    own = np.zeros((2, 2, len(places), len(lines)))  # and with each other
+    # products of transfer functions with the rest, and with each other
+    along = np.zeros((2, len(places), len(lines)), complex)
+    own = np.zeros((2, 2, len(places), len(lines)))
     for channel, kind in enumerate(bench.signals.kinds[read]):
         weight = differentiated(omega, kind) / np.repeat(noise[channel], BLOCK)
         transfer = (driven * sensed[channel]) @ receptance * weight

@@ -1,19 +1,23 @@
-"""Linear effects that the lowest record tells of, put into a Workbench."""
+"""Last step of the linear stage: linear effects identified from the lowest record, put into the
+model or the measuring chain of a Workbench.
+"""
 
 import numpy as np
 
 from .candidates import candidate_named
 from .modal_fit import ModalFit
-from .workbench import corrected_nuisance
+from .prepared import Prepared
+from .workbench import Workbench, corrected_nuisance
 
 
-def adopt(bench, prepared, linear_stage=None):
-    """Put the adopted linear effects into a Workbench: the model or the measuring chain has it from
-    here on, nuisances are those beside it.
+def adopt(bench: Workbench, prepared: Prepared, linear_stage: bool | None = None) -> None:
+    """Put the adopted linear effects of a Prepared into a Workbench: its model or its measuring
+    chain contains them from here on, and its nuisances are computed with them.
 
-    linear_stage: whether the lowest record tells of the linear structure with them; looked for
-    where it is None.
+    linear_stage: whether the lowest record identifies the linear structure with them; computed
+    where None.
     """
+    assert prepared.adopted is not None, "there is an effect to adopt"
     candidate = candidate_named(prepared.adopted["name"])
     physical = candidate.physical(prepared.adopted["unit"], prepared.scales)
     values = candidate.variant(bench.values, physical)

@@ -1,18 +1,22 @@
-"""Candidates: an effect at a place, its parameters between 0 and 1, and what it does to the
-features of a campaign.
+"""Candidates for the missing effect: an effect of the catalogue at a location, or two at once, with
+normalised parameters; which of them the linear stage fits, and which only simulation can judge.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
 from vibroimpact.discrepancy import priors
 from vibroimpact.effects import places as on_structure
-from vibroimpact.effects.effect import Parameter
+from vibroimpact.effects.effect import Effect, Parameter, Values
 from vibroimpact.effects.places import ALONG
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.observation.sensor_chain import measuring_of, places
+from vibroimpact.observation.sensor_chain import Measuring, measuring_of, places
 
 ALONE = "@alone"
 AT_A_POINT = frozenset(
@@ -25,7 +29,8 @@ AT_A_POINT = frozenset(
         "clearance",
     }
 )
-# On a tube the place of such an effect is a parameter of it, from the scale SEARCHED_FROM on.
+# On a tube the place of such an effect is one of its parameters, counted from the scale
+# SEARCHED_FROM.
 PLACE = Parameter(
     "place",
     "m",
@@ -37,14 +42,19 @@ PLACE = Parameter(
     meaning="distance along the tube from its start",
 )
 SEARCHED_FROM = "searched_from"
-PLACES = 8  # of an effect that sits at a point are screened; at the others what is found is tried
+# points at which an effect that acts at a point is screened; the one found is tried at the others
+PLACES = 8
+
+# Parameters in SI: {name: value} of a Candidate, a list of two such of a Pair. What takes either
+# class passes them on unread.
+Physical: TypeAlias = Any
 
 
 @dataclass(frozen=True)
 class Candidate:
     """An effect at a location; its name is effect@location, and effect@location@alone where it
-    stands in the place of the linear effect that was adopted. At places.ALONG its place is the last
-    of its parameters.
+    replaces the linear effect that was adopted. At places.ALONG its place is the last of its
+    parameters.
     """
 
     effect_id: str
@@ -52,21 +62,21 @@ class Candidate:
     alone: bool = False
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Return effect@location, or effect@location@alone."""
         return f"{self.effect_id}@{self.location}" + ALONE * self.alone
 
     @property
-    def effect(self):
+    def effect(self) -> Effect:
         """Return the Effect."""
         return _along(self.effect_id) if self.location == ALONG else EFFECTS[self.effect_id]
 
     @property
-    def ids(self):
+    def ids(self) -> list[str]:
         """Return [id] as it is reported."""
         return [self.effect.reported]
 
-    def physical(self, unit, scales):
+    def physical(self, unit: np.ndarray, scales: dict[str, float]) -> dict[str, float]:
         """Return {name: value in SI} of normalised parameters unit (parameter,) from 0 to 1."""
         out = {}
         for value, parameter in zip(unit, self.effect.parameters, strict=True):
@@ -85,18 +95,20 @@ class Candidate:
             out[PLACE.name] += scales[SEARCHED_FROM]
         return out
 
-    def located(self, unit, scales):
+    def located(self, unit: np.ndarray, scales: dict[str, float]) -> str:
         """Return the location with normalised parameters unit (parameter,)."""
         if self.location != ALONG:
             return self.location
         return on_structure.between(self.physical(unit, scales)[PLACE.name])
 
-    def estimate(self, unit, interval, scales):
+    def estimate(
+        self, unit: np.ndarray, interval: np.ndarray, scales: dict[str, float]
+    ) -> dict[str, tuple[float, ...]]:
         """Return {name: (value, low, high)} in SI of normalised parameters unit (parameter,) and
         their intervals (parameter, 2).
 
-        What a gain common to force and responses may hide (priors.GAIN_SD) is no scatter of the
-        features: it is added here, in quadrature.
+        The features do not scatter with a gain common to force and responses. Its uncertainty
+        (priors.GAIN_SD) is therefore added here, in quadrature.
         """
         value, *ends = (
             self.physical(row, scales) for row in (unit, interval[:, 0], interval[:, 1])
@@ -112,7 +124,7 @@ class Candidate:
             )
         return {name: tuple(map(float, row)) for name, row in out.items()}
 
-    def normalised(self, physical, scales):
+    def normalised(self, physical: dict[str, float], scales: dict[str, float]) -> np.ndarray:
         """Return (parameter,) from 0 to 1 of {name: value in SI}."""
         out = []
         for parameter in self.effect.parameters:
@@ -141,13 +153,12 @@ class Candidate:
             )
         return np.array(out)
 
-    def neutral_unit(self, scales):
-        """Return (parameter,) normalised where the effect is not there, NaN in parameters whose
-        range does not hold such a value.
+    def neutral_unit(self, scales: dict[str, float]) -> np.ndarray:
+        """Return (parameter,) normalised at which the effect vanishes, NaN in parameters whose
+        range does not contain such a value.
         """
-        with np.errstate(
-            divide="ignore", invalid="ignore"
-        ):  # nothing is no value of a range that is searched in its logarithm
+        # a range that is searched in its logarithm does not contain 0
+        with np.errstate(divide="ignore", invalid="ignore"):
             unit = self.normalised(
                 {
                     parameter.name: np.nan if parameter.neutral is None else parameter.neutral
@@ -158,7 +169,7 @@ class Candidate:
             return np.where((unit >= 0.0) & (unit <= 1.0), unit, np.nan)
 
     @property
-    def signed(self):
+    def signed(self) -> tuple[int, ...]:
         """Return the numbers of the parameters that are as strong with the other sign."""
         return tuple(
             number
@@ -167,7 +178,7 @@ class Candidate:
         )
 
     @property
-    def periodic(self):
+    def periodic(self) -> tuple[int, ...]:
         """Return the numbers of the parameters that are angles over a whole period."""
         return tuple(
             number
@@ -175,11 +186,11 @@ class Candidate:
             if parameter.name == "angle" and self.ids == ["foliate_obstacle"]
         )
 
-    def parts(self, unit):
-        """Return [(candidate, its parameters)] of unit (parameter,), as a Pair has two."""
+    def parts(self, unit: np.ndarray) -> list[tuple[Candidate, np.ndarray]]:
+        """Return [(candidate, its parameters)] of unit (parameter,): one entry, a Pair has two."""
         return [(self, np.asarray(unit))]
 
-    def renumbered(self, index_of):
+    def renumbered(self, index_of: Callable[[int], int]) -> Candidate:
         """Return the candidate for a model that numbers its modes otherwise; index_of(index of a
         mode, from 0) gives the index there.
         """
@@ -188,24 +199,25 @@ class Candidate:
         return replace(self, location=f"mode_{index_of(self.mode) + 1}")
 
     @property
-    def mode(self):
+    def mode(self) -> int:
         """Return the index, from 0, of the mode in a location mode_<number>."""
         return int(self.location.removeprefix("mode_")) - 1
 
-    def variant(self, values, parameters):
+    def variant(self, values: Values, parameters: dict[str, float]) -> Values:
         """Return the configuration in plain values with the effect; unchanged for a fault of the
         measuring chain.
         """
         if self.effect.measured:
             return values
+        assert self.effect.apply is not None, "an effect of the model changes its configuration"
         if self.location != ALONG:
             return self.effect.apply(values, parameters, self.location)
         location = on_structure.between(parameters[PLACE.name])
         return self.effect.apply(on_structure.with_place(values, location), parameters, location)
 
-    def measuring(self, parameters, names):
+    def measuring(self, parameters: dict[str, float], names: Sequence[str]) -> Measuring | None:
         """Return the Measuring of a fault of the measuring chain, None for an effect of the
-        model.
+        model. names: of the channels.
         """
         return (
             measuring_of(self.effect_id, parameters, self.location, names)
@@ -223,11 +235,11 @@ def _along(effect_id):
 
 @dataclass(frozen=True)
 class PairEffect:
-    """What two effects together have of an effect; measured: one of them is of the measuring
+    """The parameters of two effects together; measured: one of them is a fault of the measuring
     chain.
     """
 
-    parameters: tuple
+    parameters: tuple[Parameter, ...]
     measured: bool = False
 
 
@@ -241,27 +253,27 @@ class Pair:
     second: Candidate
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Return effect@location+effect@location."""
         return f"{self.first.name}+{self.second.name}"
 
     @property
-    def alone(self):
-        """Return whether the pair stands in the place of what was adopted."""
+    def alone(self) -> bool:
+        """Return whether the pair replaces what was adopted."""
         return self.first.alone
 
     @property
-    def effect_id(self):
+    def effect_id(self) -> str:
         """Return both ids."""
         return f"{self.first.effect_id}+{self.second.effect_id}"
 
     @property
-    def ids(self):
+    def ids(self) -> list[str]:
         """Return both ids as they are reported."""
         return self.first.ids + self.second.ids
 
     @property
-    def effect(self):
+    def effect(self) -> PairEffect:
         """Return both effects as one."""
         both = self.first.effect, self.second.effect
         return PairEffect(
@@ -270,43 +282,45 @@ class Pair:
         )
 
     @property
-    def split(self):
+    def split(self) -> int:
         """Return the number of the first one's parameters."""
         return len(self.first.effect.parameters)
 
     @property
-    def signed(self):
+    def signed(self) -> tuple[int, ...]:
         """Return the numbers of the parameters that are as strong with the other sign."""
         return self.first.signed + tuple(number + self.split for number in self.second.signed)
 
     @property
-    def periodic(self):
-        """Return the numbers of the parameters that are angles."""
+    def periodic(self) -> tuple[int, ...]:
+        """Return the numbers of the parameters that are angles over a whole period."""
         return self.first.periodic + tuple(number + self.split for number in self.second.periodic)
 
-    def neutral_unit(self, scales):
-        """Return (parameter,) normalised where the effects are not there."""
+    def neutral_unit(self, scales: dict[str, float]) -> np.ndarray:
+        """Return (parameter,) normalised at which both effects vanish."""
         return np.concatenate([self.first.neutral_unit(scales), self.second.neutral_unit(scales)])
 
-    def parts(self, unit):
+    def parts(self, unit: np.ndarray) -> list[tuple[Candidate, np.ndarray]]:
         """Return [(candidate, its parameters)] of unit (parameter,)."""
         return [(self.first, unit[: self.split]), (self.second, unit[self.split :])]
 
-    def physical(self, unit, scales):
+    def physical(self, unit: np.ndarray, scales: dict[str, float]) -> list[dict[str, float]]:
         """Return [{name: value in SI}] of both."""
         return [candidate.physical(part, scales) for candidate, part in self.parts(unit)]
 
-    def renumbered(self, index_of):
+    def renumbered(self, index_of: Callable[[int], int]) -> Pair:
         """Return the pair for a model that numbers its modes otherwise."""
         return Pair(self.first.renumbered(index_of), self.second.renumbered(index_of))
 
-    def variant(self, values, parameters):
+    def variant(self, values: Values, parameters: Sequence[dict[str, float]]) -> Values:
         """Return the configuration in plain values with both effects."""
         return self.second.variant(self.first.variant(values, parameters[0]), parameters[1])
 
-    def measuring(self, parameters, names):
-        """Return the Measuring of the one of the two that is a fault of the measuring chain, None
-        where neither is.
+    def measuring(
+        self, parameters: Sequence[dict[str, float]], names: Sequence[str]
+    ) -> Measuring | None:
+        """Return the Measuring of the first of the two that is a fault of the measuring chain, None
+        where neither is. names: of the channels.
         """
         return next(
             (
@@ -318,7 +332,10 @@ class Pair:
         )
 
 
-def unit_grid(count, points):
+CandidateOrPair = TypeVar("CandidateOrPair", Candidate, Pair)  # one of them, the same throughout
+
+
+def unit_grid(count: int, points: int) -> np.ndarray:
     """Return (points**count, count): normalised parameters, evenly from 0 to 1 along each of
     `count`.
     """
@@ -331,17 +348,19 @@ def unit_grid(count, points):
     )
 
 
-def candidate_named(name):
-    """Return the Candidate or Pair of a name."""
-    parts = [
-        Candidate(*part.removesuffix(ALONE).split("@"), part.endswith(ALONE))
-        for part in name.split("+")
-    ]
+def candidate_named(name: str) -> Any:
+    """Return the Candidate or Pair of a name; Any, as the name alone says which of them."""
+    parts = [_single(part) for part in name.split("+")]
     return parts[0] if len(parts) == 1 else Pair(*parts)
 
 
-def elsewhere(candidate, values):
-    """Return the candidate at each single support, where it was at all of them."""
+def _single(name):
+    """Return the Candidate of a name."""
+    return Candidate(*name.removesuffix(ALONE).split("@"), name.endswith(ALONE))
+
+
+def elsewhere(candidate: Candidate, values: Values) -> list[Candidate]:
+    """Return the candidate at each single support where its location is all of them, else none."""
     return (
         [
             replace(candidate, location=place)
@@ -353,9 +372,9 @@ def elsewhere(candidate, values):
     )
 
 
-def other_places(candidate, values):
-    """Return the candidate at every other place of its kind, of an effect that sits at a point; of
-    a Pair the second effect, as the first was placed alone.
+def other_places(candidate: CandidateOrPair, values: Values) -> list[CandidateOrPair]:
+    """Return the candidate at every other location of its effect, where that acts at a point; of a
+    Pair the second effect alone is moved, as the place of the first was found before.
     """
     if isinstance(candidate, Pair):
         return [Pair(candidate.first, other) for other in other_places(candidate.second, values)]
@@ -367,9 +386,11 @@ def other_places(candidate, values):
     )
 
 
-def linear_candidates(values, names, held, modes):
-    """Return the candidates that the lowest record tells of by itself; held: names of what the
-    campaign holds beyond force and response; modes: those that were seen, from 0.
+def linear_candidates(
+    values: Values, names: Sequence[str], held: Collection[str], modes: Sequence[int] | np.ndarray
+) -> list[Candidate]:
+    """Return the candidates that the lowest record alone can identify; names: of the channels;
+    held: names of what the campaign contains beyond responses; modes: those that were seen, from 0.
     """
     found = []
     for effect in EFFECTS.values():
@@ -383,12 +404,16 @@ def linear_candidates(values, names, held, modes):
     return found
 
 
-def local_candidates(values, held, modes=None):
-    """Return the candidates that only simulation tells of, those to screen first: all supports
-    together, a place along a tube, points of another structure up to PLACES.
+def local_candidates(
+    values: Values,
+    held: Collection[str],
+    modes: Collection[int] | np.ndarray | None = None,
+) -> list[Candidate]:
+    """Return the candidates that only simulation can judge, at the locations to screen first: all
+    supports together, a place along a tube, up to PLACES points of another structure.
 
-    modes: those, from 0, that the lowest record shows; None where it tells nothing of the linear
-    structure, and linear effects are tried as the others are.
+    modes: those, from 0, that the lowest record shows; None where it does not identify the linear
+    structure, so that linear effects are simulated as the others are.
     """
     found = []
     for effect in EFFECTS.values():
@@ -402,11 +427,11 @@ def local_candidates(values, held, modes=None):
                 on_tube = on_structure.length_m(values) is not None
                 locations = [ALONG] if on_tube else spread(locations)
             found += [Candidate(effect.id, location) for location in locations]
-    return [candidate for candidate in found if modes is None or not _told(candidate, modes)]
+    return [candidate for candidate in found if modes is None or not _identified(candidate, modes)]
 
 
-def spread(locations, count=PLACES):
-    """Return the first of locations and others evenly among the rest, `count` at most."""
+def spread(locations: Sequence[str], count: int = PLACES) -> list[str]:
+    """Return at most `count` of the locations, evenly spaced, the first among them."""
     return [
         locations[number]
         for number in np.unique(
@@ -415,20 +440,22 @@ def spread(locations, count=PLACES):
     ]
 
 
-# the first so many modes of the structure: the frequencies of those that the lowest record does not
-# show are tried
+# so many modes, the lowest: an error of the frequency is tried of those that the lowest record does
+# not show
 UNSEEN_MODES = 6
 
 
-def _told(candidate, modes):
-    """Return whether the lowest record tells of a candidate where it shows modes (mode,): of linear
-    effects, but for what acts across its motion.
+def _identified(candidate, modes):
+    """Return whether a lowest record that shows modes (mode,) can identify a candidate: a linear
+    effect that does not act across the measured motion.
     """
     if candidate.effect_id == "mode_frequency_error":
         return candidate.mode in modes
     return candidate.effect.linear and candidate != Candidate("lateral_stinger", "along_x")
 
 
-def not_testable(held):
-    """Return the effects that need what the campaign does not hold."""
+def not_testable(held: Collection[str]) -> list[str]:
+    """Return the ids of the effects that need what the campaign does not contain; held: names of
+    what it contains beyond responses.
+    """
     return [effect.reported for effect in EFFECTS.values() if not set(effect.needs) <= set(held)]

@@ -1,4 +1,4 @@
-"""Whether the modes of the lowest record move while it lasts: its first half against its last."""
+"""Check of the lowest record for drift: shifts of its modes from its first half to its last."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,17 @@ from vibroimpact.observation.sensor_chain import Measuring
 
 from .mode_identification import fit_modes
 from .nearest_model import at_modes
+from .workbench import Workbench
 
-LEAST = 1.0e-4  # of a frequency, one sigma: below it the fits of two halves are not told apart
+LEAST = 1.0e-4  # of a frequency, one sigma: scatter of the fit of a half besides that by noise
 
 
 @dataclass(frozen=True)
 class Drift:
-    """What the modes of a record do from its first to its last half.
+    """Shifts of the modes of a record from its first to its last half.
 
-    frequency_Hz (mode,); change (mode,): of ln frequency; sd (mode,); p: how probable changes as
-    large are by chance, all modes together.
+    frequency_Hz (mode,). change (mode,): of ln frequency. sd (mode,): its standard deviation.
+    p: probability of as large changes by chance, all modes together.
     """
 
     frequency_Hz: np.ndarray
@@ -28,17 +29,17 @@ class Drift:
     p: float
 
 
-def drift_of(bench):
+def drift_of(bench: Workbench) -> Drift:
     """Return the Drift of a Workbench's lowest record."""
     fit, signals, lowest = bench.measured_fit, bench.signals, bench.signals.lowest
     force, responses = (bench.valid(series[lowest]) for series in (signals.force, signals.response))
     late = Measuring(np.ones(len(fit.delay)), -fit.delay)
     base = None if signals.base is None else bench.valid(signals.base[lowest])
-    # what is late is the absolute motion
+    # the delay is one of the absolute motion
     responses = responses if base is None else responses + base
     responses = late.delayed(responses, signals.rate)
     responses = responses if base is None else responses - base
-    # from where the whole record has the modes: halves differ from it by little
+    # start from the modes of the whole record, from which those of the halves differ little
     there = at_modes(bench.bare, fit)
     middle = force.shape[-1] // 2
     start = 0.0 if signals.from_rest else 2.0 * DISCARDED
@@ -61,6 +62,7 @@ def drift_of(bench):
             fit.modes,
             search=False,
         )
+        assert found is not None, "the modes to fit are given"
         halves.append(found)
     count = len(fit.modes)
     covariance = sum(half.covariance[:count, :count] for half in halves)

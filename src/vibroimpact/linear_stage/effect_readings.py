@@ -1,8 +1,11 @@
-"""Linear effects against the lowest record: each candidate's readings on a grid of its parameters,
-and the most probable parameters between.
+"""Linear effects fitted to the lowest record by tables: each candidate's readings on a grid of its
+parameters, and the most probable parameters by interpolation.
 """
 
-from dataclasses import dataclass, replace
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -10,30 +13,31 @@ from scipy import optimize
 from scipy.interpolate import RegularGridInterpolator
 
 from . import nuisance as linear
-from .candidates import unit_grid
-from .effect_fit import LinearResult
+from .candidates import Candidate, unit_grid
+from .effect_fit import LinearChanges, LinearResult
+from .workbench import Workbench
 
 POINTS = {1: 7, 2: 5, 3: 4}  # of the grid along each parameter, by the number of parameters
-NUISANCES = (
-    "mode_frequency_error",
-    "modal_damping",
-)  # logarithms of readings are straight in their normalised parameters
+# logarithms of readings are linear in the normalised parameters of these; points of their grids
+NUISANCES = ("mode_frequency_error", "modal_damping")
 STRAIGHT = 3
 NINETY = 1.353  # of log likelihood below the best: the interval of 90 % of a normal law
 
 
 @dataclass(frozen=True)
 class LinearTable:
-    """Readings of a candidate on a grid: axes of each parameter normalised from 0 to 1; values
-    (..., reading) over the grid, of modes (mode,) and channels.
+    """Readings of a candidate on a grid.
+
+    axes: of each parameter, normalised from 0 to 1. values (..., reading): over the grid.
+    modes (mode,), channels: what the readings are of.
     """
 
-    axes: tuple
+    axes: tuple[np.ndarray, ...]
     values: np.ndarray
     modes: np.ndarray
-    channels: tuple
+    channels: tuple[str, ...]
 
-    def serves(self, bench):
+    def serves(self, bench: Workbench) -> bool:
         """Return whether the readings are of the modes and channels of a Workbench."""
         return np.array_equal(self.modes, bench.measured_fit.modes) and self.channels == tuple(
             bench.signals.names
@@ -47,7 +51,7 @@ class LinearTable:
             method="cubic" if min(len(axis) for axis in self.axes) > 3 else "linear",
         )
 
-    def reading(self, unit):
+    def reading(self, unit: np.ndarray) -> linear.Reading:
         """Return the Reading at normalised parameters (parameter,)."""
         row = self._interpolator(np.clip(unit, 0.0, 1.0)[None])[0]
         count = len(self.modes)
@@ -56,12 +60,14 @@ class LinearTable:
             row[:count],
             row[count : 2 * count],
             row[2 * count :].reshape(-1, count),
-            None,
+            np.ones(len(self.channels)),
         )
 
 
-def table_of(bench, candidate, scales, changes):
-    """Return the LinearTable of a linear effect of the model, modes as the measured fit has them;
+def table_of(
+    bench: Workbench, candidate: Candidate, scales: dict[str, float], changes: LinearChanges
+) -> LinearTable:
+    """Return the LinearTable of a linear effect of the model, of the modes of the measured fit;
     changes: LinearChanges of the Workbench.
     """
     count = (
@@ -81,18 +87,34 @@ def table_of(bench, candidate, scales, changes):
     )
 
 
-def reading_under(bench, candidate, unit, scales, table):
-    """Return the Reading under a linear candidate at normalised parameters."""
+def reading_under(
+    bench: Workbench,
+    candidate: Candidate,
+    unit: np.ndarray,
+    scales: dict[str, float],
+    table: LinearTable | None,
+) -> linear.Reading:
+    """Return the Reading that a linear candidate at normalised parameters predicts; table: its
+    LinearTable, None for a fault of the measuring chain.
+    """
     if not candidate.effect.measured:
-        return replace(table.reading(unit), residual=np.ones(len(bench.signals.names)))
+        assert table is not None, "an effect of the model has a table"
+        return table.reading(unit)
     return linear.gained(
         linear.reading_of_model(bench.bare, bench.measured_fit.modes),
         candidate.measuring(candidate.physical(unit, scales), bench.signals.names),
     )
 
 
-def calibrate(bench, candidate, scales, table=None):
-    """Return the LinearResult of a linear candidate on the lowest record."""
+def calibrate(
+    bench: Workbench,
+    candidate: Candidate,
+    scales: dict[str, float],
+    table: LinearTable | None = None,
+) -> LinearResult[Candidate]:
+    """Return the LinearResult of a linear candidate on the lowest record; table: see
+    reading_under.
+    """
     fit, measured = bench.measured_fit, bench.measured_reading
     start = linear.reading_of_model(bench.bare, fit.modes)
     bare = linear.likelihood(measured, start)[0]
@@ -122,17 +144,18 @@ def calibrate(bench, candidate, scales, table=None):
     chi_square = linear.likelihood(
         measured, reading_under(bench, candidate, unit, scales, table), start
     )[1]
-    left = max(
-        1.0, chi_square / (2 * len(fit.modes) + fit.participation.size)
-    )  # what the effect does not explain widens its interval
+    # a misfit beyond chance widens the interval
+    left = max(1.0, chi_square / (2 * len(fit.modes) + fit.participation.size))
     return LinearResult(
         candidate, unit, -float(found.fun), interval_of(loss, found.x, found.fun, NINETY * left)
     )
 
 
-def interval_of(loss, best, least, rise):
-    """Return (parameter, 2): where the loss has risen by `rise` along each parameter, the others
-    held; a bound where it never does.
+def interval_of(
+    loss: Callable[[np.ndarray], float], best: np.ndarray, least: float, rise: float
+) -> np.ndarray:
+    """Return (parameter, 2): where the loss exceeds the least by `rise` along each parameter, the
+    others fixed at the best; a bound where it never does.
     """
     out = np.zeros((len(best), 2))
     for number in range(len(best)):

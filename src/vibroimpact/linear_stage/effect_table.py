@@ -1,29 +1,41 @@
-"""Every linear effect, and the best two at once, against the lowest record: how much each explains,
-and whether it may be named.
+"""Table of all linear effects, and of the best two at once, fitted to the lowest record: how much
+each explains, and whether it may be named.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.force_kinds import FORCE, base_channels
 from vibroimpact.discrepancy import priors
 
 from .candidates import Candidate, candidate_named, linear_candidates
-from .effect_fit import LinearChanges, fitted
-from .effect_pairs import best_pairs
+from .effect_fit import LinearChanges, LinearResult, fitted
+from .effect_pairs import Begun, best_pairs
 from .effect_places import placed
-from .effect_readings import calibrate, table_of
+from .effect_readings import LinearTable, calibrate, table_of
+from .workbench import Workbench
 
-# of the best effects are fitted with the model itself: between the points of a table a stinger was
-# read 8 % off
+# so many of the best effects are fitted with the model itself: by interpolation in a table, a
+# stinger was 8 % off
 FITTED = 3
 
 
-def linear_rows(bench, sizes, tables, begun=()):
+def linear_rows(
+    bench: Workbench,
+    sizes: dict[str, float],
+    tables: dict[str, LinearTable],
+    begun: Begun = (),
+) -> list[dict[str, Any]]:
     """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a
-    Workbench, best first; before them two of them at once where one does not suffice. tables are
-    extended; begun: see best_pairs.
+    Workbench, best first, and of two of them at once where one does not suffice.
+
+    sizes: see Candidate.physical; tables are extended; begun: see best_pairs.
     """
-    found, changes = [], LinearChanges(bench)
+    found: list[LinearResult[Candidate]] = []
+    changes = LinearChanges(bench)
     for candidate in linear_candidates(
         bench.values, bench.signals.names, held(bench.campaign), bench.measured_fit.modes
     ):
@@ -31,9 +43,7 @@ def linear_rows(bench, sizes, tables, begun=()):
             continue
         known = tables.get(candidate.name)
         if not candidate.effect.measured and not (known and known.serves(bench)):
-            tables[candidate.name] = table_of(
-                bench, candidate, sizes, changes
-            )  # a table is of what a record shows
+            tables[candidate.name] = table_of(bench, candidate, sizes, changes)
         found.append(calibrate(bench, candidate, sizes, tables.get(candidate.name)))
     between = placed(bench, changes, found, sizes, tables)
     found += [] if between is None else [between]
@@ -59,7 +69,7 @@ def linear_rows(bench, sizes, tables, begun=()):
     return sorted(rows, key=lambda row: -row["gain"])
 
 
-def plain_row(result):
+def plain_row(result: LinearResult) -> dict[str, Any]:
     """Return {name, unit, gain, interval} of a LinearResult, in plain values."""
     return {
         "name": result.candidate.name,
@@ -69,18 +79,18 @@ def plain_row(result):
     }
 
 
-def nameable(row, sizes):
-    """Return whether a linear effect, or two, (a row of linear_rows) explain enough, beyond what
-    their priors allow.
+def nameable(row: dict[str, Any], sizes: dict[str, float]) -> bool:
+    """Return whether a linear effect, or two (a row of linear_rows), explain enough to be named and
+    lie beyond what the priors of nuisances allow.
     """
     return row["gain"] > priors.LINEAR_GAIN + priors.PARAMETER_COST * (
         len(row["unit"]) - 1
     ) and beyond_prior(row, sizes)
 
 
-def beyond_prior(row, sizes):
-    """Return whether effects that are also nuisances lie, with their whole interval, outside what
-    their priors allow.
+def beyond_prior(row: dict[str, Any], sizes: dict[str, float]) -> bool:
+    """Return whether the effects of a row that are also nuisances lie, with their whole interval,
+    outside what their priors allow.
     """
     candidate, interval = candidate_named(row["name"]), np.atleast_2d(row["interval"])
     sides = zip(candidate.parts(interval[:, 0]), candidate.parts(interval[:, 1]), strict=True)
@@ -103,11 +113,11 @@ def _beyond(candidate, ends, sizes):
     return logs[0] > priors.NAMED_BEYOND * sd or logs[1] < -priors.NAMED_BEYOND * sd
 
 
-def nearest_linear(rows):
-    """Return the names of the best few of single effects of the model in rows (see linear_rows),
-    one of each id.
+def nearest_linear(rows: Sequence[dict[str, Any]]) -> list[str]:
+    """Return the names of the best FITTED single effects of the model in rows of linear_rows, one
+    of each id.
     """
-    best = {}
+    best: dict[str, str] = {}
     for row in rows:
         candidate = candidate_named(row["name"])
         if (
@@ -119,9 +129,9 @@ def nearest_linear(rows):
     return list(best.values())[:FITTED]
 
 
-def held(campaign):
-    """Return what a campaign holds beyond response: a force, which a moving base is not, and the
-    voltage of the shaker.
+def held(campaign: xr.Dataset) -> list[str]:
+    """Return the names of what a campaign contains beyond responses: a force at a point of the
+    structure, and the voltage of the shaker.
     """
     forces = [] if base_channels(campaign).any() else [FORCE]
     return [*forces, *(name for name in ("voltage",) if name in campaign)]

@@ -1,27 +1,40 @@
-"""What the lowest record says of a linear model that no effect of the catalogue mends, as rows of
-checks: a model that does not fit, where to look first, and power that the force does not explain.
+"""Findings on the lowest record that no effect of the catalogue explains, as rows of checks: a
+linear model that does not fit and where to look first, other sources, and drift.
 """
+
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.discrepancy import priors
 
+from .acting_place import ActingPlace
 from .drift import drift_of
-from .goodness_of_fit import LinearMisfit
+from .goodness_of_fit import LinearMisfit, Mend
 from .nearest_model import translated
 from .other_source import other_sources
+from .workbench import Workbench
 
 # What may be wrong with a model or a campaign file and is no effect of the catalogue.
 NO_EFFECT = ("frequencies", "section", "length", "place", "direction")
-SHOWN = 3  # changes that do as well
+SHOWN = 3  # changes of those that fit equally well
+
+Rows = list[dict[str, Any]]
 
 
-def linear_findings(bench, fresh, adopted, bent, acting=None):
-    """Return rows of checks on the lowest record of a Workbench that holds what was adopted.
+def linear_findings(
+    bench: Workbench,
+    fresh: Callable[[], Workbench],
+    adopted: dict[str, Any] | None,
+    bent: bool,
+    acting: ActingPlace | None = None,
+) -> Rows:
+    """Return rows of checks on the lowest record of a Workbench with what was adopted.
 
     fresh() gives a Workbench without it; adopted: row of linear_rows, None for nothing; bent:
-    whether the record is not that of a linear structure; acting: see source_rows.
+    whether the response is nonlinear in the record; acting: see source_rows.
     """
     given = bench
     if adopted is not None:
@@ -37,10 +50,13 @@ def linear_findings(bench, fresh, adopted, bent, acting=None):
     )
 
 
-def misfit_row(bench, given, adopted, record):
+def misfit_row(
+    bench: Workbench, given: Workbench, adopted: dict[str, Any] | None, record: str
+) -> Rows:
     """Return [row]: whether the linear model fits the record, and where to look first if not.
 
-    bench, given: Workbenches with and without what was adopted (a row of linear_rows, or None).
+    bench, given: Workbenches with and without what was adopted (a row of linear_rows, or None);
+    record: its name.
     """
     before = LinearMisfit(given)
     if adopted is None:
@@ -72,15 +88,16 @@ def misfit_row(bench, given, adopted, record):
     ]
 
 
-def bent_row(bench, record):
-    """Return [row] where the record looks bent because one channel is not where it is stated, or
-    none.
+def bent_row(bench: Workbench, record: str) -> Rows:
+    """Return [row] where the response in the record only appears nonlinear because one channel is
+    at another place than stated, else none.
     """
     misfit = LinearMisfit(bench)
     mends = [
         mend
         for mend in misfit.places
         if misfit.p(mend.chi_square, mend.freed) > priors.SIGNIFICANT
+        and mend.left is not None
         and mend.left < priors.LINEAR_RESIDUAL
     ]
     if not mends:
@@ -97,9 +114,9 @@ def bent_row(bench, record):
     ]
 
 
-def source_rows(bench, record, acting=None):
-    """Return [row] where the measured force does not explain the record, or a row that says that
-    it does. acting: the ActingPlace of what else acts, None where it is not known.
+def source_rows(bench: Workbench, record: str, acting: ActingPlace | None = None) -> Rows:
+    """Return [row]: whether the record is a linear response to the measured force. acting: the
+    ActingPlace of another force, None where it is not known.
     """
     found, signals = other_sources(bench), bench.signals
     force = str(bench.campaign["force_channel_name"].values[0])
@@ -134,7 +151,7 @@ def source_rows(bench, record, acting=None):
 
 
 def _acts(acting):
-    """Return a sentence on an ActingPlace, none where it is None."""
+    """Return a sentence on an ActingPlace, an empty text where it is None."""
     if acting is None:
         return ""
     along = ", ".join(f"{component:+.2f}" for component in acting.direction)
@@ -147,8 +164,8 @@ def _acts(acting):
     )
 
 
-def drift_rows(bench, record):
-    """Return [row]: whether the modes of the record stay where they are while it lasts."""
+def drift_rows(bench: Workbench, record: str) -> Rows:
+    """Return [row]: whether the modes of the record are the same in its first and last half."""
     drift = drift_of(bench)
     if drift.p > priors.SIGNIFICANT:
         message = f"The modes of record {record} stay where they are while it lasts."
@@ -167,8 +184,8 @@ def drift_rows(bench, record):
     ]
 
 
-def text_of(mend, misfit):
-    """Return what a Mend of a LinearMisfit says, to follow "first look at"."""
+def text_of(mend: Mend, misfit: LinearMisfit) -> str:
+    """Return a Mend of a LinearMisfit in words, to follow "first look at"."""
     return TEXTS[mend.kind](mend, misfit)
 
 
@@ -187,12 +204,12 @@ def _fits(misfit, record):
 
 
 def _does_not(misfit, bases, record, adopted=None):
-    """Return the row of a LinearMisfit beyond chance; bases: those, the given model's first, whose
-    Mends are looked at.
+    """Return the row of a LinearMisfit beyond chance; bases: the LinearMisfits whose Mends are
+    considered, that of the given model first.
     """
     beside, first = "", bases[0].mends[0]
     base = bases[0]
-    for one in bases:  # beside what was adopted only where nothing mends the model as given
+    for one in bases:  # with what was adopted only where nothing mends the model as given
         best = one.mends[0]
         if one.p(best.chi_square, best.freed) > priors.SIGNIFICANT:
             base, first = one, best
@@ -223,8 +240,8 @@ def _does_not(misfit, bases, record, adopted=None):
 
 
 def _as_good(misfit, best):
-    """Return the Mends that the record does not tell from the best, without what says less: a
-    factor of all frequencies stands for lengths and sections, a place for any shape.
+    """Return the Mends that fit the record as well as the best, without redundant ones: a factor of
+    all frequencies includes lengths and sections; arbitrary participations of a channel say least.
     """
     near = [
         mend
@@ -237,7 +254,7 @@ def _as_good(misfit, best):
 
 
 def _most(misfit):
-    """Return a sentence on the modes and channels that differ most."""
+    """Return a sentence on the differences of all modes and the channel that differs most."""
     moved = misfit.measured.log_frequency - misfit.simulated.log_frequency
     frequencies = np.exp(misfit.measured.log_frequency) / (2.0 * np.pi)
     modes = ", ".join(

@@ -1,14 +1,18 @@
-"""Whether a linear model fits the lowest record at all, and which single change would mend it: a
-factor common to all frequencies, one mode, or one channel's gain, direction or place.
+"""Goodness of fit of the linear model to the lowest record, and which single change would mend it:
+a factor common to all frequencies, one mode, a length or section, or one channel's gain, direction
+or place.
 
-Changes that are linear in what is compared are directions left free in the likelihood, whose
-chi-square falls by what lies along them (generalised least squares). A channel is tried all along
-the tube. Effects of the catalogue are not tried here: what they explain is adopted before.
+A change in which the compared values are linear is a direction with a free amount in the
+likelihood, which lowers chi-square (generalised least squares). A channel is tried all along the
+tube. Effects of the catalogue are not tried here: what they explain is adopted before.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import starmap
+from typing import Any
 
 import numpy as np
 from scipy import interpolate, linalg, stats
@@ -19,20 +23,22 @@ from vibroimpact.discrepancy import priors
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.observation.strain import gauges_of
+from vibroimpact.reduction.modal_model import ModalModel
 
 from . import nuisance as linear
 from .effect_fit import REACH, coarse, descended, moved
 from .linearised import linearised, matched, same_modes
 from .mode_identification import fit_modes, left, modelled_lines
 from .other_lengths import Moved, parts, scaled
+from .workbench import Workbench
 
 ALONG = 97  # places along the tube at which shapes are computed; between them splines
 TRIED = 241  # places along the tube that a channel is tried at
 NEARBY_M, NEARBY = 0.02, 41  # about the best of them, and how many places there
-LENGTH_REACH = 0.2  # of a length: how far from its stated value it is looked for
-SUSPECTS = 2  # channels, those that disagree most, are tried elsewhere
-# of a direction's largest part: below it the tube moves one way there, and a channel that is turned
-# reads as one of another gain
+LENGTH_REACH = 0.2  # of a length: largest change that is tried
+SUSPECTS = 2  # channels, those that disagree most, are tried at other places
+# of the largest singular value of the motion of all modes there: below it the tube moves in one
+# direction, and a channel in another direction looks like one of another gain
 ONE_WAY = 0.05
 
 
@@ -40,36 +46,37 @@ ONE_WAY = 0.05
 class Mend:
     """A change of a linear model or of what is stated of a campaign.
 
-    kind: frequencies, section, length, mode, gain, direction, place or channel (fits nowhere);
-    which: name of the channel or the part, number of the mode among those fitted, None for all;
-    amount: ln of the factor of frequency; factors of mass and stiffness per metre; factor of the
-    length; ln of the factors of frequency and damping; gain over the model's; direction (3,); m
-    along the tube; chi_square with it; freed:
-    values that it chooses; left: the largest residual over noise of a driven channel, None where
-    it is as it was.
+    kind: frequencies, section, length, mode, gain, direction, place or channel (fits nowhere).
+    which: name of the channel or the part, index of the mode among those fitted, None for all.
+    amount: in the order of kinds, ln of the factor of frequency; factors of mass and stiffness per
+    metre; factor of the length; ln of the factors of frequency and damping; gain over the model's;
+    direction (3,); m along the tube; differences of participations.
+    chi_square: with it. freed: number of values that it fits.
+    left: the largest residual over noise of a driven channel, None where it is unchanged.
     """
 
     kind: str
-    which: object
-    amount: object
+    which: Any
+    amount: Any
     chi_square: float
     freed: int
     left: float | None = None
 
     @property
-    def score(self):
-        """Return chi-square with a cost for each value that is free."""
+    def score(self) -> float:
+        """Return chi-square with a cost for each fitted value."""
         return self.chi_square + 2.0 * priors.PARAMETER_COST * self.freed
 
 
 class LinearMisfit:
-    """The chi-square of a Workbench's lowest record under its bare linear model.
+    """The chi-square of a Workbench's lowest record given its bare linear model, with nuisances
+    marginalised.
 
-    freed: values that what was adopted chose; given: ModalModel without it, of whose change of
-    the shapes two codes differ by a share (see nuisance.difference). Nuisances are marginalised.
+    freed: number of fitted parameters of what was adopted; given: ModalModel without it, see bare
+    in nuisance.difference.
     """
 
-    def __init__(self, bench, freed=0, given=None):
+    def __init__(self, bench: Workbench, freed: int = 0, given: ModalModel | None = None) -> None:
         self.bench, self.freed, self.given_model = bench, freed, given
         self.left = left(bench.measured_fit, bench.bare)
         self.measured, self.simulated = bench.measured_reading, bench.bare_reading
@@ -87,13 +94,15 @@ class LinearMisfit:
         self.white = self._whitened(values)
         self.chi_square = float(self.white @ self.white)
 
-    def p(self, chi_square=None, freed=0):
-        """Return how probable so large a chi-square is by chance; that of the model where None."""
+    def p(self, chi_square: float | None = None, freed: int = 0) -> float:
+        """Return the probability of as large a chi-square by chance, None for that of the model;
+        freed: number of values fitted for it.
+        """
         chi_square = self.chi_square if chi_square is None else chi_square
         return float(stats.chi2.sf(chi_square, max(1, self.count - self.freed - freed)))
 
     @cached_property
-    def mends(self):
+    def mends(self) -> list[Mend]:
         """Return the Mends, the likeliest first."""
         channels = self._channels
         found = [
@@ -105,7 +114,8 @@ class LinearMisfit:
             *map(self._gain, channels),
             *filter(None, map(self._direction, channels[~self._gauges[channels]])),
         ]
-        # a place is read anew, which costs as much as all before: where nothing else mends it
+        # for a place the modes are fitted again, which takes as long as all others together: only
+        # where nothing else mends it
         if not any(self._mended(mend) for mend in found if mend.kind != "channel"):
             found += self.places
         return sorted(found, key=lambda mend: mend.score)
@@ -114,7 +124,7 @@ class LinearMisfit:
         return self.p(mend.chi_square, mend.freed) > priors.SIGNIFICANT
 
     @cached_property
-    def places(self):
+    def places(self) -> list[Mend]:
         """Return the Mends by another place of the channels that disagree most."""
         channels = self._channels[~self._gauges[self._channels]]
         suspects = sorted(channels, key=lambda channel: self._channel(channel).chi_square)
@@ -122,22 +132,22 @@ class LinearMisfit:
 
     @property
     def _gauges(self):
-        """Return (channel,) bool: those of a strain, whose place and direction are not tried."""
+        """Return (channel,) bool: strain gauges, whose place and direction are not tried."""
         return gauges_of(self.bench.bare)
 
     @property
     def _channels(self):
-        """Return (channel,): those that see a mode."""
+        """Return (channel,) the indices of those that see a mode."""
         return np.flatnonzero(self.seen.any(axis=1))
 
     @property
-    def modes(self):
+    def modes(self) -> int:
         """Return the number of modes that are compared."""
         return len(self.measured.log_frequency)
 
     def _difference(self, simulated):
-        """Return (values (value,), covariance) of modes and shapes; what a fit leaves of a channel
-        is not of the model's modes, and is looked at by itself.
+        """Return (values (value,), covariance) of modes and shapes, without the residuals of
+        channels: these do not depend on the modes of the model, and are checked separately.
         """
         values, covariance, sensitivity = linear.difference(
             self.measured, simulated, self.seen, self.given
@@ -149,7 +159,7 @@ class LinearMisfit:
         return linalg.solve_triangular(self.factor, values, lower=True)
 
     def _along(self, kind, which, directions):
-        """Return the Mend by values along directions (value, direction), amounts (direction,)."""
+        """Return the Mend with free amounts (direction,) of directions (value, direction)."""
         amounts, _, rank, _ = linalg.lstsq(self._whitened(directions), self.white)
         left = self.white - self._whitened(directions) @ amounts
         return Mend(kind, which, amounts, float(left @ left), int(rank))
@@ -160,7 +170,7 @@ class LinearMisfit:
         return replace(found, amount=float(found.amount[0]))
 
     def _frequency(self, chosen):
-        """Return (value,): what ln of the frequency of the chosen modes changes."""
+        """Return (value,): the derivative of values by ln of the frequency of the chosen modes."""
         out = np.zeros(self.count)
         out[: self.modes][chosen] = 1.0
         return out
@@ -179,7 +189,7 @@ class LinearMisfit:
         return out
 
     def _shapes(self, channel, participations):
-        """Return (value, row): what participations (row, mode) of a channel are among the
+        """Return (value, row): participations (row, mode) of a channel as differences of
         values.
         """
         scale = self.measured.scale[channel]
@@ -188,20 +198,20 @@ class LinearMisfit:
         return out
 
     def _channel(self, channel):
-        """Return the Mend of a channel whose participations are any."""
+        """Return the Mend of a channel with arbitrary participations."""
         return self._along(
             "channel", self._name(channel), np.eye(self.count)[:, self._rows(channel)]
         )
 
     def _gain(self, channel):
-        """Return the Mend of a channel of another gain."""
+        """Return the Mend of a channel with another gain."""
         own = self._shapes(channel, self.simulated.participation[[channel]])
         found = self._along("gain", self._name(channel), own)
         return replace(found, amount=1.0 + float(found.amount[0]))
 
     def _direction(self, channel):
-        """Return the Mend of a channel that looks along another direction at its place, None where
-        the tube moves one way there.
+        """Return the Mend of a channel with another direction at its place, None where the tube
+        moves in one direction there.
         """
         modes = self.bench.measured_fit.modes
         moving = self._moving(self._stated(channel))[:, modes]
@@ -210,9 +220,8 @@ class LinearMisfit:
         if size[1] <= ONE_WAY * size[0]:
             return None
         own = self._shapes(channel, self.simulated.participation[[channel]])[:, 0]
-        rest = self.white + self._whitened(
-            own
-        )  # measured, without what the model gives the channel
+        # the measured participations of the channel, without those of the model
+        rest = self.white + self._whitened(own)
         amounts, *_ = linalg.lstsq(self._whitened(three), rest, cond=ONE_WAY)
         left = rest - self._whitened(three) @ amounts
         return Mend(
@@ -220,7 +229,9 @@ class LinearMisfit:
         )
 
     def _place(self, channel):
-        """Return the Mend of a channel at another place along the tube, read anew from there."""
+        """Return the Mend of a channel at another place along the tube, with the modes fitted again
+        for that place.
+        """
         arcs = np.linspace(0.0, self._line.length, TRIED)
         far = _farness(self.bench, channel, self._moving(arcs))
         there = self._read_at(channel, arcs[np.argmin(far)])
@@ -232,7 +243,7 @@ class LinearMisfit:
         return Mend("place", self._name(channel), moved, chi_square[best], 1, there.left)
 
     def _moved_to(self, channel, arc):
-        """Return the chi-square with a channel at an arc length in m, its reading as it is."""
+        """Return the chi-square with a channel at an arc length in m, with the same modal fit."""
         modes, chain = self.bench.measured_fit.modes, self.bench.measuring
         gain = 1.0 if chain is None else chain.gain[channel] / chain.force_gain
         direction = self.bench.bare.sensor_directions[channel]
@@ -242,15 +253,15 @@ class LinearMisfit:
         return self._chi_square(replace(self.simulated, participation=rows))
 
     def _chi_square(self, simulated):
-        """Return the chi-square under another Reading."""
+        """Return the chi-square of the measured given another Reading."""
         values, covariance = self._difference(simulated)
         factor = linalg.cholesky(covariance, lower=True)
         white = linalg.solve_triangular(factor, values, lower=True)
         return float(white @ white)
 
     def _section(self):
-        """Return the Mend of a tube of another mass per metre and bending stiffness all along: one
-        factor for the frequencies, one for all responses.
+        """Return the Mend of a tube with another mass per metre and bending stiffness throughout:
+        one factor for all frequencies, one for all responses.
         """
         shapes = np.sum(
             [
@@ -266,8 +277,8 @@ class LinearMisfit:
         return replace(found, amount=(mass, mass * np.exp(2.0 * frequency)))
 
     def _length(self, name, keys):
-        """Return the Mend of a tube with some lengths times a factor, None where such a tube can
-        not be built.
+        """Return the Mend of a tube with the lengths of a part times a factor, None where such a
+        tube can not be built.
         """
         config = check_config(self.bench.values, "model")
         rough = coarse(config, REACH * self.bench.signals.band_Hz[1])
@@ -291,8 +302,8 @@ class LinearMisfit:
         return Mend("length", name, factor(unit), self._chi_square(found), 1)
 
     def _reading_of_lengths(self, config, keys, factor):
-        """Return the Reading of a checked configuration with lengths, by their keys, times a
-        factor.
+        """Return the Reading that a checked configuration predicts with lengths, by their keys,
+        times a factor.
         """
         values = scaled(config.model_dump(mode="json"), keys, factor)
         structure = type(config.structure).model_validate(values["structure"])
@@ -303,15 +314,17 @@ class LinearMisfit:
         return linear.gained(linear.reading_of_model(model, modes), self.bench.measuring)
 
     def _read_at(self, channel, arc):
-        """Return the LinearMisfit with a channel at an arc length in m, read anew."""
+        """Return the LinearMisfit with a channel at an arc length in m and the modes fitted
+        again.
+        """
         points = self.bench.campaign["channel_point"].astype(float).copy()
         points[channel] = self._line.position(arc)
         bench = self.bench.again(self.bench.campaign.assign(channel_point=points))
-        bench.followed = True  # with the other channels as they are, modes are found from the model
+        bench.followed = True  # the other channels are unchanged: the modes are near the model's
         return LinearMisfit(bench, self.freed, self.given_model)
 
-    def place(self, mend):
-        """Return (3,) m the place that a Mend moves its channel to."""
+    def place(self, mend: Mend) -> np.ndarray:
+        """Return (3,) m: the place to which a Mend moves its channel."""
         channel = self.bench.signals.names.index(mend.which)
         return self._line.position(self._stated(channel) + mend.amount)
 
@@ -341,15 +354,15 @@ class LinearMisfit:
             channel_kind=("channel", ["displacement"] * len(points)),
         )
         model = linearised(attach(check_config(self.bench.values, "model"), there))
-        # one sign for a mode in both models: a mode is itself times -1
+        # the same sign of each mode shape in both models
         sign = np.sign(np.sum(model.drive_shapes * self.bench.bare.drive_shapes, axis=1))
         shapes = (model.sensor_shapes * np.where(sign == 0.0, 1.0, sign)[:, None]).T
         return interpolate.CubicSpline(arcs, shapes.reshape(ALONG, 3, -1))
 
 
 def _farness(bench, channel, shapes):
-    """Return (place,): how far the lines of a channel are from those that the model gives at places
-    of displacements (place, direction, mode), with the modes as the other channels show them.
+    """Return (place,): the squared distance of the lines of a channel from those of the model at
+    places of displacements (place, direction, mode), with the modes fitted to the other channels.
     """
     others = np.arange(len(bench.signals.names)) != channel
     model, record, signals = bench.bare, bench.linear_record, bench.signals
@@ -370,8 +383,8 @@ def _farness(bench, channel, shapes):
 
 
 def _seen_through(model, shapes):
-    """Return a ModalModel with sensors of shapes (mode, sensor) alone; where they are plays no
-    part.
+    """Return a ModalModel with sensors of shapes (mode, sensor) alone; their positions are not
+    used.
     """
     count, gauges = shapes.shape[1], gauges_of(model)
     kept = {"gauges": np.zeros(count, bool)} if gauges.any() else {}

@@ -1,26 +1,33 @@
-"""By how much channels lag, from the phases of the modes that they show."""
+"""Delays of channels, from the phases of their modal participations: part of the identification of
+modes.
+"""
 
 import numpy as np
 
 from vibroimpact.observation.sensed_motion import orders
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .modal_fit import ModalFit, ModalLines
 
 LONGEST_LAG_S = 0.02
-HEARD, FEWEST = 3.0, 50  # times the noise of a line, and so many lines
+HEARD, FEWEST = 3.0, 50  # times the noise of a line, for so many lines at least
 EXCITED = 1.0e-3  # of the strongest line of the force
-REAL_ENOUGH = 0.6  # least agreement of twice the phase once the delay is taken out
-SEEN_S = 3.0e-4  # less is told by the phases of modes
+REAL_ENOUGH = 0.6  # least agreement of twice the phase once the delay is compensated
+SEEN_S = 3.0e-4  # a smaller delay is found from the phases of modes
 SIGNED = 3  # modes that move a channel
-DEAF = 0.3  # share of a channel that no mode explains: above it the channel has nothing to tell
+DEAF = 0.3  # share of a channel that no mode explains: above it the delay can not be found
 
 
-def lags(found, model, signs_told=True):
-    """Return (channel,) s: by how much each channel lags, from the phases of its participations in
-    a fit that leaves them free.
+def lags(found: ModalFit, model: ModalModel, signs_told: bool = True) -> np.ndarray:
+    """Return (channel,) s: the delay of each channel, from the phases of its participations in a
+    ModalFit with complex participations.
 
-    Modes damped in proportion move in phase or against it, as the model says; what turns with the
-    frequency is a delay, the same for all modes. signs_told: whether the model tells the sense of
-    each mode there. Where it does not, two modes, one with the other sense, look like a delay of
-    half a period: from fewer than SIGNED modes no more than a quarter of one is believed.
+    Proportionally damped modes move in phase or in antiphase, with the signs of the model. A phase
+    proportional to frequency is a delay, the same for all modes.
+
+    signs_told: whether the model gives the sign of each mode in a channel. Where it does not, two
+    modes, one of them with the wrong sign, look like a delay of half a period: with fewer than
+    SIGNED modes, a delay of more than a quarter period is rejected.
     """
     frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
@@ -31,7 +38,7 @@ def lags(found, model, signs_told=True):
     ):
         weight = np.where(driven & (np.abs(own) > 0.05 * np.abs(own).max()), 1.0, 0.0)
         if found.share[channel] > DEAF or not weight.any():
-            continue  # a channel of noise, or of motion of which the model does not tell the sense
+            continue  # a channel of noise, or without a mode whose sign the model gives
         there = frequency[weight > 0.0]
         reach = np.inf if signs_told or len(there) >= SIGNED else 0.25 / there.max()
         unit = weight * shape * np.sign(own) / np.maximum(np.abs(shape), 1.0e-300)
@@ -46,18 +53,17 @@ def lags(found, model, signs_told=True):
     return out
 
 
-def from_phases(lines, noise):
-    """Return (channel,) s: by how much each channel lags, 0 where that can not be told, from the
-    lines of a record (ModalLines) alone; noise (channel,) RMS in the band.
+def from_phases(lines: ModalLines, noise: np.ndarray) -> np.ndarray:
+    """Return (channel,) s: the delay of each channel, 0 where it can not be found, from the lines
+    of a record alone; noise (channel,) RMS in the band.
 
-    Modes damped in proportion answer in phase or against it away from their resonances, so that
-    twice the phase per force is zero on most lines; half a turn for velocities.
+    Away from their resonances, proportionally damped modes respond in phase or in antiphase, so
+    that twice the phase per force is 0 on most lines, 180 degrees for velocities.
     """
     record = lines.record
     force = record.short_spectra(record.spectrum[:1])[0]
-    driven = (
-        np.abs(force) > EXCITED * np.abs(force).max()
-    )  # of periodic forces most lines are empty
+    # most lines of a periodic force are empty
+    driven = np.abs(force) > EXCITED * np.abs(force).max()
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / record.frequency[-1])
     out = np.zeros(len(lines.measured))
     sense = 1.0 - 2.0 * (orders(lines.kinds) % 2)
@@ -78,7 +84,7 @@ def from_phases(lines, noise):
     return out
 
 
-def driven_modes(model, modes):
+def driven_modes(model: ModalModel, modes: np.ndarray) -> np.ndarray:
     """Return (mode,) bool: whether a force drives these modes of a model."""
     return (
         np.abs(model.drive_shapes[modes]).max(axis=1) >= 1.0e-6 * np.abs(model.drive_shapes).max()

@@ -1,19 +1,24 @@
-"""The linear stage: checks of a campaign, what its lowest record tells, and the linear effects that
-are adopted before contact is looked at.
+"""The linear stage as a whole: checks of a campaign, the analysis of its lowest record, and the
+linear effects that are adopted before contact is examined.
 """
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from math import ceil
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.campaign.base_motion import relative_to_base
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
-from vibroimpact.campaign.signals import campaign_signals, transfer
+from vibroimpact.campaign.signals import CampaignSignals, campaign_signals, transfer
+from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.misfit import counted
 from vibroimpact.effects.places import length_m
@@ -31,76 +36,30 @@ from vibroimpact.observation.comparable import (
 from vibroimpact.observation.decimation import slower
 from vibroimpact.observation.sensed_motion import differentiated, kind_groups
 from vibroimpact.observation.sensor_chain import Measuring
+from vibroimpact.observation.signals import Signals
 from vibroimpact.observation.strain import STRAIN, speed_per_strain
 from vibroimpact.units import TIME_DERIVATIVES
 
 from .adopted import adopt
-from .candidates import candidate_named, local_candidates, not_testable
+from .candidates import Candidate, candidate_named, local_candidates, not_testable
 from .effect_table import held, nearest_linear
 from .lowest_record import read_lowest
 from .modal_fit import ModalFit
 from .nearest_model import translated
 from .nonlinear_substitutes import in_place
 from .nuisance import neutral, plausible
+from .prepared import Prepared
 from .scales import scales
 from .workbench import Workbench, corrected_nuisance
 
 
-@dataclass
-class Prepared:
-    """What the linear stage hands on, in plain values.
+def usable_campaign(
+    path: str | Path, checks: list[dict[str, Any]], integration: ConfigPart
+) -> tuple[xr.Dataset | Any, str | None]:  # Any, not None: callers look at the sentence first
+    """Return (campaign Dataset, None), without the channels and records that the checks leave out
+    and at the sampling rate at which it is compared; (None, sentence) where nothing usable is left.
 
-    checks: rows of the validator and of this stage; refusal: sentence, None where the campaign can
-    be tested; scales {name: value}; adopted: None or {name, unit, gain, interval} of the linear
-    effect, or two (a Pair's name), that belong to the model from here on; linear: the same of every
-    linear candidate, best first; screened: names of the candidates that only simulation tells of;
-    in_place: those that may be what the lowest record took for what is adopted; linear_stage:
-    whether the lowest record tells of the linear structure; still_linear: whether it does with what
-    is adopted, or touches then; nonlinear_low: the lowest record is not that of a linear structure;
-    chi_square of the lowest record; residual (channel,) over noise; delays {channel: s}; fit: the
-    ModalFit of the lowest record on the model with what was adopted; draw: see prepare.
-    """
-
-    checks: list
-    refusal: str | None = None
-    scales: dict = field(default_factory=dict)
-    adopted: dict | None = None
-    linear: list = field(default_factory=list)
-    screened: list = field(default_factory=list)
-    in_place: list = field(default_factory=list)
-    linear_stage: bool = False
-    still_linear: bool = False
-    nonlinear_low: bool = False
-    chi_square: float = 0.0
-    residual: list = field(default_factory=list)
-    delays: dict = field(default_factory=dict)
-    not_testable: list = field(default_factory=list)
-    fit: dict | None = None
-    draw: int = 0
-
-    def room(self, candidate):
-        """Return whether a Candidate or Pair may be missing beside what was adopted, or in its
-        place: no more than priors.MOST_EFFECTS are named.
-        """
-        adopted = (
-            []
-            if self.adopted is None or candidate.alone
-            else candidate_named(self.adopted["name"]).ids
-        )
-        return len(adopted) + len(candidate.ids) <= priors.MOST_EFFECTS
-
-    def beside_or_in_place(self, candidate):
-        """Return the Candidates that one is simulated as: beside what was adopted where there is
-        room, in its place where it may be what that was taken for.
-        """
-        return [candidate] * self.room(candidate) + [replace(candidate, alone=True)] * (
-            candidate.name in self.in_place
-        )
-
-
-def usable_campaign(path, checks, integration):
-    """Return (campaign Dataset, sentence or None): without the channels and records that the checks
-    leave out, at the sampling rate that it is compared at, and why that is too little.
+    integration: section of a configuration.
     """
     if refused(checks):
         return None, next(row["message"] for row in checks if row["level"] == "refuse")
@@ -118,7 +77,9 @@ def usable_campaign(path, checks, integration):
         return None, next(row["message"] for row in checks if row["check"] == LEFT_OUT)
     campaign, response = campaign.isel(channel=compared), response[:, compared]
     records = np.flatnonzero(force)
-    channels = np.flatnonzero(response[records].all(axis=0)) if len(records) else []
+    channels: np.ndarray | list[int] = (
+        np.flatnonzero(response[records].all(axis=0)) if len(records) else []
+    )
     contradicted = {
         row["channel"]
         for row in checks
@@ -133,8 +94,8 @@ def usable_campaign(path, checks, integration):
         int,
     )
     if len(records) < 2 or len(channels) < 1:
-        # a channel that fails in one record alone costs the record where that leaves more to look
-        # at
+        # where every channel fails in some record, or too few records are left, leave out records
+        # with a failing channel instead
         records = np.flatnonzero(force & response.all(axis=1))
         channels = np.arange(response.shape[1])
     if len(records) < 2:
@@ -142,9 +103,13 @@ def usable_campaign(path, checks, integration):
     return slower(campaign.isel(record=records, channel=channels), integration), None
 
 
-def workbench(config, campaign_path, prepared, seconds=None):
-    """Return the Workbench of a campaign, each record cut to so many seconds (None: whole), as the
-    linear stage left it: nuisances corrected, the linear effects adopted.
+def workbench(
+    config: ConfigPart, campaign_path: str | Path, prepared: Prepared, seconds: float | None = None
+) -> Workbench:
+    """Return the Workbench of a campaign with the results of the linear stage: nuisances corrected,
+    the linear effects adopted. Each record is cut to so many seconds, None for whole records.
+
+    Raises CampaignError where the checks leave nothing usable.
     """
     campaign, refusal = usable_campaign(campaign_path, prepared.checks, config.integration)
     if refusal:
@@ -162,7 +127,8 @@ def workbench(config, campaign_path, prepared, seconds=None):
                 **{name: np.array(value) for name, value in prepared.fit.items()}
             )
         bench.nuisance, _, _, pulls = corrected_nuisance(bench)
-        # what bends the record would be taken for nuisances: they are told beside a candidate alone
+        # a nonlinear response would be mistaken for nuisances: they are identified only together
+        # with a candidate
         if bench.nonlinear_low and not plausible(pulls):
             bench.nuisance, bench.modes_told = (
                 neutral(bench.measured_fit.modes, len(bench.signals.names)),
@@ -171,9 +137,9 @@ def workbench(config, campaign_path, prepared, seconds=None):
     return bench
 
 
-def prepare(config, campaign_path, draw=0):
+def prepare(config: ConfigPart, campaign_path: str | Path, draw: int = 0) -> Prepared:
     """Return the Prepared of a campaign file and a checked Config; draw: number of the draw of
-    seeds, of which verdicts shall not depend.
+    seeds, on which verdicts must not depend.
     """
     whole, checks = check_file(campaign_path)
     if whole is not None and not refused(checks):
@@ -248,23 +214,23 @@ def prepare(config, campaign_path, draw=0):
     out.still_linear = bool(bench.linear_stage)
     out.in_place = taken_for_linear(bench, fresh, out, candidates)
     out.screened = [candidate.name for candidate in candidates if out.beside_or_in_place(candidate)]
-    # a linear effect may be what makes it touch: those that come nearest are simulated where they
-    # look best
+    # contact may be the consequence of a linear effect: the best of them are simulated where they
+    # fit best
     if out.linear_stage and out.nonlinear_low:
         out.screened += [name for name in nearest_linear(out.linear) if name not in out.screened]
     return out
 
 
-def read_s(records, duration_s):
-    """Return the seconds that are read of each of so many records: less where they fill more than
-    one batch.
+def read_s(records: int, duration_s: float) -> float:
+    """Return the seconds that are analysed of each of so many records: fewer where they fill more
+    than one batch.
     """
     return min(max(priors.READ_S / ceil(records / LANES), priors.LEAST_READ_S), duration_s)
 
 
-def largest_motion(signals):
-    """Return m, what the response at the highest load would be at the low end of the band, of the
-    kind of motion that tells most; 0 where no channel measures a motion.
+def largest_motion(signals: Signals) -> float:
+    """Return the displacement in m that the response at the highest load would be at the low end of
+    the band, for the kind of motion that gives most; 0 where no channel measures a motion.
     """
     response, low = signals.response[signals.load.argmax()], 2.0 * np.pi * signals.band_Hz[0]
     return max(
@@ -277,9 +243,9 @@ def largest_motion(signals):
     )
 
 
-def motion_of_strains(signals, structure):
-    """Return m, the same of the speed that goes with the strains of a tube (section of a
-    configuration); 0 where no channel measures one.
+def motion_of_strains(signals: Signals, structure: ConfigPart) -> float:
+    """Return the same in m for the speed that goes with the strains of a tube; 0 where no channel
+    measures a strain. structure: section of a configuration.
     """
     gauges = signals.kinds == STRAIN
     if not gauges.any():
@@ -288,16 +254,20 @@ def motion_of_strains(signals, structure):
     return strain * speed_per_strain(structure) / (2.0 * np.pi * signals.band_Hz[0])
 
 
-def taken_for_linear(bench, fresh, prepared, candidates):
-    """Return the names of the Candidates that may stand in the place of what a Prepared adopts,
-    none where that is nothing, or a fault of the measuring chain.
+def taken_for_linear(
+    bench: Workbench,
+    fresh: Callable[[], Workbench],
+    prepared: Prepared,
+    candidates: Sequence[Candidate],
+) -> list[str]:
+    """Return the names of the Candidates that may explain the lowest record instead of what a
+    Prepared adopts, none where that is nothing, or a fault of the measuring chain.
 
-    bench: Workbench with what is adopted; fresh() gives another one.
+    bench: Workbench with what is adopted; fresh() gives one without it.
     """
     if prepared.adopted is None or candidate_named(prepared.adopted["name"]).effect.measured:
         return []
-    # it touches with what is adopted, or shows no modes then: there is nothing to rule a place out
-    # by
+    # with what is adopted the model touches, or no mode is seen: no place can be ruled out
     if not bench.linear_stage:
         return [candidate.name for candidate in candidates if candidate.effect.below_contact]
     bare = fresh()
@@ -305,18 +275,20 @@ def taken_for_linear(bench, fresh, prepared, candidates):
     return in_place(bare, candidates, prepared.adopted["gain"], prepared.scales["tube_translation"])
 
 
-def telling_modes(prepared, shown):
-    """Return those of the modes that the lowest record shows by which it tells of linear effects,
-    None where these are candidates as the others are.
+def telling_modes(
+    prepared: Prepared, shown: Sequence[int] | np.ndarray | None
+) -> Sequence[int] | np.ndarray | None:
+    """Return the modes that the lowest record shows where they identify linear effects, None where
+    linear effects are simulated as the others are.
 
-    A record that something bends shows modes, yet tells wrong which linear effect there is beside
-    it: a press that holds the tube hid nine times its damping.
+    A record with a nonlinear response shows modes, but identifies the wrong linear effect: a press
+    on the tube hid nine times its damping.
     """
     return shown if prepared.linear_stage and not prepared.nonlinear_low else None
 
 
-def mixed_up(bench):
-    """Return the rows of checks for channels that the bare linear model contradicts at the lowest
+def mixed_up(bench: Workbench) -> list[dict[str, Any]]:
+    """Return the rows of checks for channels that contradict the bare linear model at the lowest
     level: swapped, reversed, in another unit.
     """
     if not bench.linear_stage:
@@ -342,18 +314,17 @@ def mixed_up(bench):
     )
 
 
-def beside_first(measured, record, lines):
-    """Return (force_channel, line): what of each force of CampaignSignals goes with the first in a
-    record, 1 for that itself, at the lines of its transfer.
+def beside_first(measured: CampaignSignals, record: int, lines: int) -> np.ndarray:
+    """Return (force_channel, line): the transfer functions from the first force of CampaignSignals
+    to each force in a record, 1 for the first itself; lines: their number.
     """
     others = [force[1:] for force in measured.force]
     if not len(others[record]):
         return np.ones((1, lines))
-    alone = replace(measured, response=others)
-    return np.concatenate([np.ones((1, lines)), transfer(alone, record).h1])
+    spectra = transfer(replace(measured, response=others), record)
+    assert spectra is not None, "the record is long enough for transfer functions"
+    return np.concatenate([np.ones((1, lines)), spectra.h1])
 
 
-CONTRADICTED = (
-    "swapped channels",
-    "directions",
-)  # of the rows of mixed_up: these channels are left out
+# of the rows of mixed_up: these channels are left out
+CONTRADICTED = ("swapped channels", "directions")

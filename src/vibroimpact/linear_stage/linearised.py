@@ -1,13 +1,16 @@
-"""A model without contact as uncoupled modes: the linear part of its local elements folded into the
-modes.
+"""The modes of a model without contact, with the linear part of its local elements included, and
+the matching of modes of one model to those of another.
 """
 
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy import optimize
 
 from vibroimpact.contact.laws import LocalLaws
+from vibroimpact.reduction.modal_model import ModalModel
 
 MODE_ARRAYS = (
     "contact_shapes",
@@ -17,15 +20,13 @@ MODE_ARRAYS = (
     "stress_shapes",
     "element_shapes",
 )
-FREQUENCY_REACH, SHAPE_REACH = (
-    0.2,
-    0.3,
-)  # of ln frequency, and of 1 - MAC: as bad a match as each other
+# differences of ln frequency and of 1 - MAC that count the same
+FREQUENCY_REACH, SHAPE_REACH = 0.2, 0.3
 
 
-def linearised(model):
-    """Return the ModalModel whose modes hold the stiffness and damping of the local elements, which
-    are gone; of damping the diagonal is kept.
+def linearised(model: ModalModel) -> ModalModel:
+    """Return the ModalModel whose modes include the stiffness and damping of the local elements,
+    and that has no local elements; of modal damping the diagonal is kept.
     """
     laws = model.local_laws
     if not len(laws.stiffness) or not (np.any(laws.stiffness) or np.any(laws.damping)):
@@ -33,7 +34,9 @@ def linearised(model):
     shapes = model.element_shapes
     squares, turn = np.linalg.eigh(np.diag(model.omega**2) + (shapes * laws.stiffness) @ shapes.T)
     damping = np.diag(turn.T @ (np.diag(model.damping) + (shapes * laws.damping) @ shapes.T) @ turn)
-    fields = {name: np.tensordot(turn.T, getattr(model, name), axes=1) for name in MODE_ARRAYS}
+    fields: dict[str, Any] = {
+        name: np.tensordot(turn.T, getattr(model, name), axes=1) for name in MODE_ARRAYS
+    }
     fields["element_shapes"] = np.zeros((model.modes, 0))
     return replace(
         model,
@@ -45,11 +48,13 @@ def linearised(model):
     )
 
 
-def same_modes(model, modes, reference):
-    """Return (mode,) indices of the modes of `model` that are those of `reference` (a model) at
-    `modes`: alike in shape at the sensors, near in frequency.
+def same_modes(
+    model: ModalModel, modes: Iterable[int] | np.ndarray, reference: ModalModel
+) -> np.ndarray:
+    """Return (mode,) indices of the modes of `model` that correspond to `modes` of the reference:
+    similar in shape at the sensors, near in frequency.
     """
-    out = []
+    out: list[int] = []
     for mode in modes:
         wanted = reference.sensor_shapes[mode]
         alike = (model.sensor_shapes @ wanted) ** 2 / np.maximum(
@@ -62,9 +67,9 @@ def same_modes(model, modes, reference):
     return np.array(out)
 
 
-def matched(model, logs, shapes):
-    """Return (mode,) indices of the modes of a ModalModel, each once, that are most like modes of
-    ln rad/s logs (mode,) and shapes (channel, mode).
+def matched(model: ModalModel, logs: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Return (mode,) indices of the modes of a ModalModel, each at most once, that are most similar
+    to modes of ln rad/s logs (mode,) and shapes (channel, mode).
     """
     own = model.sensor_shapes
     alike = (own @ shapes) ** 2 / np.maximum(

@@ -1,8 +1,10 @@
-"""What the lowest record tells by itself: its modes, delays, linear effects, and where else a force
-acts.
+"""Main step of the linear stage: modes, delays and linear effects identified from the lowest record
+alone, and where another force acts in it.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 
@@ -14,26 +16,31 @@ from .acting_place import acting_place
 from .adopted import adopt
 from .candidates import candidate_named
 from .effect_fit import LinearChanges
+from .effect_pairs import Begun
+from .effect_readings import LinearTable
 from .effect_table import held, linear_rows, nameable
 from .findings import linear_findings
 from .goodness_of_fit import LinearMisfit
 from .lags import driven_modes
 from .mode_identification import left
 from .nearest_model import fit_from_nearest, translated
+from .prepared import Prepared
 from .scales import searched
-from .workbench import corrected_nuisance
+from .workbench import Workbench, corrected_nuisance
 
 
-def read_lowest(bench, fresh, out):
-    """Return the Workbench with what the lowest record tells: linear stage, delays, linear effects,
-    what is adopted; Prepared out is changed.
+def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared) -> Workbench:
+    """Return the Workbench with the linear effects that the lowest record identifies; Prepared out
+    is changed: linear stage, delays, linear effects, what is adopted.
 
-    bench: Workbench; fresh() gives another one.
+    fresh() gives a Workbench with nothing adopted.
     """
-    driven, begun, tables = driven_channels(bench), (), {}
-    if (
-        left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL
-    ):  # modes that moved too far to be followed: begin from the effects that come nearest
+    driven = driven_channels(bench)
+    begun: Begun = ()
+    tables: dict[str, LinearTable] = {}
+    # modes shifted too far from the model's: begin the fit from the effects whose spectra come
+    # nearest
+    if left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL:
         bench.measured_fit, begun = fit_from_nearest(
             bench, LinearChanges(bench), out.scales, held(bench.campaign)
         )
@@ -54,12 +61,12 @@ def read_lowest(bench, fresh, out):
     _, _, out.chi_square, _ = corrected_nuisance(bench)
     out.residual = fit.residual.tolist()
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
-    told = read_driven(bench, fresh, out, begun)
-    bench = read_all(bench, fresh, out, tables, begun) if told is None else told
+    identified = read_driven(bench, fresh, out, begun)
+    bench = read_all(bench, fresh, out, tables, begun) if identified is None else identified
     if out.adopted is not None and not adopted_explains(bench, fresh, out.adopted):
         out.adopted, out.nonlinear_low, bench = None, True, fresh()
         bench.measured_fit = fit
-    # of the last fit: where modes moved far, the first one is late by what it misses
+    # of the last fit: where modes shifted far, misfit of the first one appears as delay
     fit = bench.measured_fit or fit
     out.delays = {
         name: float(lag)
@@ -91,13 +98,15 @@ def read_lowest(bench, fresh, out):
     return bench
 
 
-def read_driven(bench, fresh, out, begun):
-    """Return the Workbench with the linear effect that those modes tell which the force drives in
-    the model, where all that the record shows fits with it; Prepared out is changed. None where it
-    does not, and where the force drives all that were read.
+def read_driven(
+    bench: Workbench, fresh: Callable[[], Workbench], out: Prepared, begun: Begun
+) -> Workbench | None:
+    """Return the Workbench with the linear effect identified from the modes that the force drives
+    in the model alone, where the whole record fits with it; Prepared out is changed. None where it
+    does not fit, and where the force drives all modes that were fitted.
 
-    Where modes moved far, one that is not driven is fitted to what the others leave: it stayed at
-    276 Hz, known to a ten-thousandth, and no effect of the model was let move the others as far.
+    Where modes shifted far, a mode that is not driven is fitted to the residual of the others. One
+    such stayed at 276 Hz with a scatter of 1e-4, so that no effect could shift the others enough.
     """
     driven = driven_modes(bench.bare, bench.measured_fit.modes)
     if driven.all() or not driven.any():
@@ -119,9 +128,9 @@ def read_driven(bench, fresh, out, begun):
     return read_again(moved, fresh, out, {}, begun, driven_alone=True)
 
 
-def told_apart(rows):
-    """Return whether the best single effect of rows of linear_rows is told from the others: a force
-    that is turned drives its modes as one with another gain does.
+def told_apart(rows: Sequence[dict[str, Any]]) -> bool:
+    """Return whether the best single effect of rows of linear_rows is distinguished from the
+    others: a force in another direction drives its modes as one of another gain does.
     """
     singles = [row for row in rows if "+" not in row["name"]]
     first = candidate_named(singles[0]["name"]).ids
@@ -129,8 +138,14 @@ def told_apart(rows):
     return singles[0]["gain"] > max(others, default=-np.inf) + priors.LINEAR_AMBIGUOUS
 
 
-def read_all(bench, fresh, out, tables, begun):
-    """Return the Workbench with the linear effects that all modes tell which the lowest record
+def read_all(
+    bench: Workbench,
+    fresh: Callable[[], Workbench],
+    out: Prepared,
+    tables: dict[str, LinearTable],
+    begun: Begun,
+) -> Workbench:
+    """Return the Workbench with the linear effects identified from all modes that the lowest record
     shows; Prepared out is changed.
     """
     driven, fit = driven_channels(bench), bench.measured_fit
@@ -142,15 +157,15 @@ def read_all(bench, fresh, out, tables, begun):
         out.adopted, bench = row, fresh()
         bench.measured_fit = fit
         adopt(bench, out)
-        # modes that moved far are fitted well only from the model that moved them: what is left
-        # there tells whether the structure is linear
+        # modes that shifted far are fitted well only from the model with the effect: the residual
+        # of that fit shows whether the structure is linear
         rest = bench.measured_fit.residual[driven].max() if bench.linear_stage else np.inf
         if rest < priors.LINEAR_RESIDUAL:
             out.nonlinear_low = False
             bench = read_again(bench, fresh, out, tables, begun)
             break
         leaves.append((rest, row, bench))
-    else:  # the modes were read without it: one effect, unless two leave less
+    else:  # no residual is small: prefer effects that explain the record, then the least residual
         if leaves:
             leaves.sort(key=lambda one: (not adopted_explains(one[2], fresh, one[1]), one[0]))
             _, out.adopted, bench = leaves[0]
@@ -160,14 +175,16 @@ def read_all(bench, fresh, out, tables, begun):
     return bench
 
 
-def adopted_explains(bench, fresh, adopted):
-    """Return whether what was adopted (a row of linear_rows), read again with it in the model of a
-    Workbench, explains the lowest record, or most of what is beyond chance there: a structure that
-    touches already differs from every linear one, and some of them come nearer.
+def adopted_explains(
+    bench: Workbench, fresh: Callable[[], Workbench], adopted: dict[str, Any]
+) -> bool:
+    """Return whether what was adopted (a row of linear_rows) explains the lowest record, or most of
+    the misfit beyond chance, when the modes are fitted again with it in the model of a Workbench. A
+    structure that touches already differs from every linear one, but some of these come nearer.
 
     fresh() gives a Workbench without it.
     """
-    if not bench.linear_stage:  # it touches with what was adopted, which tells nothing against it
+    if not bench.linear_stage:  # the model touches with it, which is no evidence against it
         return True
     given = fresh()
     given.measured_fit = translated(bench.measured_fit, bench.bare, given.bare)
@@ -183,19 +200,27 @@ UNREAD_MESSAGE = (
 )
 
 
-def read_again(moved, fresh, out, tables, begun, driven_alone=False):
-    """Return the Workbench with what the lowest record tells once its modes are fitted from the
-    model that moved them; Prepared out is changed.
+def read_again(
+    moved: Workbench,
+    fresh: Callable[[], Workbench],
+    out: Prepared,
+    tables: dict[str, LinearTable],
+    begun: Begun,
+    driven_alone: bool = False,
+) -> Workbench:
+    """Return the Workbench with the linear effects identified again from modes that are fitted from
+    the model with the adopted effects, at most AGAIN times until they are the same; Prepared out is
+    changed.
 
-    moved: Workbench with effects adopted; fresh() gives another one, whose own fit may be percents
-    off where a mode moved far: half a kilogram was read as 3 % more, and a second effect made of
-    the difference. Where that tells of other effects, once more. driven_alone: by the modes alone
-    that the force drives, see read_driven.
+    moved: Workbench with effects adopted; fresh() gives one without them, whose own fit may be
+    percents off where a mode shifted far: half a kilogram was found 3 % too large, and a second
+    effect made up the difference. driven_alone: from the modes alone that the force drives, see
+    read_driven.
     """
+    assert out.adopted is not None, "there is an adopted effect"
     for _ in range(AGAIN):
-        if (
-            moved.values is moved.given or moved.measured_fit is None
-        ):  # a fault of the chain moves no mode
+        # a fault of the measuring chain shifts no mode
+        if moved.values is moved.given or moved.measured_fit is None:
             return moved
         bare, before = fresh(), candidate_named(out.adopted["name"]).ids
         fit = moved.measured_fit
@@ -208,7 +233,7 @@ def read_again(moved, fresh, out, tables, begun, driven_alone=False):
         out.linear, out.adopted = rows, rows[0]
         if candidate_named(rows[0]["name"]).ids == before:
             break
-        moved = fresh()  # fitted anew from the model that holds what is adopted now
+        moved = fresh()  # fitted again from the model with what is adopted now
         adopt(moved, out)
     adopt(bare, out)
     return bare

@@ -1,30 +1,41 @@
-"""Where the resonances of a record are when the model does not tell: one after the other, each
-where it explains most of what is left.
+"""Resonances of a record found without the frequencies of the model, one after the other, each
+where it explains most of the residual: part of the identification of modes.
 
 Orthogonal matching pursuit (Y.C. Pati, R. Rezaiifar, P.S. Krishnaprasad, Asilomar Conf., 1993) over
-single-mode responses to the measured force; the modes found are then given to those of the model by
-shape and frequency.
+single-mode responses to the measured force. The modes found are then assigned to those of the model
+by shape and frequency.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 from scipy import linalg, optimize
 
+from vibroimpact.observation.linear_record import LinearRecord
 from vibroimpact.observation.sensed_motion import kind_groups
+from vibroimpact.reduction.modal_model import ModalModel
 
 from .modal_fit import combined
 
 SPACING = 2.0e-3  # of ln frequency between the resonances that are tried
-BESIDE = 6  # of them: nearer ones are the same mode
-AT_ONCE = 32
-FAR = 0.3  # of ln frequency: as bad a match as another shape altogether
+BESIDE = 6  # of these steps: nearer resonances are the same mode
+AT_ONCE = 32  # resonances whose responses are computed at a time
+FAR = 0.3  # of ln frequency: as bad a match as an orthogonal shape
 
 
-def pursued(record, measured, weights, count, zeta, kinds):
+def pursued(
+    record: LinearRecord,
+    measured: np.ndarray,
+    weights: np.ndarray,
+    count: int,
+    zeta: float,
+    kinds: Sequence[str] | np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
     """Return (ln rad/s (count,), shapes (channel, count)) of the resonances of measured (channel,
     line), weighted by weights of the same shape.
 
-    record: LinearRecord; count: how many; zeta: damping ratio of the resonances that are tried;
-    kinds (channel,): of motion.
+    count: how many; zeta: damping ratio of the resonances that are tried; kinds (channel,): of
+    motion.
     """
     logs = np.arange(
         np.log(2.0 * np.pi * record.frequency[0]),
@@ -33,8 +44,8 @@ def pursued(record, measured, weights, count, zeta, kinds):
     )
     omega = np.exp(logs)
     drive = np.eye(1, record.spectrum.shape[0])
-    # the largest arrays of the linear stage: in single precision, and not at once from one of
-    # double precision and several times its length
+    # the largest arrays of the linear stage: in single precision, and computed in parts, so that no
+    # array of double precision is as large
     basis, channels = {}, kind_groups(kinds)
     for kind in channels:
         basis[kind] = np.concatenate(
@@ -45,7 +56,9 @@ def pursued(record, measured, weights, count, zeta, kinds):
         )
 
     def against(values, lines):
-        """(channel, tried): values (channel, line) times the lines of each channel's basis."""
+        """Return (channel, tried): values (channel, line) times the lines of each channel's
+        basis.
+        """
         out = np.empty((len(values), len(omega)), values.dtype)
         for kind, own in channels.items():
             out[own] = (lines(basis[kind]) @ values[own].T).T
@@ -72,9 +85,11 @@ def pursued(record, measured, weights, count, zeta, kinds):
     return logs[chosen], shapes
 
 
-def assigned(logs, shapes, model, modes):
-    """Return (mode,) ln of found over the model's frequency, for modes (mode,) of a ModalModel that
-    pursued found as logs, shapes, in any order.
+def assigned(
+    logs: np.ndarray, shapes: np.ndarray, model: ModalModel, modes: np.ndarray
+) -> np.ndarray:
+    """Return (mode,) ln of the found over the model's frequency of modes (mode,) of a ModalModel;
+    logs, shapes: as pursued returns them, in any order.
     """
     own = model.sensor_shapes[modes]
     match = (own @ shapes) ** 2 / np.maximum(

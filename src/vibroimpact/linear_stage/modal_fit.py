@@ -1,40 +1,50 @@
-"""One fit of modes to a record's lines: frequencies and damping by Gauss-Newton, participations,
-which are linear, solved for at each step.
+"""One fit of modes to the Fourier lines of a record: frequencies and damping by Gauss-Newton,
+participations, which are linear, solved for at each step. mode_identification says which modes.
 
 Variable projection: G.H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
 
+from vibroimpact.observation.linear_record import LinearRecord
 from vibroimpact.observation.sensed_motion import kind_groups
+from vibroimpact.reduction.modal_model import ModalModel
 
 ITERATIONS = 12  # of Gauss-Newton at most
-RESIDUAL_SHARE = 0.01  # of a channel's response that two codes may differ by, beside the noise
+RESIDUAL_SHARE = 0.01  # of a channel's response by which two codes may differ, besides the noise
 LARGEST_LOG_DAMPING = 3.0
-IDLE = 1.0e-9  # of the change with the logarithm that changes most
+IDLE = 1.0e-9  # of the largest slope: a logarithm of less is not fitted
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
-SINGULAR = 1.0e-9  # of the largest mode in a channel: less beside the others is not told from none
-SETTLED = 1.0e-6  # of what is left: a step that promises less is not taken
-SEARCH = (
-    0.02  # of the frequency, to either side, in steps of half the bandwidth: where the fit starts
-)
+# of the largest mode in a channel: a mode that differs from the others by less is not separated
+SINGULAR = 1.0e-9
+SETTLED = 1.0e-6  # of the residual: a step that promises to reduce it by less is not taken
+# of the frequency, to either side, in steps of half the bandwidth: where the start is searched
+SEARCH = 0.02
+
+Start = tuple[np.ndarray, np.ndarray] | np.ndarray | None  # see ModalLines.fit
 
 
 @dataclass(frozen=True)
 class ModalFit:
-    """What the fit of one record found.
+    """Modal parameters fitted to one record.
 
-    modes (fitted,) indices into the model's; log_frequency, log_damping (fitted,): ln of the fitted
-    over the model's value; participation (channel, fitted): response per unit modal response to the
-    force on `drive` (fitted, force_channel); covariance of [log_frequency, log_damping] (2 fitted,
-    2 fitted); shape_covariance (channel, fitted, fitted) of participations with these as they are;
-    shape_slopes (channel, fitted, 2 fitted): what participations change with these; delay
-    (channel,) s by which a channel lags the others' fit, 0 where it is not to be told from none;
-    residual (channel,): RMS of what is left over that of the noise and of RESIDUAL_SHARE of the
-    response, in the band; share (channel,): residual over response, RMS.
+    modes (fitted,): indices of the model's modes.
+    log_frequency, log_damping (fitted,): ln of the fitted over the model's value.
+    participation (channel, fitted): response per unit modal response to the force on drive.
+    drive (fitted, force_channel).
+    covariance (2 fitted, 2 fitted): of [log_frequency, log_damping].
+    shape_covariance (channel, fitted, fitted): of participations with these fixed.
+    shape_slopes (channel, fitted, 2 fitted): derivatives of participations by these.
+    delay (channel,): s by which a channel lags the fit of the others, 0 where not significant.
+    residual (channel,): RMS of the residual over that of the noise and of RESIDUAL_SHARE of the
+    response, in the band.
+    share (channel,): residual over response, RMS.
     """
 
     modes: np.ndarray
@@ -49,9 +59,9 @@ class ModalFit:
     residual: np.ndarray
     share: np.ndarray
 
-    def of_modes(self, kept):
-        """Return the ModalFit of some modes, kept (fitted,) bool or their places in another order,
-        with what all of them left.
+    def of_modes(self, kept: np.ndarray) -> ModalFit:
+        """Return the ModalFit of some modes, kept (fitted,) bool or their positions in another
+        order, with the residual of all of them.
         """
         kept = np.arange(len(self.modes))[kept]
         both = np.concatenate([kept, kept + len(self.modes)])
@@ -68,9 +78,9 @@ class ModalFit:
         )
 
     @property
-    def joint_covariance(self):
+    def joint_covariance(self) -> np.ndarray:
         """Return the covariance of [log_frequency, log_damping, participation], channel by channel
-        of the last: of two modes side by side a channel tells the sum and hardly the difference.
+        of the last: of two close modes a channel determines the sum and hardly the difference.
         """
         channels, modes = self.participation.shape
         slopes = self.shape_slopes.reshape(channels * modes, 2 * modes)
@@ -82,15 +92,23 @@ class ModalFit:
 class ModalLines:
     """The lines of a record to which modes are fitted.
 
-    record: LinearRecord; measured, weights: (channel, line); model: ModalModel; modes (fitted,):
-    indices of its modes that are fitted; drive (fitted, force_channel); kinds (channel,): of
-    motion or strain.
+    measured, weights: (channel, line). modes (fitted,): indices of the model's modes that are
+    fitted. drive (fitted, force_channel). kinds (channel,): of motion or strain.
 
-    A channel that is off by a share of its gain has the base's own motion taken out by that share
-    too little. So beside the modes each channel may show any amount of it (LinearRecord.base).
+    From a channel with an error of its gain the motion of the base is subtracted with the same
+    error. So besides the modes each channel may contain any amount of it (LinearRecord.base).
     """
 
-    def __init__(self, record, measured, weights, model, modes, drive, kinds):
+    def __init__(
+        self,
+        record: LinearRecord,
+        measured: np.ndarray,
+        weights: np.ndarray,
+        model: ModalModel,
+        modes: np.ndarray,
+        drive: np.ndarray,
+        kinds: Sequence[str] | np.ndarray,
+    ) -> None:
         self.record, self.measured, self.weights, self.modes, self.drive, self.kinds = (
             record,
             measured,
@@ -105,12 +123,19 @@ class ModalLines:
             len(modes),
         )
 
-    def fit(self, seen, noise, delay, start=None, phases=False):
+    def fit(
+        self,
+        seen: np.ndarray,
+        noise: np.ndarray,
+        delay: np.ndarray,
+        start: Start = None,
+        phases: bool = False,
+    ) -> ModalFit:
         """Return the ModalFit (participations complex where `phases`).
 
-        seen (channel, fitted) bool: the participations that there are; noise, delay: (channel,),
-        see ModalFit; start: (log_frequency, log_damping) to begin from, or log_frequency alone, or
-        None: the frequency at which each mode's own resonance fits best.
+        seen (channel, fitted) bool: the participations that are fitted, the others are 0; noise,
+        delay (channel,): see ModalFit; start: (log_frequency, log_damping) to begin from, or
+        log_frequency alone, or None: the frequency at which each mode's own resonance fits best.
         """
         logs = np.zeros(2 * self.count)
         if isinstance(start, tuple):
@@ -137,10 +162,10 @@ class ModalLines:
                 damp *= 20.0
                 if damp > 1.0e3:
                     break
+            assert best is not None, "the first iteration sets it"
             length = np.linalg.norm(slopes, axis=0)
-            length = np.where(
-                length > IDLE * length.max(), length, np.inf
-            )  # a mode that takes no part stays where it is, and spoils no equation
+            # the parameters of a mode that does not respond are not changed
+            length = np.where(length > IDLE * length.max(), length, np.inf)
             jacobian = slopes / length
             fall = jacobian.T @ _real(best[3]).ravel()
             step = linalg.solve(
@@ -157,9 +182,9 @@ class ModalLines:
             )
         return self._result(best, slopes, shape_slopes, seen, noise, delay)
 
-    def explains_more(self, found, seen, more):
-        """Return whether a ModalFit with the participations `seen` would leave less with `more` of
-        them, both (channel, fitted) bool, frequencies and damping as they are.
+    def explains_more(self, found: ModalFit, seen: np.ndarray, more: np.ndarray) -> bool:
+        """Return whether the residual of a ModalFit with the participations `seen` is smaller with
+        those of `more`, both (channel, fitted) bool, frequencies and damping fixed.
         """
         basis = self._basis(np.concatenate([found.log_frequency, found.log_damping]))
         one, other = (
@@ -178,13 +203,13 @@ class ModalLines:
         return responses_of(self.record, *self._at(logs), self.drive, self.kinds)
 
     def _left(self, shapes, basis):
-        """Return (channel, line), weighted: what participations (channel, fitted) leave."""
+        """Return (channel, line): the weighted residual of participations (channel, fitted)."""
         left = self.measured - combined(shapes, basis, self.kinds)
         return self.weights * without_base(left, self.record, self.weights)
 
     def _beside_base(self, rows, channel):
-        """Return weighted rows (row, line) of a channel, with the base's own motion in it as one
-        more where it has any.
+        """Return weighted rows (row, line) of a channel, and one more of the motion of the base
+        where the channel contains it.
         """
         base = self.record.base
         if base is None or not base[channel].any():
@@ -192,7 +217,7 @@ class ModalLines:
         return np.concatenate([rows, (self.weights[channel] * base[channel])[None]])
 
     def _participations(self, basis, seen, phases=False):
-        """Return (channel, fitted): those with which the modes leave least."""
+        """Return (channel, fitted): the participations of the least residual."""
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
             rows = self.weights[c] * basis[self.kinds[c]][seen[c]]
@@ -207,12 +232,12 @@ class ModalLines:
         return shapes
 
     def _slopes(self, best, seen):
-        """Return (2 channel line, 2 fitted): the weighted change of the fit with each logarithm,
-        without what the participations would take up; and (channel, fitted, 2 fitted): the change
-        of these.
+        """Return (2 channel line, 2 fitted): the derivatives of the weighted fit by each logarithm,
+        without what participations would compensate; and (channel, fitted, 2 fitted): the
+        derivatives of these.
 
-        The simplification of L. Kaufman (BIT 15, 1975): the change of the basis, projected out of
-        the basis, channel by channel.
+        The simplification of L. Kaufman (BIT 15, 1975): the derivative of the basis, without its
+        projection onto the basis, channel by channel.
         """
         logs, shapes, basis, _ = best
         change = {
@@ -233,7 +258,7 @@ class ModalLines:
             slopes[channel] = own - span @ inside
             count = int(seen[channel].sum())
             if count:
-                # what the change of the modes alone would do is made up for by participations
+                # participations compensate what lies in the span of the basis
                 taken[channel, seen[channel]] = -(_inverse(turn) @ inside)[:count]
         return slopes.reshape(-1, 2 * self.count), taken
 
@@ -257,8 +282,8 @@ class ModalLines:
         )
 
     def _shape_covariance(self, basis, seen, left):
-        """Return (channel, fitted, fitted): the covariance of participations, of lines that leave
-        the weighted mean square left (channel,).
+        """Return (channel, fitted, fitted): the covariance of participations; left (channel,): the
+        weighted mean square of the residual.
         """
         out = np.zeros((len(seen), self.count, self.count))
         for channel in np.flatnonzero(seen.any(axis=1)):
@@ -272,8 +297,8 @@ class ModalLines:
         return out
 
     def _start(self):
-        """Return (fitted,) ln of the frequency at which the mode alone explains most near its
-        resonance, within SEARCH.
+        """Return (fitted,) ln of the factor of the frequency at which the mode alone explains most
+        near its resonance, within SEARCH.
         """
         frequency, out = self.record.frequency, np.zeros(self.count)
         for number, omega in enumerate(self.omega):
@@ -294,23 +319,30 @@ class ModalLines:
                 explained += np.real(b.conj() @ y) ** 2 / np.maximum(
                     np.sum(np.abs(b) ** 2, axis=-1), 1.0e-300
                 )
-            prior = (
-                -0.5 * (grid / 0.006) ** 2 * 0.02 * explained.max()
-            )  # between equals the one near the model
+            # of frequencies that explain as much the one near the model is preferred
+            prior = -0.5 * (grid / 0.006) ** 2 * 0.02 * explained.max()
             out[number] = grid[np.argmax(explained + prior)]
         return out
 
 
-def responses_of(record, omega, damping, drive_shapes, kinds):
+def responses_of(
+    record: LinearRecord,
+    omega: np.ndarray,
+    damping: np.ndarray,
+    drive_shapes: np.ndarray,
+    kinds: Sequence[str] | np.ndarray,
+) -> dict[str, np.ndarray]:
     """Return {kind: (mode, line)}: LinearRecord.responses of each kind of motion in kinds."""
     return {
         kind: record.responses(omega, damping, drive_shapes, kind) for kind in kind_groups(kinds)
     }
 
 
-def combined(shapes, basis, kinds):
-    """Return (channel, line): what channels of participations shapes (channel, mode) show of
-    responses {kind: (mode, line)}, each by its own kind (channel,).
+def combined(
+    shapes: np.ndarray, basis: dict[str, np.ndarray], kinds: Sequence[str] | np.ndarray
+) -> np.ndarray:
+    """Return (channel, line): the response of channels with participations shapes (channel, mode)
+    to modal responses {kind: (mode, line)}, each of its own kind (channel,).
     """
     lines = next(iter(basis.values()))
     out = np.empty((len(shapes), lines.shape[1]), complex)
@@ -319,9 +351,9 @@ def combined(shapes, basis, kinds):
     return out
 
 
-def without_base(lines, record, weights):
-    """Return lines (channel, line) less as much of the base's own motion in each channel as leaves
-    least of them by weights (channel, line); record: LinearRecord.
+def without_base(lines: np.ndarray, record: LinearRecord, weights: np.ndarray) -> np.ndarray:
+    """Return lines (channel, line) minus the multiple of the motion of the base in each channel
+    that fits them best by weights (channel, line).
     """
     if record.base is None:
         return lines
@@ -332,7 +364,7 @@ def without_base(lines, record, weights):
 
 
 def _inverse(turn):
-    """Return the inverse of an upper triangular matrix, finite where two modes are one."""
+    """Return the inverse of an upper triangular matrix, finite where two modes coincide."""
     size = np.abs(np.diag(turn))
     ridge = np.diag(np.where(size < SINGULAR * size.max(initial=0.0), SINGULAR * size.max(), 0.0))
     return linalg.solve_triangular(turn + ridge, np.eye(len(turn)))

@@ -1,28 +1,38 @@
-"""Modal parameters of a low-level record: frequencies, damping and participations fitted to its
-waveform, run from rest to its end.
+"""Identification of the modes of the lowest record: frequencies, damping and participations fitted
+to the Fourier lines of its response to the measured force, from rest to its end.
 
-The same fit reads the measured and a simulated record, so that what it can not do it does to both:
-which modes, from where, and by which participations; see modal_fit for a fit itself.
+The measured and a simulated record are analysed alike, so that errors of the method are the same in
+both. Here it is decided which modes are fitted, from which start and with which participations; a
+fit itself is in modal_fit.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.observation.linear_record import LinearRecord
 from vibroimpact.observation.sensed_motion import differentiated, kind_groups, of_modes, orders
 from vibroimpact.observation.strain import STRAIN, as_displacements, gauges_of
+from vibroimpact.reduction.modal_model import ModalModel
 
 from .lags import driven_modes, from_phases, lags
 from .matching_pursuit import assigned, pursued
-from .modal_fit import LARGEST_LOG_DAMPING, ModalLines, combined, responses_of, without_base
-
-MODEL_ERROR = (
-    3.0e-3  # of the response at a line, beside the noise: keeps the weights of strong lines finite
+from .modal_fit import (
+    LARGEST_LOG_DAMPING,
+    ModalFit,
+    ModalLines,
+    combined,
+    responses_of,
+    without_base,
 )
-# of the typical line: what the ends of a record and modes far above the band leave in every line
+
+# of the response at a line, besides the noise: keeps the weights of strong lines finite
+MODEL_ERROR = 3.0e-3
+# of the typical line: error in every line by the ends of a record and modes far above the band
 LEAK = 2.0e-3
-# of the largest response, read as the same kind of motion: what a converter of 20 bits makes of a
-# channel that does not move
+# of the largest response, converted to the same kind of motion: resolution of a converter of 20
+# bits, in a channel that does not move
 RESOLVED = 1.0e-6
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
@@ -30,22 +40,31 @@ LEAST_LAG_S = 2.0e-5
 # of a mode's largest displacement among the channels: below it a channel does not see the mode in
 # the model
 SILENT = 1.0e-4
-BESIDE = 0.03  # of ln frequency: modes nearer than this are ill told apart in a channel
-# of the mode that a base drives most: a base drives the others by what is left of a sum over the
-# whole structure that all but cancels, of which no model tells the rest
+BESIDE = 0.03  # of ln frequency: closer modes are hardly separated in a channel
+# of the mode that a base drives most: the drive of other modes is the remainder of a sum over the
+# whole structure that nearly cancels, which no model predicts
 HARDLY = 0.02
-AT_ONCE = 32  # modes, so that their lines fit into little memory
-LOST = 6.0  # times the noise: a fit that leaves more in a channel began at the wrong frequencies
+AT_ONCE = 32  # modes whose lines are computed at a time, to save memory
+LOST = 6.0  # times the noise: a larger residual in a channel means a start at wrong frequencies
 
 
-def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=True):
-    """Return the ModalFit of responses (channel, sample) to the force of a LinearRecord.
+def fit_modes(
+    record: LinearRecord,
+    responses: np.ndarray,
+    model: ModalModel,
+    kinds: Sequence[str] | np.ndarray,
+    noise_rms: np.ndarray,
+    visible: np.ndarray | None = None,
+    search: bool = True,
+) -> ModalFit | None:
+    """Return the ModalFit of responses (channel, sample) to the force of a LinearRecord, None where
+    no mode is visible.
 
-    model: ModalModel attached to the campaign; kinds (channel,), see sensed.SENSED; noise_rms
-    (channel,) in the band. visible: the modes to fit, as another fit had them; chosen by their
-    predicted share where it is None; search: where the model's frequencies lead nowhere, look for
-    resonances without it. Contact forces take no part: participation, delay and
-    share are 0 and the residual is 1, that of noise. Returns None where no mode is visible.
+    model: ModalModel attached to the campaign; kinds (channel,): see sensed_motion.SENSED;
+    noise_rms (channel,): in the band; visible: indices of the modes to fit, None to choose them by
+    their predicted response; search: whether to look for resonances without the model where the fit
+    from its frequencies is bad. Contact forces are not fitted: their participation, delay and share
+    are 0 and their residual is 1, that of noise.
     """
     moves, kinds = of_modes(kinds), np.asarray(kinds)
     if not moves.any():
@@ -64,8 +83,8 @@ def fit_modes(record, responses, model, kinds, noise_rms, visible=None, search=T
 
 
 def _largest(record, measured, kinds):
-    """Return (channel,): the largest RMS of measured (channel, line) among all channels, read as
-    motion of its kind; of a strain among the strains.
+    """Return (channel,): the largest RMS of measured (channel, line) among all channels, converted
+    to its kind of motion; for a strain among the strains.
     """
     order, gauges = orders(kinds), np.asarray(kinds) == STRAIN
     omega = 2.0 * np.pi * np.maximum(record.frequency, record.frequency[record.frequency > 0].min())
@@ -77,7 +96,7 @@ def _largest(record, measured, kinds):
     return np.sqrt(np.max(power, axis=-1))
 
 
-def with_sensors(model, chosen):
+def with_sensors(model: ModalModel, chosen: np.ndarray) -> ModalModel:
     """Return the ModalModel with the sensors chosen (sensor,) bool alone."""
     gauges = gauges_of(model)
     return replace(
@@ -91,7 +110,7 @@ def with_sensors(model, chosen):
 
 
 def _among_all(found, moves):
-    """Return a ModalFit of the channels that measure a motion, moves (channel,), as one of all."""
+    """Return a ModalFit of the channels that show modes, moves (channel,), as one of all."""
 
     def placed(values, other):
         out = np.full((len(moves), *values.shape[1:]), other, values.dtype)
@@ -112,8 +131,8 @@ def _among_all(found, moves):
 
 
 def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
-    """Return the ModalFit from the model's frequencies, or from where the resonances are found
-    without it.
+    """Return the ModalFit from the model's frequencies, or, elsewhere, from those of the resonances
+    found without it.
     """
     measured = record.spectra(np.asarray(responses, float))
     near = np.flatnonzero(
@@ -144,9 +163,8 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
     )
     delay, lag, start = np.zeros(len(measured)), None, np.zeros(len(visible)) if fixed else None
     found = None
-    for _ in range(
-        3
-    ):  # modes that the model does not excite, and delays, are seen once the rest is taken out
+    # modes that the model does not excite, and delays, are seen once the others are fitted
+    for _ in range(3):
         drive = model.drive_shapes[visible].copy()
         drive[~driven_modes(model, visible), 0] = 1.0
         rest = _rest(record, model, visible, kinds)
@@ -163,22 +181,21 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
                 kinds,
             )
 
-        if (
-            not fixed and lag is None
-        ):  # a late channel would pull the fit of all: first with a phase for every participation
+        # a delayed channel would bias the fit of all: first with a phase for every participation
+        if not fixed and lag is None:
             start = (
                 _elsewhere(record, lines_at(delay).measured, weights, model, visible, kinds)
                 if elsewhere
                 else None
             )
             lag, start = _lags(lines_at, delay, strict, noise, model, start)
-            delay = _told(lag)
+            delay = _significant(lag)
         lines = lines_at(delay)
         known = lines.fit(strict, noise, delay, start)
         begun = [(known.log_frequency, known.log_damping)]
         if not fixed or lines.explains_more(known, strict, more):
-            # what breaks a symmetry lets a channel see modes that it does not in the model: looked
-            # at from the beginning, and once the modes are where they are
+            # in a structure less symmetric than the model, channels see more modes: they are fitted
+            # from the start, and from the frequencies found
             begun = [start, *begun]
         before, found = (
             found,
@@ -187,12 +204,11 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
         if fixed:
             break
         if before is not None and left(found, model) >= LOST > left(before, model):
-            # of a mode that is hardly driven, phases are not told, and make channels late
+            # the phases of a hardly driven mode are not determined, and give false delays
             found = before
             break
-        nothing = (
-            np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING
-        )  # modes that the model excites and the record does not hold
+        # modes that the model excites and that are not in the record
+        nothing = np.abs(found.log_damping) > 0.98 * LARGEST_LOG_DAMPING
         if nothing.any() and not nothing.all():
             lag, start, visible = None, None, visible[~nothing]
             continue
@@ -206,8 +222,8 @@ def _fit(record, responses, model, kinds, noise_rms, visible, elsewhere=False):
 
 
 def _turned_back(measured, record, delay):
-    """Return (channel, line) measured lines without delays (channel,) s; what is late is the
-    absolute motion of a structure on a moving base.
+    """Return (channel, line) measured lines without delays (channel,) s; on a moving base, what is
+    delayed is the absolute motion.
     """
     turn = np.exp(2j * np.pi * record.frequency * delay[:, None])
     if record.base is None:
@@ -217,11 +233,11 @@ def _turned_back(measured, record, delay):
 
 def _lags(lines_at, delay, seen, noise, model, start):
     """Return ((channel,) s by which channels lag, ln frequency (fitted,)) of a fit with a phase for
-    every participation; lines_at(delay) -> ModalLines with channels turned back; delay: what is
-    known so far, and is returned where the fit leads nowhere.
+    every participation; lines_at(delay): ModalLines with delays compensated; delay: the one known
+    so far, which is returned where the fit is bad.
 
-    Between its resonances no phase of each mode stands for milliseconds: a channel so late spoils
-    the fit, and is turned back by what its lines tell first.
+    A phase for each mode does not represent a delay of milliseconds between resonances. Such a
+    delay is first found from the phases of all lines, and compensated.
     """
     lines = lines_at(delay)
     first = free = lines.fit(seen, noise, delay, start, phases=True)
@@ -231,12 +247,12 @@ def _lags(lines_at, delay, seen, noise, model, start):
             free = lines_at(delay).fit(seen, noise, delay, start, phases=True)
         if left(free, model) >= LOST:
             return before, first.log_frequency
-    # a base drives few modes, and a change of the structure turns the sense of one of them
+    # a base drives few modes, and a change of the structure may reverse the sign of one of them
     return delay + lags(free, model, lines.record.base is None), free.log_frequency
 
 
-def _told(lag):
-    """Return (channel,) s the delays that can be told from none."""
+def _significant(lag):
+    """Return (channel,) s the delays, 0 where they are not larger than LEAST_LAG_S."""
     return np.where(np.abs(lag) > LEAST_LAG_S, lag, 0.0)
 
 
@@ -248,7 +264,7 @@ def _elsewhere(record, measured, weights, model, visible, kinds):
     return assigned(*pursued(record, measured, weights, len(visible), zeta, kinds), model, visible)
 
 
-def left(found, model):
+def left(found: ModalFit, model: ModalModel) -> float:
     """Return the largest residual over noise of a ModalFit among the channels that the force drives
     in the model.
     """
@@ -259,16 +275,18 @@ def left(found, model):
 
 
 def _fitted(record, found, drive, model, kinds):
-    """Return (channel, line) the response that a fit gives, without what the other modes add."""
+    """Return (channel, line) the response of the fitted modes alone."""
     omega = model.omega[found.modes] * np.exp(found.log_frequency)
     zeta = model.damping[found.modes] / (2.0 * model.omega[found.modes]) * np.exp(found.log_damping)
     basis = responses_of(record, omega, 2.0 * zeta * omega, drive, kinds)
     return combined(found.participation, basis, kinds)
 
 
-def modelled_lines(record, model, found, kind):
-    """Return (channel, line): the response of a ModalModel whose fitted modes have the frequencies
-    and damping of a ModalFit, and its own shapes; kind: of all its sensors.
+def modelled_lines(
+    record: LinearRecord, model: ModalModel, found: ModalFit, kind: str
+) -> np.ndarray:
+    """Return (channel, line): the response of a ModalModel with its own shapes and, for the fitted
+    modes, the frequencies and damping of a ModalFit; kind: of all its sensors.
     """
     own = replace(found, participation=model.sensor_shapes[found.modes].T)
     kinds = np.full(model.sensor_shapes.shape[1], kind)
@@ -277,9 +295,15 @@ def modelled_lines(record, model, found, kind):
     )
 
 
-def unexplained_lines(record, responses, model, found, kinds):
-    """Return (measured, rest), each (channel, line): the lines of responses (channel, sample) of
-    kinds (channel,), and what a ModalFit of them leaves; NaN of what measures no motion.
+def unexplained_lines(
+    record: LinearRecord,
+    responses: np.ndarray,
+    model: ModalModel,
+    found: ModalFit,
+    kinds: Sequence[str] | np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (measured, residual), each (channel, line): the lines of responses (channel, sample)
+    of kinds (channel,), and the residual of a ModalFit of them; of a contact force, all of it.
     """
     kinds = np.where(of_modes(kinds), kinds, "displacement")
     measured = _turned_back(record.spectra(np.asarray(responses, float)), record, found.delay)
@@ -288,26 +312,26 @@ def unexplained_lines(record, responses, model, found, kinds):
 
 
 def _implausible(found):
-    """Return what a ModalFit leaves, and how far its damping is from the model's: a mode fitted to
-    nothing ends at a limit.
+    """Return a cost of a ModalFit: its residual, and the distance of its damping from the model's.
+    The damping of a mode that is not in the record ends at a limit.
     """
     return np.sum(found.residual**2) + np.sum((found.log_damping / LARGEST_LOG_DAMPING) ** 2)
 
 
 def _seen(model, modes, strict):
     """Return (channel, mode) bool: whether a channel may see a mode: where it does in the model; if
-    not strict, also where no mode beside it is seen there.
+    not strict, also where it sees no close mode.
 
-    Of two modes side by side, one along and one across, a channel would take any mixture.
+    Of two close modes, one along and one across a channel, the fit would take any mixture.
     """
     own = np.abs(as_displacements(model)[modes].T)
     shown, logs = own > SILENT * own.max(axis=0), np.log(model.omega[modes])
-    beside = np.abs(logs[:, None] - logs) < BESIDE
-    return shown if strict else shown | ~(shown.astype(int) @ beside.astype(int) > 0)
+    close = np.abs(logs[:, None] - logs) < BESIDE
+    return shown if strict else shown | ~(shown.astype(int) @ close.astype(int) > 0)
 
 
 def _unexpected(record, measured, found, weights, drive, model, near, kinds):
-    """Return the modes that the model does not excite visibly but the record holds."""
+    """Return the modes that the model does not excite visibly but that are in the record."""
     residual = (
         measured
         - _fitted(record, found, drive, model, kinds)
@@ -330,8 +354,8 @@ def _unexpected(record, measured, found, weights, drive, model, near, kinds):
 
 
 def _covered(model, mode, found):
-    """True where the fitted modes have the shape and place of another one: its remainder is
-    theirs.
+    """Return True where a fitted mode has nearly the shape and frequency of another mode: what that
+    would explain is the residual of the fitted one.
     """
     shapes = as_displacements(model)
     shape = shapes[mode]
@@ -344,8 +368,8 @@ def _covered(model, mode, found):
 
 
 def _rest(record, model, visible, kinds):
-    """Return (channel, line): what the modes that are not fitted add, those far above the band as
-    their static response.
+    """Return (channel, line): the response of the modes that are not fitted, of those far above the
+    band the static response.
     """
     others = np.setdiff1d(np.flatnonzero(model.omega > 0.0), visible)
     reach = record.omega <= 2.2 * np.pi * record.frequency[-1]
@@ -365,7 +389,7 @@ def _rest(record, model, visible, kinds):
 
 
 def _smooth(values, width=21):
-    """Running mean over the last axis."""
+    """Return the running mean over the last axis."""
     kernel = np.ones(width) / width
     return np.apply_along_axis(
         lambda row: np.convolve(np.pad(row, width // 2, mode="edge"), kernel, mode="valid"),

@@ -1,40 +1,47 @@
-"""Where the bare model's modes are too far from those of the lowest record to be followed: the
-linear effects whose spectra come nearest, to begin the fit from.
+"""A start for the identification of modes where those of the bare model are too far from those of
+the lowest record: the models with linear effects whose spectra come nearest.
 """
 
+from collections.abc import Collection
 from dataclasses import replace
 from itertools import islice
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.discrepancy import priors
 from vibroimpact.observation.sensed_motion import of_modes, orders
+from vibroimpact.reduction.modal_model import ModalModel
 
 from .candidates import Pair, linear_candidates, unit_grid
+from .effect_fit import LinearChanges
 from .linearised import matched
+from .modal_fit import ModalFit
 from .mode_identification import fit_modes, left
 from .nuisance import Nuisance, corrected
+from .workbench import Workbench
 
 BANDS_PER_OCTAVE = 8
-# a band that is farther off counts as if it were so far: a peak beside a peak is a miss, however
-# sharp both are
+# a larger difference of a band counts as so much: two peaks at different frequencies do not match,
+# however sharp both are
 FARTHEST_DB = 12.0
-GRID = (
-    {1: 7, 2: 5, 3: 4},
-    {1: 5, 2: 3, 3: 3},
-)  # points along each parameter, by the number of parameters: of one effect, of a second one
-BEGUN = 3  # models that the fit is begun from
+# points along each parameter, by the number of parameters: of one effect, of a second one
+GRID = ({1: 7, 2: 5, 3: 4}, {1: 5, 2: 3, 3: 3})
+BEGUN = 3  # models from which the fit is begun
+
+Ranked = tuple[float, Any, np.ndarray, ModalModel]  # distance, Candidate or Pair, unit, model
 
 
-def fit_from_nearest(bench, changes, scales, held):
-    """Return (ModalFit, [(Pair, unit (parameter,))]) of the lowest record of a Workbench, relative
-    to its bare model, begun from the linear effects whose spectra come nearest, and those pairs
-    among them.
+def fit_from_nearest(
+    bench: Workbench, changes: LinearChanges, scales: dict[str, float], held: Collection[str]
+) -> tuple[ModalFit, list[tuple[Pair, np.ndarray]]]:
+    """Return (ModalFit, [(Pair, unit (parameter,))]): the fit of the lowest record of a Workbench,
+    relative to its bare model, begun from the linear effects whose spectra come nearest, and the
+    pairs among these. The Workbench's own fit where none of them leads to a better one.
 
-    One effect, then two where one does not lead to a fit. changes: LinearChanges of the Workbench;
-    scales: see Candidate.physical; held: names of what the campaign holds beyond force and
-    response. The Workbench's own fit where nothing leads to a better one.
+    One effect is tried, then two where one does not lead to a fit. changes: LinearChanges of the
+    Workbench; scales: see Candidate.physical; held: see candidates.linear_candidates.
     """
     spectra = BandSpectra(bench)
     singles = [
@@ -44,10 +51,11 @@ def fit_from_nearest(bench, changes, scales, held):
         )
         if not candidate.effect.measured
     ]
-    pairs = []
-    least, best, known = left(bench.measured_fit, bench.bare), bench.measured_fit, []
+    pairs: list[tuple[Pair, np.ndarray]] = []
+    known: list[Ranked] = []
+    least, best = left(bench.measured_fit, bench.bare), bench.measured_fit
     for second in (False, True):
-        tried = (
+        tried: list[Any] = (
             singles
             if not second
             else [
@@ -64,7 +72,7 @@ def fit_from_nearest(bench, changes, scales, held):
                 try:
                     model = changes.model(candidate, candidate.physical(unit, scales))
                 except ConfigError:
-                    continue  # no model may have so much of it
+                    continue  # no valid configuration has so much of it
                 ranked.append((spectra.distance(model), candidate, unit, model))
         if not ranked:
             break
@@ -80,9 +88,9 @@ def fit_from_nearest(bench, changes, scales, held):
     return best, pairs
 
 
-def begun_from(bench, model):
-    """Return (what is left over noise, ModalFit relative to the bare model) of the lowest record
-    fitted from another model; (inf, None) where it shows no mode of that.
+def begun_from(bench: Workbench, model: ModalModel) -> tuple[float, ModalFit | None]:
+    """Return (largest residual over noise, ModalFit relative to the bare model) of the lowest
+    record fitted from another model; (inf, None) where it shows no mode of that.
     """
     record = bench.signals.lowest
     responses = bench.valid(bench.signals.response[record])
@@ -101,15 +109,16 @@ def begun_from(bench, model):
     )
 
 
-def at_modes(model, fit):
-    """Return a ModalModel with the frequencies and damping that a ModalFit found."""
-    found = Nuisance(fit.modes, np.exp(fit.log_frequency), np.exp(fit.log_damping), None)
+def at_modes(model: ModalModel, fit: ModalFit) -> ModalModel:
+    """Return a ModalModel with the frequencies and damping of a ModalFit."""
+    gain = np.ones(len(fit.participation))
+    found = Nuisance(fit.modes, np.exp(fit.log_frequency), np.exp(fit.log_damping), gain)
     return corrected(model, found)
 
 
-def translated(fit, model, other):
-    """Return a ModalFit relative to `model` as one relative to another ModalModel: each mode as
-    that of the other which is most like it.
+def translated(fit: ModalFit, model: ModalModel, other: ModalModel) -> ModalFit:
+    """Return a ModalFit relative to `model` as one relative to another ModalModel: each mode as the
+    most similar mode of the other.
     """
     modes = matched(other, np.log(model.omega[fit.modes]) + fit.log_frequency, fit.participation)
     order = np.argsort(modes)
@@ -124,11 +133,11 @@ def translated(fit, model, other):
 
 
 class BandSpectra:
-    """The spectra of the lowest record of a Workbench in narrow bands, against those of linear
-    models.
+    """The spectra of the lowest record of a Workbench in narrow bands, to compare with those of
+    linear models.
     """
 
-    def __init__(self, bench):
+    def __init__(self, bench: Workbench) -> None:
         record, lowest = bench.linear_record, bench.signals.lowest
         self.moves = of_modes(bench.signals.kinds)
         self.frequency, self.force = (
@@ -149,7 +158,7 @@ class BandSpectra:
         ] * np.diff([*self.starts, len(self.frequency)])
         self.measured = self._bands(measured)
 
-    def distance(self, model):
+    def distance(self, model: ModalModel) -> float:
         """Return the RMS over bands and channels in dB by which the steady response of a linear
         ModalModel to the measured force differs from the record.
         """

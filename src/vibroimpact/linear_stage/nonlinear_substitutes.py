@@ -1,13 +1,13 @@
-"""Which effects that are not linear may be what the lowest record took for a linear one: those at
-places where a spring and a dashpot would do as much.
+"""Nonlinear effects that may explain the lowest record instead of an adopted linear one: those at
+points where a spring and a dashpot explain it as well.
 
-A record that shows the modes of a linear structure sees of an effect at a point, whatever its law,
-the stiffness and damping that are equivalent to it at that load (statistical linearisation: J.B.
-Roberts, P.D. Spanos, Random Vibration and Statistical Linearization, Wiley, 1990, chapter 4). What
-no spring and dashpot at a point explain, no effect there does: it is not simulated in the place of
-what was adopted.
+A record with a linear response shows of an effect at a point, whatever its law, the equivalent
+stiffness and damping at that load (statistical linearisation: J.B. Roberts, P.D. Spanos, Random
+Vibration and Statistical Linearization, Wiley, 1990, chapter 4). What no spring and dashpot at a
+point explain, no effect there explains: such an effect is not simulated instead of the adopted one.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,31 +18,31 @@ from vibroimpact.effects import places
 from vibroimpact.observation.attached_model import attach
 
 from . import nuisance as linear
+from .candidates import Candidate
 from .effect_fit import LinearChanges
 from .linearised import linearised
+from .workbench import Workbench
 
-LEAST_SHARE = 0.5  # of the gain of what was adopted: at right places it is all of it
+LEAST_SHARE = 0.5  # of the gain of what was adopted: at the right place it is all of it
 # of the tube's own stiffness: below it a spring is searched linearly, above it in its logarithm
 SMALL = 0.01
-GRID = (
-    np.linspace(-5.0, 9.0, 15),
-    (
-        -9.0,
-        -5.0,
-        -2.0,
-    ),
-)  # arsinh of the stiffness, ln of the damping, in units of the small one's
+# arsinh of the stiffness, ln of the damping, in units of the small one's
+GRID = (np.linspace(-5.0, 9.0, 15), (-9.0, -5.0, -2.0))
 SEARCHED = 80  # evaluations at most, from the best point of the grid
 
 
-def in_place(bench, candidates, gain, stiffness):
-    """Return the names of Candidates that may stand in the place of the linear effect that a
-    Workbench's lowest record told, with so much gain.
+def in_place(
+    bench: Workbench, candidates: Sequence[Candidate], gain: float, stiffness: float
+) -> list[str]:
+    """Return the names of the Candidates that may explain the lowest record of a Workbench instead
+    of the adopted linear effect.
 
-    bench: of the bare model, with the measured fit of its modes; stiffness: scale in N/m. Of an
-    effect that is screened at some of its places each stands for those nearest to it; one whose
-    place is a parameter may stand there where any place may; one that acts all along the structure
-    may always.
+    bench: of the bare model, with the measured fit of its modes; gain: of log likelihood, of what
+    was adopted; stiffness: scale in N/m.
+
+    An effect that is screened at some points represents the points nearest to each. One whose place
+    is a parameter is kept where any point is possible, one that acts all along the structure
+    always.
     """
     acting = [candidate for candidate in candidates if candidate.effect.below_contact]
     at = {
@@ -62,16 +62,20 @@ def in_place(bench, candidates, gain, stiffness):
             continue
         own = [other.location for other in acting if other.effect_id == candidate.effect_id]
         if candidate.location not in at or candidate.location in {
-            min(own, key=lambda place, name=name: np.linalg.norm(at[place] - at[name]))
-            for name in enough
+            _nearest(own, at, name) for name in enough
         }:
             kept.append(candidate.name)
     return kept
 
 
-def gain_of_spring(bench, changes, place, stiffness):
-    """Return the gain in log likelihood of the lowest record by the best spring, stiffening or
-    softening, and dashpot between a named point and the ground.
+def _nearest(own, at, name):
+    """Return the one of the points `own` that is nearest to a point; at: {name: (3,) m}."""
+    return min(own, key=lambda place: np.linalg.norm(at[place] - at[name]))
+
+
+def gain_of_spring(bench: Workbench, changes: LinearChanges, place: str, stiffness: float) -> float:
+    """Return the gain in log likelihood of the lowest record by the best spring, of positive or
+    negative stiffness, and dashpot between a named point and the ground.
 
     changes: LinearChanges of the Workbench; stiffness: scale in N/m.
     """
@@ -95,7 +99,7 @@ def gain_of_spring(bench, changes, place, stiffness):
         )
         changed = linearised(replace(model, local_laws=laws))
         if np.sum(changed.omega > 0.0) < np.sum(model.omega > 0.0):
-            return np.inf  # softened until it does not stand
+            return np.inf  # the negative stiffness makes the structure unstable
         reading = changes.reading_of(changed)
         return bare - linear.likelihood(bench.measured_reading, reading, start)[0]
 
@@ -111,5 +115,5 @@ def gain_of_spring(bench, changes, place, stiffness):
 
 
 def _last(values, value):
-    """Return values (n,) with another last one."""
+    """Return values (n,) with the last one replaced."""
     return np.append(values[:-1], value)

@@ -1,31 +1,38 @@
-"""The linear stage: what the lowest record says of modes and sensors, and how far a model, with or
-without an effect, is from it.
+"""Likelihood of the linear stage: modal parameters and gains of the lowest record (a Reading),
+compared with those of a model with or without an effect.
 
 Frequencies, damping and gains scatter in any test; their priors are in priors.py. The most probable
-nuisance is corrected in the model, never beyond its limit, and the rest is left to be explained.
+nuisance is corrected in the model, never beyond its limit, and an effect has to explain the rest.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
 
 from vibroimpact.discrepancy import priors
+from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.observation.strain import by_family, gauges_of
-from vibroimpact.reduction.modal_model import NEAR
+from vibroimpact.reduction.modal_model import NEAR, ModalModel
 
 from .linearised import same_modes
+from .modal_fit import ModalFit
 
-# of a mode's largest participation among the channels: below it a channel says nothing of the mode
+# of a mode's largest participation among the channels: below it a channel does not see the mode
 SEEN = 0.05
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What a fit of the lowest record reads: ln frequency and ln damping (mode,), participation
-    (channel, mode), residual over noise (channel,); gauges (channel,) bool: those that read a
-    strain, None where none does; error: covariance of the three first, participations channel by
-    channel, None where they are known.
+    """Modal parameters of the lowest record, identified or predicted, with their scatter.
+
+    modes (mode,): indices of the model's modes.
+    log_frequency (mode,): ln rad/s. log_damping (mode,): ln of the damping ratio.
+    participation (channel, mode). residual (channel,): over noise.
+    gauges (channel,) bool: strain gauges, None for none.
+    error: covariance of [log_frequency, log_damping, participation], channel by channel of the
+    last, None where they are exact.
     """
 
     modes: np.ndarray
@@ -37,17 +44,19 @@ class Reading:
     error: np.ndarray | None = None
 
     @property
-    def scale(self):
-        """Return (channel, mode): a mode's largest participation among the channels that read the
-        same, a motion or a strain.
+    def scale(self) -> np.ndarray:
+        """Return (channel, mode): a mode's largest participation among the channels that measure
+        the same, a motion or a strain.
         """
         return by_family(np.abs(self.participation), self.gauges)
 
 
 @dataclass(frozen=True)
 class Nuisance:
-    """The corrections: factors of frequency and damping of modes (mode,) with indices `modes`, gain
-    (channel,) of each channel.
+    """Corrections of a model.
+
+    modes (mode,): indices of the corrected modes. frequency, damping (mode,): their factors.
+    gain (channel,): of each channel.
     """
 
     modes: np.ndarray
@@ -56,8 +65,8 @@ class Nuisance:
     gain: np.ndarray
 
 
-def reading_of_fit(fit, model):
-    """Return the Reading of a ModalFit of responses to the force on `model`."""
+def reading_of_fit(fit: ModalFit, model: ModalModel) -> Reading:
+    """Return the Reading of a ModalFit relative to `model`."""
     omega, damping = model.omega[fit.modes], model.damping[fit.modes]
     drive = driven(fit.drive)
     unit = np.concatenate([np.ones(2 * len(drive)), np.tile(drive, len(fit.participation))])
@@ -72,8 +81,8 @@ def reading_of_fit(fit, model):
     )
 
 
-def reading_of_model(model, modes):
-    """Return the Reading that a linear model gives without noise."""
+def reading_of_model(model: ModalModel, modes: np.ndarray) -> Reading:
+    """Return the Reading that a linear model predicts of its modes (mode,), without noise."""
     omega = model.omega[modes]
     participation = model.sensor_shapes[modes].T * driven(model.drive_shapes[modes])
     return Reading(
@@ -86,11 +95,11 @@ def reading_of_model(model, modes):
     )
 
 
-def driven(drive_shapes):
+def driven(drive_shapes: np.ndarray) -> np.ndarray:
     """Return (mode,): how much the forces drive each mode, from drive_shapes (mode, force_channel).
 
     One force: its shape. Several: their root sum of squares, with the sign of the first force that
-    drives the mode at least half as much as any, so that the sense of a mode does not matter.
+    drives the mode at least half as much as any, so that the sign of a mode shape does not matter.
     """
     if drive_shapes.shape[1] == 1:
         return drive_shapes[:, 0]
@@ -100,8 +109,8 @@ def driven(drive_shapes):
     return sense * np.linalg.norm(drive_shapes, axis=1)
 
 
-def gained(reading, measuring):
-    """Return a Reading as a measuring chain (Measuring, None for a perfect one) shows it."""
+def gained(reading: Reading, measuring: Measuring | None) -> Reading:
+    """Return a Reading with the gains of a measuring chain, None for a perfect one."""
     return (
         reading
         if measuring is None
@@ -112,7 +121,7 @@ def gained(reading, measuring):
     )
 
 
-def seen_by(measured, simulated):
+def seen_by(measured: Reading, simulated: Reading) -> np.ndarray:
     """Return (channel, mode) bool: whether a channel sees a mode, in one of two Readings at
     least.
     """
@@ -120,17 +129,22 @@ def seen_by(measured, simulated):
     return size > SEEN * by_family(size, measured.gauges)
 
 
-def difference(measured, simulated, seen=None, bare=None):
+def difference(
+    measured: Reading,
+    simulated: Reading,
+    seen: np.ndarray | None = None,
+    bare: Reading | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (values (n,), covariance (n, n), sensitivity (n, nuisance)) of measured minus
     simulated Reading.
 
     Nuisances: mode frequencies, mode dampings, channel gains, each in units of its prior's sigma;
-    the covariance is of what is not nuisance. seen (channel, mode) bool: the participations that
-    are compared, see seen_by; bare: Reading without the effect, of whose change of the shapes two
-    codes differ by a share.
+    the covariance does not include them. seen (channel, mode) bool: the participations that are
+    compared, see seen_by; bare: Reading without the effect, whose change of the shapes is uncertain
+    by a share (priors.SHAPE_LAW_SD).
     """
     count, channels = len(measured.log_frequency), len(measured.participation)
-    # of the measured alone: a gain that inflates what is simulated must not shrink its errors
+    # of the measured alone: a gain that enlarges the simulated shapes must not reduce differences
     scale = measured.scale
     seen = seen_by(measured, simulated) if seen is None else seen
     ratio = (measured.participation - simulated.participation)[seen] / scale[seen]
@@ -169,9 +183,12 @@ def difference(measured, simulated, seen=None, bare=None):
     return values, covariance, sensitivity
 
 
-def likelihood(measured, simulated, bare=None):
-    """Return (log likelihood, chi-square, pulls (nuisance,)) of a Reading under another: nuisances
-    marginalised, pulls in sigma. bare: see difference.
+def likelihood(
+    measured: Reading, simulated: Reading, bare: Reading | None = None
+) -> tuple[float, float, np.ndarray]:
+    """Return (log likelihood, chi-square, pulls (nuisance,)) of a measured given a simulated
+    Reading: nuisances marginalised, their most probable values (pulls) in sigma. bare: see
+    difference.
     """
     values, covariance, sensitivity = difference(measured, simulated, bare=bare)
     total = covariance + sensitivity @ sensitivity.T
@@ -185,8 +202,8 @@ def likelihood(measured, simulated, bare=None):
     )
 
 
-def nuisance_of(pulls, modes, channels):
-    """Return the Nuisance of pulls in sigma, limited."""
+def nuisance_of(pulls: np.ndarray, modes: np.ndarray, channels: int) -> Nuisance:
+    """Return the Nuisance of pulls (nuisance,) in sigma, limited to priors.CORRECTION_LIMIT."""
     limited = np.clip(pulls, -priors.CORRECTION_LIMIT, priors.CORRECTION_LIMIT)
     count = len(modes)
     return Nuisance(
@@ -197,21 +214,23 @@ def nuisance_of(pulls, modes, channels):
     )
 
 
-def neutral(modes, channels):
+def neutral(modes: Sequence[int] | np.ndarray, channels: int) -> Nuisance:
     """Return the Nuisance that corrects nothing."""
     return Nuisance(np.asarray(modes), np.ones(len(modes)), np.ones(len(modes)), np.ones(channels))
 
 
-def plausible(pulls):
-    """Return whether pulls in sigma (nuisance,) are those of nuisances: few of them far off, as a
-    faulty channel's gain may be.
+def plausible(pulls: np.ndarray) -> bool:
+    """Return whether pulls (nuisance,) in sigma are compatible with the priors: few of them are
+    large, as that of a faulty channel's gain may be.
     """
     return np.mean(np.abs(pulls) > priors.PULLED) <= priors.FEW_PULLED
 
 
-def corrected(model, nuisance, bare=None):
-    """Return the ModalModel with the frequencies and damping of a Nuisance; bare: the model whose
-    modes that numbers, where it is another.
+def corrected(
+    model: ModalModel, nuisance: Nuisance | None, bare: ModalModel | None = None
+) -> ModalModel:
+    """Return the ModalModel with the frequencies and damping of a Nuisance; bare: the model to
+    which its mode indices refer, where that is another.
     """
     if nuisance is None or not len(nuisance.modes):
         return model
@@ -219,8 +238,8 @@ def corrected(model, nuisance, bare=None):
     modes = nuisance.modes if bare is None else same_modes(model, nuisance.modes, bare)
     omega[modes] *= nuisance.frequency
     damping[modes] *= nuisance.damping * nuisance.frequency
-    # a mode that was seen is where it was seen, its neighbours make room; of two that are close, as
-    # those of a straight tube in two planes, the second may be below the first
+    # the corrected modes keep their frequencies, the others are limited to stay in order; of two
+    # close modes, as those of a straight tube in two planes, the second may be below the first
     seen = np.isin(np.arange(len(omega)), modes)
     lower = np.maximum.accumulate(np.where(seen, omega, 0.0))
     upper = np.minimum.accumulate(np.where(seen, omega, np.inf)[::-1])[::-1]

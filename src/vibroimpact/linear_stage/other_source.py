@@ -1,9 +1,11 @@
-"""What of the lowest record is no linear response to the measured force, by channel and band.
+"""Check of the lowest record for power that is not a linear response to the measured force, by
+channel and band.
 
-What the fit of modes leaves is cleared, in blocks of neighbouring lines, of all that is a smooth
-function of frequency times the force, and of the smooth lines of a start and an end: modes that the
-model does not have are linear too. The rest is noise, another source, or a structure that is not
-linear (local polynomial method: R. Pintelon, J. Schoukens, System Identification, 2012, chapter 7).
+The residual of the fit of modes may contain modes that the model lacks. So everything that is a
+smooth function of frequency times the force, and the smooth spectrum of the transients at the ends,
+is removed from it in blocks of neighbouring lines. The rest is noise, another source, or a
+nonlinear response (local polynomial method: R. Pintelon, J. Schoukens, System Identification, 2012,
+chapter 7).
 """
 
 from dataclasses import dataclass
@@ -15,19 +17,21 @@ from vibroimpact.discrepancy import priors
 
 from .modal_fit import RESIDUAL_SHARE
 from .mode_identification import unexplained_lines
+from .workbench import Workbench
 
-BLOCK = 9  # lines: fitted by 4 values, a straight line for the force and one for the ends
+# lines of a block, and values fitted to them: a straight line for the force and one for the ends
+BLOCK = 9
 FREE = 4
 BANDS = 12
-FACTOR = 2.0  # times what noise and two codes leave: less is no finding
+FACTOR = 2.0  # times the power by noise and by RESIDUAL_SHARE: less is no finding
 
 
 @dataclass(frozen=True)
 class OtherSource:
-    """A band of a channel with power that the measured force does not explain linearly.
+    """A band of a channel with power that is not a linear response to the measured force.
 
-    channel: its number; band_Hz; share: of the power there; factor: over what noise explains; p:
-    of the most significant band, for all bands and channels that were looked at.
+    channel: its index. band_Hz. share: of the power there. factor: over what noise explains.
+    p: of the most significant part of the band, corrected for the number of bands and channels.
     """
 
     channel: int
@@ -37,9 +41,8 @@ class OtherSource:
     p: float
 
 
-def other_sources(bench):
-    """Return [OtherSource] of the lowest record of a Workbench, what is
-    farthest beyond noise first."""
+def other_sources(bench: Workbench) -> list[OtherSource]:
+    """Return [OtherSource] of the lowest record of a Workbench, the largest factor first."""
     record, signals = bench.linear_record, bench.signals
     measured, rest = _lines(bench)
     left = np.sum(np.abs(rest) ** 2, axis=-1)
@@ -47,7 +50,7 @@ def other_sources(bench):
     edges = np.geomspace(*signals.band_Hz, BANDS + 1)
     band = np.digitize(blocks(record.frequency).mean(axis=-1), edges[1:-1])
     inside = (band == np.arange(BANDS)[:, None]).astype(float).T
-    free = inside.sum(axis=0) * (BLOCK - FREE)  # complex values that are left to chance
+    free = inside.sum(axis=0) * (BLOCK - FREE)  # complex degrees of freedom
     noise = signals.noise_in_band[:, None] ** 2 / len(record.lines) * free
     left, power = left @ inside, power @ inside
     expected = noise + RESIDUAL_SHARE**2 * power * (1.0 - FREE / BLOCK) + 1.0e-300
@@ -70,9 +73,10 @@ def other_sources(bench):
     return sorted(found, key=lambda row: -row.factor)
 
 
-def incoherent_rest(bench):
-    """Return ((channel, block, BLOCK), (channel, block)): what is no linear response to the force
-    in the lowest record of a Workbench, and the RMS that noise and two codes leave of a line.
+def incoherent_rest(bench: Workbench) -> tuple[np.ndarray, np.ndarray]:
+    """Return ((channel, block, BLOCK), (channel, block)): the lines of the lowest record of a
+    Workbench that are not a linear response to the force, and their RMS by noise and by
+    RESIDUAL_SHARE.
     """
     measured, rest = _lines(bench)
     noise = bench.signals.noise_in_band[:, None] ** 2 / len(bench.linear_record.lines)
@@ -82,7 +86,7 @@ def incoherent_rest(bench):
 
 def _lines(bench):
     """Return (measured, rest), each (channel, block, BLOCK): the lines of the lowest record, and
-    what of them is no linear response to the force.
+    the part that is not a linear response to the force.
     """
     record, signals = bench.linear_record, bench.signals
     responses = bench.valid(signals.response[signals.lowest])
@@ -93,17 +97,17 @@ def _lines(bench):
     return blocks(measured), incoherent(force, rest)
 
 
-def blocks(lines):
-    """Return (..., block, BLOCK): neighbouring lines (..., line) side by side, the last few left
-    out.
+def blocks(lines: np.ndarray) -> np.ndarray:
+    """Return (..., block, BLOCK): lines (..., line) in blocks of neighbours, without the last few
+    that fill no block.
     """
     count = lines.shape[-1] // BLOCK
     return lines[..., : count * BLOCK].reshape(*lines.shape[:-1], count, BLOCK)
 
 
-def incoherent(force, lines):
-    """Return (channel, block, BLOCK): what lines (channel, line) have beside a smooth function of
-    frequency times those of the force (line,), and beside one alone.
+def incoherent(force: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    """Return (channel, block, BLOCK): lines (channel, line) without a smooth function of frequency
+    times those of the force (line,), and without a smooth function alone.
     """
     force, lines = blocks(force), blocks(lines)
     along = np.linspace(-1.0, 1.0, BLOCK)

@@ -1,17 +1,23 @@
-"""The sizes that an effect's parameters are measured by, so that its bounds mean the same on any
-tube, load and gap.
+"""Scales of the parameters of effects, by which their bounds mean the same for any tube, load and
+gap; computed by the linear stage from its model and signals.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from vibroimpact.effects.places import STOP
+from vibroimpact.observation.signals import Signals
+from vibroimpact.reduction.modal_model import ModalModel
 
-SEARCHED = (0.03, 0.97)  # of a tube: at its ends nothing moves
+SEARCHED = (0.03, 0.97)  # of a tube: its ends hardly move
 
 
-def scales(model, signals, null, tube_m):
+def scales(
+    model: ModalModel, signals: Signals, null: dict[str, float], tube_m: float | None
+) -> dict[str, float]:
     """Return {name: value}: see effects.effect.Parameter. null: {"displacement", "speed"} RMS at
-    the drive of the highest fit record, m and m/s; tube_m: length of the tube, None of another
+    the drive of the highest fit record, m and m/s; tube_m: length of the tube, None for another
     structure.
     """
     drive = model.drive_shapes[:, 0]
@@ -35,12 +41,11 @@ def scales(model, signals, null, tube_m):
     points = max(np.bincount(model.support_of_point).max(), 1) if len(model.support_of_point) else 1
     displacement, speed = max(null["displacement"], 1.0e-12), max(null["speed"], 1.0e-12)
     damping = model.damping[first] * mass
-    known = np.vstack(
-        [model.sensor_positions, np.reshape(model.contact_position, (-1, 3))]
-    )  # sensors may all sit in one place
+    # with the contacts: all sensors may be at one place
+    known = np.vstack([model.sensor_positions, np.reshape(model.contact_position, (-1, 3))])
     length = max(float(np.ptp(known, axis=0).max()), 1.0e-3) * 3.0
     at_contact = model.contact_shapes.reshape(model.modes, -1)
-    held = (
+    flexibility_at_contact = (
         np.sum(at_contact[elastic] ** 2 / model.omega[elastic][:, None] ** 2, axis=0).max()
         if at_contact.size
         else flexibility
@@ -52,7 +57,7 @@ def scales(model, signals, null, tube_m):
         "displacement": displacement,
         "contact_stiffness": contact,
         "hertz": contact / points / np.sqrt(0.03 * gap),
-        "gap_force": gap / held,
+        "gap_force": gap / flexibility_at_contact,
         "mass": mass,
         "mass_per_length": mass / length,
         **searched(np.array(SEARCHED) * (np.nan if tube_m is None else tube_m)),
@@ -66,15 +71,15 @@ def scales(model, signals, null, tube_m):
     }
 
 
-def searched(ends_m):
+def searched(ends_m: Sequence[float] | np.ndarray) -> dict[str, float]:
     """Return the scales of a place that is searched between two arc lengths (2,) in m."""
     low, high = map(float, ends_m)
     return {"searched_from": low, "searched_length": high - low}
 
 
-def clearance(model, gap, location):
-    """Return the radial clearance in m that a model's supports at a location (a name, or all) have
-    at a nominal gap, None where they differ.
+def clearance(model: ModalModel, gap: float, location: str) -> float | None:
+    """Return the radial clearance in m of a model's supports at a location (a name, or all) at a
+    nominal gap in m, None where they differ.
     """
     names = np.array(model.support_names)[model.support_of_point]
     there = names == location if location != "all" else names != STOP

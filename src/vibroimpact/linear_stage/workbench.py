@@ -1,42 +1,68 @@
-"""All that a campaign and a model give to a search: signals, features of the measurement, the
-corrected model, and runs of any variant of it.
+"""A campaign and the model to compare with it: signals, features of the measurement, the corrected
+model, and simulations of any variant of it. All steps of the linear stage and of the search after
+it work on a Workbench.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.reading import Config, check_config
 from vibroimpact.discrepancy.cost import count_simulated
+from vibroimpact.effects.effect import Values
+from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
 from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
 from vibroimpact.observation.attached_model import attach, with_channel_points
 from vibroimpact.observation.features import feature_layout, record_features
 from vibroimpact.observation.linear_record import LinearRecord
 from vibroimpact.observation.moving_base import driven_by_base
+from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.observation.signals import signals_of
 from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
+from vibroimpact.reduction.modal_model import ModalModel
 
 from . import nuisance as linear
+from .candidates import Candidate, Pair, Physical
 from .linearised import linearised
+from .modal_fit import ModalFit
 from .mode_identification import fit_modes
 
-FINER = (2, 4)  # times the steps, where damping or stiffness of the contact asks for it
-TOUCHES = (
-    0.98  # of the gap: a linear response that comes that near is not taken for free of contact
-)
-SETTLING_S = 4.0  # until a run from rest has forgotten it
+FINER = (2, 4)  # times the usual steps, where damping or stiffness of the contact needs it
+TOUCHES = 0.98  # of the gap: a linear response as large counts as contact
+SETTLING_S = 4.0  # after which the transient of a run from rest has decayed
 DRAW = 1000000  # seeds from the first of a draw to that of the next
+
+Run = tuple[int, float, int]  # record, gap in m, seed
 
 
 class Workbench:
-    """A configuration (checked Config) against a campaign Dataset, each record cut to longest_s
+    """A checked Config and the campaign Dataset to compare with it, each record cut to longest_s
     where given; draw: number of the draw of seeds.
+
+    bare: the model without corrections. nuisance: its corrections.
+    measuring, late: an adopted fault of the measuring chain, and the delays of its channels.
+    nonlinear_low: whether the response is nonlinear in the lowest record, though its modes are
+    seen. modes_told: whether its modes identify nuisances all the same.
+    followed: whether the model contains the effect that shifted the modes. Then resonances are
+    looked for from its frequencies alone.
+    given, values: the configuration in plain values, as it was and with adopted effects.
     """
 
-    def __init__(self, config, campaign, longest_s=None, draw=0):
+    def __init__(
+        self,
+        config: Config,
+        campaign: xr.Dataset,
+        longest_s: float | None = None,
+        draw: int = 0,
+    ) -> None:
         config = driven_by_base(with_channel_points(config, campaign), campaign)
         self.config, self.campaign, self.draw = config, campaign, draw
         self.longest_s = longest_s
@@ -48,16 +74,16 @@ class Workbench:
         )
         self.forces = Forces(self.signals.force, self.schedule)
         self._finer = {(1, self.schedule.scheme): (self.schedule, self.forces)}
-        self.nuisance, self.measuring, self.late = None, None, None
-        # whether the lowest record, though its modes are seen, is not that of a linear structure
+        self.nuisance: linear.Nuisance | None = None
+        self.measuring: Measuring | None = None
+        self.late: Measuring | None = None
         self.nonlinear_low = False
-        self.modes_told = True  # whether its modes tell nuisances all the same
-        # whether the model holds what moved its modes: no resonances are looked for without it then
+        self.modes_told = True
         self.followed = False
         self.values = self.given = config.model_dump(mode="json")
 
-    def again(self, campaign):
-        """Return a Workbench of another campaign Dataset with the same records, and what was
+    def again(self, campaign: xr.Dataset) -> Workbench:
+        """Return a Workbench of another campaign Dataset with the same records, with what was
         adopted.
         """
         out = Workbench(self.config, campaign, self.longest_s, self.draw)
@@ -66,9 +92,9 @@ class Workbench:
             out.rebase(self.values)
         return out
 
-    def corrected_by(self, nuisance):
+    def corrected_by(self, nuisance: linear.Nuisance | None) -> Workbench:
         """Return a Workbench of the same campaign with the corrections of a Nuisance, which the
-        lowest record's modes tell; itself where it is None.
+        modes of the lowest record identify; itself where it is None.
         """
         if nuisance is None:
             return self
@@ -76,36 +102,36 @@ class Workbench:
         out.nuisance, out.modes_told = nuisance, True
         return out
 
-    def rebase(self, values):
-        """Take another configuration, in plain values, for the bare model: an effect that was found
-        belongs to it from here on.
+    def rebase(self, values: Values) -> None:
+        """Replace the configuration of the bare model by another one in plain values, with an
+        effect that was found.
         """
         self.values, self.followed = values, True
         self.bare = linearised(attach(check_config(values, "model with an effect"), self.campaign))
         for name in ("measured_fit", "measured_reading", "linear_stage"):
             self.__dict__.pop(name, None)
 
-    def variant(self, candidate, physical):
-        """Return the configuration in plain values with a candidate: on what was adopted, or in its
-        place.
+    def variant(self, candidate: Candidate | Pair, physical: Physical) -> Values:
+        """Return the configuration in plain values with a candidate, in addition to what was
+        adopted, or instead of it where the candidate is alone.
         """
         return candidate.variant(self._without(candidate), physical)
 
     def _without(self, candidate):
-        """Return the configuration that a candidate changes: with what was adopted, or in its
-        place.
+        """Return the configuration that a candidate changes: as it was where it is alone, else with
+        what was adopted.
         """
         return self.given if candidate.alone else self.values
 
     @property
-    def gains(self):
+    def gains(self) -> np.ndarray:
         """Return (channel,): the gains of the nuisance."""
         return np.ones(len(self.signals.names)) if self.nuisance is None else self.nuisance.gain
 
     @cached_property
-    def settled(self):
-        """Return (sample,) bool: what is compared. A record that was cut out of a steady state is
-        simulated from rest, and its first seconds are not compared.
+    def settled(self) -> np.ndarray:
+        """Return (sample,) bool: the samples that are compared. A record that begins in a steady
+        state is simulated from rest, and its first seconds are not compared.
         """
         samples = self.signals.force.shape[-1]
         return np.arange(samples) >= (
@@ -115,21 +141,21 @@ class Workbench:
         )
 
     @cached_property
-    def linear_stage(self):
-        """Return True where the lowest record tells of the linear structure: a mode is seen and the
-        bare model does not touch.
+    def linear_stage(self) -> bool:
+        """Return True where the lowest record identifies the linear structure: a mode is seen and
+        the bare model does not touch.
         """
         return not self.touches(self.bare) and self.measured_fit is not None
 
     @property
-    def reads_lowest(self):
-        """Return True where the lowest record is compared by its modes alone: that of a linear
-        structure. By its features, as the others, where it is not.
+    def reads_lowest(self) -> bool:
+        """Return True where the lowest record is compared by its modes alone, as that of a linear
+        structure; else it is compared by its features, as the other records are.
         """
         return self.linear_stage and not self.nonlinear_low
 
     @cached_property
-    def linear_record(self):
+    def linear_record(self) -> LinearRecord:
         """Return the LinearRecord of the lowest record."""
         record = self.signals.lowest
         return LinearRecord(
@@ -141,7 +167,7 @@ class Workbench:
         )
 
     @cached_property
-    def measured_fit(self):
+    def measured_fit(self) -> ModalFit | Any:  # Any, not None: callers look at linear_stage first
         """Return the ModalFit of the lowest measured record, None where no mode is seen."""
         response = self.valid(self.signals.response[self.signals.lowest])
         return fit_modes(
@@ -154,21 +180,21 @@ class Workbench:
         )
 
     @cached_property
-    def measured_reading(self):
+    def measured_reading(self) -> linear.Reading:
         """Return the Reading of the lowest measured record."""
         return linear.reading_of_fit(self.measured_fit, self.bare)
 
     @property
-    def bare_reading(self):
-        """Return the Reading that the bare model gives of the modes of the lowest record, as the
-        measuring chain shows it.
+    def bare_reading(self) -> linear.Reading:
+        """Return the Reading that the bare model and the measuring chain predict of the modes of
+        the lowest record.
         """
         return linear.gained(
             linear.reading_of_model(self.bare, self.measured_fit.modes), self.measuring
         )
 
     @cached_property
-    def measured_features(self):
+    def measured_features(self) -> np.ndarray:
         """Return (record, feature) of the measurement."""
         out = []
         for record in range(len(self.signals.load)):
@@ -182,7 +208,7 @@ class Workbench:
             )
         return np.array(out)
 
-    def model(self, values=None):
+    def model(self, values: Values | None = None) -> ModalModel:
         """Return the attached model of a configuration in plain values, with the nuisance
         corrections.
         """
@@ -194,8 +220,8 @@ class Workbench:
             self.bare,
         )
 
-    def touches(self, model):
-        """Return True where the lowest record already brings a model into contact."""
+    def touches(self, model: ModalModel) -> bool:
+        """Return True where the linear response of a model to the lowest record reaches contact."""
         points = model.contact_shapes.reshape(model.modes, -1)
         if not points.size:
             return False
@@ -221,7 +247,9 @@ class Workbench:
         )
         return bool(np.isfinite(gap) and np.any(largest > TOUCHES * clearance))
 
-    def runs(self, records, seeds, first_seed=0):
+    def runs(
+        self, records: Iterable[int] | np.ndarray, seeds: int, first_seed: int = 0
+    ) -> list[Run]:
         """Return [(record, gap, seed)] of `seeds` runs of every record."""
         first = first_seed + DRAW * self.draw
         return [
@@ -230,13 +258,13 @@ class Workbench:
             for seed in range(seeds)
         ]
 
-    def noisy_features(self, runs, responses):
-        """Return (run, feature) of responses (run, channel, sample), with the measuring noise, each
-        cut to the valid samples of its record; NaN of one that diverged.
+    def noisy_features(self, runs: Sequence[Run], responses: np.ndarray) -> np.ndarray:
+        """Return (run, feature) of responses (run, channel, sample) with measuring noise, each cut
+        to the valid samples of its record; NaN for a run that diverged.
         """
         out = []
         for (record, _, seed), response in zip(runs, responses, strict=True):
-            if np.isnan(response).any():  # it was thrown off
+            if np.isnan(response).any():  # the run diverged
                 out.append(np.full(len(self.layout.kind), np.nan))
                 continue
             keep = np.isfinite(self.signals.force[record][0]) & self.settled
@@ -249,12 +277,13 @@ class Workbench:
             out.append(record_features(self.layout, self.signals.force[record][0, keep], noisy))
         return np.array(out)
 
-    def stepped(self, model):
+    def stepped(self, model: ModalModel) -> tuple[Schedule, Forces]:
         """Return (Schedule, Forces) with as many steps as the contact of a model needs, up to FINER
         times the usual; the usual ones where that is too few.
 
-        Where the exact step feeds a damper (integration.step_stability), the finest Newmark steps,
-        which never do: twice as coarse, responses at 1000 N s/m per plate are 3 % off.
+        Where a damper gains energy in the exact step (integration.step_stability), the finest
+        Newmark steps are taken, in which it never does: with steps twice as long, responses at
+        1000 N s/m per plate are 3 % off.
         """
         usual, given = self.schedule.steps_per_second, self.schedule.scheme
         tried = [(finer, given) for finer in (1, *FINER)]
@@ -271,12 +300,14 @@ class Workbench:
                 return self._finer[finer, scheme]
         return self.schedule, self.forces
 
-    def respond(self, model, runs, measuring=None):
+    def respond(
+        self, model: ModalModel, runs: Sequence[Run], measuring: Measuring | None = None
+    ) -> np.ndarray:
         """Return (run, channel, sample) responses with the gains of the nuisance and the faults of
         the measuring chain (Measuring), relative to the base.
 
-        The measuring chain shows the absolute motion of a structure on a moving base, from which
-        the base's measured motion is taken out as it is from the measurement.
+        The measuring chain acts on the absolute motion of a structure on a moving base, from which
+        the measured motion of the base is subtracted as it is from the measurement.
         """
         schedule, forces = self.stepped(model)
         chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
@@ -295,8 +326,8 @@ class Workbench:
         return responses if base is None else responses - base
 
     def _base_of(self, runs, samples):
-        """Return (run, channel, sample) float32: the base's measured motion in every channel, 0
-        beyond a record's valid samples; None where the structure was driven by forces.
+        """Return (run, channel, sample) float32: the measured motion of the base in every channel,
+        0 beyond a record's valid samples; None where forces drove the structure.
         """
         if self.signals.base is None:
             return None
@@ -304,21 +335,25 @@ class Workbench:
         short = max(samples - own.shape[-1], 0)
         return np.pad(own[..., :samples], ((0, 0), (0, 0), (0, short))).astype(np.float32)
 
-    def features(self, model, runs, measuring=None):
-        """Return (run, feature): the features of runs with the measuring noise, each cut to the
-        valid samples of its record.
+    def features(
+        self, model: ModalModel, runs: Sequence[Run], measuring: Measuring | None = None
+    ) -> np.ndarray:
+        """Return (run, feature): the features of runs with measuring noise, each cut to the valid
+        samples of its record.
         """
         return self.noisy_features(runs, self.respond(model, runs, measuring))
 
     @staticmethod
-    def valid(values):
+    def valid(values: np.ndarray) -> np.ndarray:
         """Return the samples of (..., sample) at which all are finite."""
         return values[..., np.isfinite(values).all(axis=tuple(range(values.ndim - 1)))]
 
 
-def corrected_nuisance(bench):
-    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record under the
-    Reading of the bare model.
+def corrected_nuisance(
+    bench: Workbench,
+) -> tuple[linear.Nuisance | None, float, float, np.ndarray]:
+    """Return (Nuisance, log likelihood, chi-square, pulls) of the measured lowest record given the
+    Reading of the bare model; (None, 0, 0, none) where no mode is seen.
     """
     fit = bench.measured_fit
     if fit is None:
