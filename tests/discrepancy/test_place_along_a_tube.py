@@ -5,7 +5,7 @@ import pytest
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects import places
-from vibroimpact.effects.places import ALONG
+from vibroimpact.effects.places import ALONG, TURNED
 from vibroimpact.linear_stage.candidates import Candidate, local_candidates
 from vibroimpact.linear_stage.scales import searched
 from vibroimpact.missing_effect.first_points import first_points
@@ -85,3 +85,23 @@ def test_a_spring_acts_as_the_force_does_turned_with_the_tube(values, force, wan
     leg = places.between(0.2)
     along = places.across(places.with_place(driven, leg), leg)
     assert np.abs(along) == pytest.approx(wanted, abs=1.0e-6)
+
+
+def test_the_direction_is_a_parameter_before_the_place(values, scales):
+    turned = Candidate("cubic_stiffness", TURNED)
+    scales = scales | {"one": 1.0}
+    unit = np.array([0.6, 2.0 / 3.0, 0.3])
+    physical = turned.physical(unit, scales)
+    assert physical["direction"] == pytest.approx(30.0)
+    assert turned.normalised(physical, scales) == pytest.approx(unit)
+    assert turned.periodic == (1,)
+    forward = SPRING.variant(values, SPRING.physical(unit[::2], scales))["elements"][-1]
+    changed = turned.variant(values, physical)
+    element = changed["elements"][-1]
+    assert element["point"] == turned.located(unit, scales)
+    assert element["cubic_N_per_m3"] == forward["cubic_N_per_m3"]
+    cosine = np.dot(element["direction"], forward["direction"])
+    assert cosine == pytest.approx(np.cos(np.deg2rad(30.0)))
+    check_config(changed, "a spring that is turned")
+    nothing = neutral_unit(turned, scales)
+    assert np.ptp(nothing[:, 1]) > 0.5 and np.ptp(nothing[:, 2]) == 1.0

@@ -42,3 +42,31 @@ def test_other_locations_are_no_arc_lengths(location):
 
 def test_place_in_words():
     assert places.place_in_words(places.between(1.7175)) == "1.7175 m along the tube"
+
+
+@pytest.mark.parametrize("angle", [-90.0, -9.5, 0.0, 30.0])
+def test_place_tells_a_direction(angle):
+    location = places.between(0.8319, angle)
+    assert places.arc_length_m(location) == pytest.approx(0.8319)
+    assert places.turned_deg(location) == angle
+
+
+def test_place_along_the_force_tells_none():
+    assert places.turned_deg(places.between(0.8319)) is None
+
+
+@pytest.mark.parametrize("angle", [-60.0, 20.0, 90.0])
+def test_direction_is_turned_about_the_tube(values, angle):
+    turned, forward = places.between(1.2, angle), places.between(1.2)
+    there = places.with_place(places.with_place(values, turned), forward)
+    own, along = (np.array(places.across(there, location)) for location in (turned, forward))
+    assert own @ along == pytest.approx(np.cos(np.deg2rad(angle)))
+    assert np.linalg.norm(own) == pytest.approx(1.0)
+    turn = places.across_deg(there, turned) - places.across_deg(there, forward)
+    assert (turn - angle + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1.0e-9)
+
+
+def test_direction_in_words():
+    assert places.place_in_words(places.between(0.8319, -9.5)) == (
+        "0.8319 m along the tube, -10 degrees from the force's direction"
+    )

@@ -19,7 +19,7 @@ TESTS = {
     "T6": "stationarity",
 }
 
-# What the bounds of a parameter are multiples of; discrepancy.scales computes the sizes.
+# What the bounds of a parameter are multiples of; linear_stage.scales computes the sizes.
 SCALES = {
     "one": "1",
     "gap": "the largest nominal clearance",

@@ -2,6 +2,7 @@
 configuration.
 """
 
+import re
 from collections.abc import Callable, Sequence
 from itertools import count
 from typing import Any
@@ -16,9 +17,11 @@ from .effect import Values
 
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
 SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is split
-# of a place on a tube that no point of it names: its arc length, arc_355_6mm is at 355.6 mm
-ARC, MILLIMETRES = "arc_", "mm"
+# of a place on a tube that no point of it names: its arc length, arc_355_6mm is at 355.6 mm; of a
+# direction other than that of the force its angle, arc_355_6mm_turned_m9_5deg is turned by -9.5
+BETWEEN = re.compile(r"arc_([\d_]+)mm(?:_turned_(m?[\d_]+)deg)?")
 ALONG = "along_tube"  # of an effect whose place on the tube is one of its parameters
+TURNED = "along_tube_turned"  # the same, and its direction across the tube
 TUBES: dict[str, type[UTube] | type[Path]] = {"u_tube": UTube, "path": Path}
 
 
@@ -107,27 +110,54 @@ def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
     return with_entry(with_place(values, point), "masses", name, entry)
 
 
-def between(arc_length_m: float) -> str:
-    """Return the location of a place on a tube."""
-    return f"{ARC}{1e3 * arc_length_m:.1f}{MILLIMETRES}".replace(".", "_")
+def between(arc_length_m: float, turned_deg: float | None = None) -> str:
+    """Return the location of a place on a tube; turned_deg: of what acts there in a direction that
+    is turned from that of the force, see across.
+    """
+    place = f"arc_{1e3 * arc_length_m:.1f}mm"
+    if turned_deg is not None:
+        place += f"_turned_{turned_deg:.1f}deg".replace("-", "m")
+    return place.replace(".", "_")
 
 
 def arc_length_m(location: str) -> float | None:
     """Return the arc length in m of a place that `between` named; None of another location."""
-    number = location.removeprefix(ARC).removesuffix(MILLIMETRES).replace("_", ".")
-    named = location.startswith(ARC) and location.endswith(MILLIMETRES)
+    length = _numbers(location)[0]
+    return None if length is None else 1.0e-3 * length
+
+
+def turned_deg(location: str) -> float | None:
+    """Return by how many degrees the direction of a location is turned from that of the force; None
+    where it is not.
+    """
+    return _numbers(location)[1]
+
+
+def _numbers(location):
+    """Return (mm, deg) of a place that `between` named, None for what it does not tell."""
+    named = BETWEEN.fullmatch(location)
+    texts = named.groups() if named else (None, None)
     try:
-        return 1.0e-3 * float(number) if named else None
+        length, angle = (
+            None if text is None else float(text.replace("m", "-").replace("_", "."))
+            for text in texts
+        )
     except ValueError:  # a point of the model that is called so
-        return None
+        return None, None
+    return length, angle
 
 
 def place_in_words(location: str) -> str:
     """Return a location as a reader is told it: a place that no point names by where it is."""
-    arc_length = arc_length_m(location)
+    arc_length, angle = arc_length_m(location), turned_deg(location)
     if arc_length is None:
-        return "a place along the tube" if location == ALONG else location
-    return f"{arc_length:.4f} m along the tube"
+        words = {
+            ALONG: "a place along the tube",
+            TURNED: "a place along the tube, in any direction",
+        }
+        return words.get(location, location)
+    turned = "" if angle is None else f", {angle:.0f} degrees from the force's direction"
+    return f"{arc_length:.4f} m along the tube{turned}"
 
 
 def length_m(values: Values) -> float | None:
@@ -165,7 +195,8 @@ def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
 
 def across(values: Values, point: str) -> Sequence[float]:
     """Return the direction of an element at a point: that of the force; on a tube, as the motion
-    that the force drives there: carried from the drive point along the tube, perpendicular to it.
+    that the force drives there: carried from the drive point along the tube, perpendicular to it,
+    and turned about the tube's axis where the point is one of `between` with an angle.
     """
     if values["structure"]["kind"] not in TUBES:
         return values["excitation"]["direction"]
@@ -200,7 +231,8 @@ def _carried(values, point):
     for at in np.linspace(*ends, CARRIED):
         tangent = line.direction(at)
         direction = unit_vector(direction - (direction @ tangent) * tangent)
-    return direction
+    angle = np.deg2rad(turned_deg(point) or 0.0)
+    return np.cos(angle) * direction + np.sin(angle) * np.cross(tangent, direction)
 
 
 def stations(values: Values, count: int) -> tuple[dict[str, list[float]], float]:

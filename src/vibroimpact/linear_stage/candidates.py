@@ -14,7 +14,7 @@ import numpy as np
 from vibroimpact.discrepancy import priors
 from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Effect, Parameter, Values
-from vibroimpact.effects.places import ALONG
+from vibroimpact.effects.places import ALONG, TURNED
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.observation.sensor_chain import Measuring, measuring_of, places
 
@@ -29,6 +29,8 @@ AT_A_POINT = frozenset(
         "clearance",
     }
 )
+# Those of them that act in one direction.
+DIRECTED = AT_A_POINT - {"added_mass"}
 # On a tube the place of such an effect is one of its parameters, counted from the scale
 # SEARCHED_FROM.
 PLACE = Parameter(
@@ -42,6 +44,15 @@ PLACE = Parameter(
     meaning="distance along the tube from its start",
 )
 SEARCHED_FROM = "searched_from"
+DIRECTION = Parameter(
+    "direction",
+    "deg",
+    -90.0,
+    90.0,
+    None,
+    log=False,
+    meaning="angle about the tube's axis from the direction that the force has there",
+)
 # points at which an effect that acts at a point is screened; the one found is tried at the others
 PLACES = 8
 
@@ -54,7 +65,7 @@ Physical: TypeAlias = Any
 class Candidate:
     """An effect at a location; its name is effect@location, and effect@location@alone where it
     replaces the linear effect that was adopted. At places.ALONG its place is the last of its
-    parameters.
+    parameters; at places.TURNED its direction across the tube is the one before.
     """
 
     effect_id: str
@@ -69,7 +80,17 @@ class Candidate:
     @property
     def effect(self) -> Effect:
         """Return the Effect."""
-        return _along(self.effect_id) if self.location == ALONG else EFFECTS[self.effect_id]
+        return _along(self.effect_id, self.turned) if self.along else EFFECTS[self.effect_id]
+
+    @property
+    def along(self) -> bool:
+        """Return whether the place on a tube is a parameter."""
+        return self.location in (ALONG, TURNED)
+
+    @property
+    def turned(self) -> bool:
+        """Return whether the direction across a tube is a parameter too."""
+        return self.location == TURNED
 
     @property
     def ids(self) -> list[str]:
@@ -91,15 +112,15 @@ class Candidate:
             parameter.name: out[parameter.name] * (sizes[parameter.over] if parameter.over else 1.0)
             for parameter in self.effect.parameters
         }
-        if self.location == ALONG:
+        if self.along:
             out[PLACE.name] += scales[SEARCHED_FROM]
         return out
 
     def located(self, unit: np.ndarray, scales: dict[str, float]) -> str:
         """Return the location with normalised parameters unit (parameter,)."""
-        if self.location != ALONG:
+        if not self.along:
             return self.location
-        return on_structure.between(self.physical(unit, scales)[PLACE.name])
+        return _place(self.physical(unit, scales))
 
     def estimate(
         self, unit: np.ndarray, interval: np.ndarray, scales: dict[str, float]
@@ -129,7 +150,7 @@ class Candidate:
         out = []
         for parameter in self.effect.parameters:
             value = physical[parameter.name]
-            if self.location == ALONG and parameter is self.effect.parameters[-1]:
+            if self.along and parameter is self.effect.parameters[-1]:
                 value -= scales[SEARCHED_FROM]
             value = value / scales[parameter.per]
             low = parameter.low
@@ -183,7 +204,8 @@ class Candidate:
         return tuple(
             number
             for number, parameter in enumerate(self.effect.parameters)
-            if parameter.name == "angle" and self.ids == ["foliate_obstacle"]
+            if parameter is DIRECTION
+            or (parameter.name == "angle" and self.ids == ["foliate_obstacle"])
         )
 
     def parts(self, unit: np.ndarray) -> list[tuple[Candidate, np.ndarray]]:
@@ -210,9 +232,9 @@ class Candidate:
         if self.effect.measured:
             return values
         assert self.effect.apply is not None, "an effect of the model changes its configuration"
-        if self.location != ALONG:
+        if not self.along:
             return self.effect.apply(values, parameters, self.location)
-        location = on_structure.between(parameters[PLACE.name])
+        location = _place(parameters)
         return self.effect.apply(on_structure.with_place(values, location), parameters, location)
 
     def measuring(self, parameters: dict[str, float], names: Sequence[str]) -> Measuring | None:
@@ -227,10 +249,15 @@ class Candidate:
 
 
 @cache
-def _along(effect_id):
-    """Return the Effect with its place among its parameters."""
+def _along(effect_id, turned):
+    """Return the Effect with its place among its parameters, and its direction where turned."""
     effect = EFFECTS[effect_id]
-    return replace(effect, parameters=(*effect.parameters, PLACE))
+    return replace(effect, parameters=(*effect.parameters, *[DIRECTION] * turned, PLACE))
+
+
+def _place(physical):
+    """Return the location on a tube that {name: value} tells."""
+    return on_structure.between(physical[PLACE.name], physical.get(DIRECTION.name))
 
 
 @dataclass(frozen=True)
@@ -381,7 +408,7 @@ def other_places(candidate: CandidateOrPair, values: Values) -> list[CandidateOr
     locations = candidate.effect.locations(values)
     return (
         [replace(candidate, location=place) for place in locations if place != candidate.location]
-        if candidate.effect_id in AT_A_POINT and candidate.location != ALONG
+        if candidate.effect_id in AT_A_POINT and not candidate.along
         else []
     )
 

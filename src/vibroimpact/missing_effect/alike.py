@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.effects.effect import Effect, Values
-from vibroimpact.effects.places import ALONG
+from vibroimpact.effects.places import ALONG, TURNED
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.linear_stage.candidates import (
     AT_A_POINT,
+    DIRECTED,
+    Candidate,
     Pair,
     candidate_named,
     elsewhere,
@@ -17,6 +19,9 @@ from vibroimpact.linear_stage.candidates import (
 
 from .first_points import first_points
 from .search import Search
+
+FORWARD = 0.5  # of the range of directions: along the force
+DIRECTIONS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0, 1.0)  # the others, every 30 degrees
 
 
 def _similar(effect: Effect, leading: Effect) -> bool:
@@ -66,7 +71,7 @@ def elsewhere_too(search: Search, values: Values, name: str) -> bool:
     one at all supports each of them alone.
     """
     candidate, unit = candidate_named(name), search.fits[name].unit
-    if candidate.location == ALONG:
+    if candidate.along:
         search.run([(name, np.append(unit[:-1], 1.0 - unit[-1]))])
         return True
     others = [*other_places(candidate, values), *elsewhere(candidate, values)]
@@ -87,14 +92,53 @@ def at_its_place(search: Search, name: str) -> bool:
         for trial in search.trials.values()
         if "+" not in trial.candidate.name
     }
-    for effect_id in sorted(run & AT_A_POINT):
+    for effect_id in sorted(run & (DIRECTED if leading.turned else AT_A_POINT)):
         other = replace(leading, effect_id=effect_id)
-        if leading.location == ALONG:
-            there = first_points(other)[: 2 * len(EFFECTS[effect_id].parameters)]
-            there[:, -1] = search.fits[name].unit[-1]
-            if effect_id != leading.effect_id:
-                search.run([(other.name, there)])
-        else:
+        if not leading.along:
             search.screen([search.first(other.name, 2 * len(other.effect.parameters))])
             search.fit(other.name)
+        elif effect_id != leading.effect_id:
+            there = first_points(other)[: 2 * len(EFFECTS[effect_id].parameters)]
+            where = slice(len(EFFECTS[effect_id].parameters), None)
+            there[:, where] = search.fits[name].unit[where.start - len(other.effect.parameters) :]
+            if leading.turned:
+                run_along_the_force(search, other)
+            search.run([(other.name, there)])
     return True
+
+
+def turned_too(search: Search, name: str) -> bool:
+    """Run a leading explanation of a tube in other directions than that of the force, return
+    whether it acts in one: a spring or a stop may hold a tube in any direction across it.
+    """
+    leading = candidate_named(name)
+    if isinstance(leading, Pair) or leading.location != ALONG or leading.effect_id not in DIRECTED:
+        return False
+    other = replace(leading, location=TURNED)
+    run_along_the_force(search, other)
+    unit = search.fits[name].unit
+    search.run([(other.name, np.array([in_direction(unit, turned) for turned in DIRECTIONS]))])
+    return True
+
+
+def run_along_the_force(search: Search, turned: Candidate) -> None:
+    """Take what was run along the force as runs of an explanation whose direction is a parameter,
+    unless that has runs.
+    """
+    known = search.trials.get(replace(turned, location=ALONG).name)
+    if known is None or turned.name in search.trials:
+        return
+    search.trials[turned.name] = replace(
+        known,
+        candidate=turned,
+        unit=np.array([in_direction(unit, FORWARD) for unit in known.unit]),
+        deviations=list(known.deviations),
+        failed=[(in_direction(unit, FORWARD), message) for unit, message in known.failed],
+        screened=0,
+        strewn=len(known.noise),
+    )
+
+
+def in_direction(unit: np.ndarray, turned: float) -> np.ndarray:
+    """Return normalised parameters whose last is a place, with a direction before it."""
+    return np.insert(unit, -1, turned)

@@ -11,6 +11,7 @@ import numpy as np
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.cost import SIMULATED
 from vibroimpact.discrepancy.share_explained import share_explained
+from vibroimpact.effects.places import TURNED
 from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.linear_stage.linear_analysis import Prepared, prepare, workbench
 from vibroimpact.linear_stage.workbench import Workbench
@@ -135,8 +136,19 @@ class Engine:
         for name in race.leaders(search, 1):
             if alike.at_its_place(search, name):
                 race.race(search, self.spent)
+        if unexplained(search):
+            self.turn(search)
         for name in race.leaders(search, 1):
             race.race(search, self.spent, laws=alike.laws_of(search, name))
+
+    def turn(self, search: Search) -> None:
+        """Run what leads in other directions, and what may act in the one that is found."""
+        for name in race.leaders(search, 1):
+            if alike.turned_too(search, name):
+                race.race(search, self.spent)
+        for name in race.leaders(search, 1):
+            if candidate_named(name).location == TURNED and alike.at_its_place(search, name):
+                race.race(search, self.spent)
 
     def seek_pairs(self, search: Search, prepared: Prepared) -> None:
         """Look for two effects where one leaves room for a second."""

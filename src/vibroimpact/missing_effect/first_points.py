@@ -3,7 +3,6 @@
 import numpy as np
 from scipy.stats import qmc
 
-from vibroimpact.effects.places import ALONG
 from vibroimpact.linear_stage.candidates import Candidate
 
 # By the number of parameters.
@@ -20,7 +19,7 @@ EVEN = 8  # of an effect whose place is searched too
 def first_points(candidate: Candidate) -> np.ndarray:
     """Return (point, parameter): where an explanation is run first."""
     count = len(candidate.effect.parameters)
-    if candidate.location == ALONG:  # even ones, without the corner
+    if candidate.along:  # even ones, without the corner
         return qmc.Sobol(count, scramble=False).random(EVEN)[1:]
     vector = count == 2 and len(candidate.signed) == 2
     return np.array(VECTOR if vector else FIRST[count])

@@ -46,7 +46,7 @@ def where(name: str) -> str:
 
 
 def bounds(decision: Decision) -> list[Values]:
-    """Return rows of checks for estimates at a bound of their range."""
+    """Return rows of checks for estimates at a bound of their range, which no angle has."""
     if decision.chosen is None:
         return []
     parameters = decision.chosen.candidate.effect.parameters
@@ -61,7 +61,7 @@ def bounds(decision: Decision) -> list[Values]:
             ),
         }
         for value, parameter in zip(decision.chosen.unit, parameters, strict=True)
-        if min(value, 1.0 - value) < BOUND and parameter.name != "angle"
+        if min(value, 1.0 - value) < BOUND and parameter.unit != "deg"
     ]
 
 

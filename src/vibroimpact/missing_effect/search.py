@@ -6,7 +6,6 @@ import numpy as np
 from scipy.special import logsumexp
 
 from vibroimpact.config.reading import ConfigError
-from vibroimpact.effects.places import ALONG
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.linear_stage.candidates import Candidate, Pair, candidate_named
@@ -233,6 +232,7 @@ def telling(trial: Trial, rest: np.ndarray) -> int:
 
 
 ANYWHERE = 5  # places of an effect that is not there
+ANYHOW = [2, 0, 4, 1, 3]  # the order of as many directions
 BELOW = -0.2  # of the searched range: where an effect is nothing whose size is searched in its
 # logarithm from little to much
 
@@ -245,7 +245,9 @@ def neutral_unit(candidate: Candidate, scales: dict[str, float]) -> np.ndarray |
     for number, parameter in enumerate(candidate.effect.parameters):
         if parameter.log and parameter.neutral == 0.0:
             unit[number] = BELOW
-    rows = np.tile(unit, (ANYWHERE if candidate.location == ALONG else 1, 1))
-    if candidate.location == ALONG:
+    rows = np.tile(unit, (ANYWHERE if candidate.along else 1, 1))
+    if candidate.along:
         rows[:, -1] = np.linspace(0.0, 1.0, ANYWHERE)
+    if candidate.turned:
+        rows[:, -2] = np.linspace(0.0, 1.0, 2 * ANYWHERE)[1::2][ANYHOW]
     return rows if np.isfinite(rows).all() else None
