@@ -147,26 +147,20 @@ def test_an_effect_is_tried_at_the_other_end_of_a_tube(searched):
 
 
 def test_a_leading_spring_is_turned_about_a_tube(searched):
-    """What was run along the force is known of it in any direction; the others are run."""
     spring, stop = "cubic_stiffness@along_tube", "clearance@along_tube"
     for name in (spring, stop):
         searched.screen([searched.first(name)])
         searched.fit(name)
-    known = len(searched.trials[spring].noise)
     unit = searched.fits[spring].unit
     assert turned_too(searched, spring)
     trial = searched.trials[f"{spring}_turned"]
-    np.testing.assert_allclose(trial.unit[:known, 1], 0.5)
-    np.testing.assert_allclose(trial.unit[:known, ::2], searched.trials[spring].unit)
-    np.testing.assert_allclose(trial.change[:known], searched.trials[spring].change)
-    directions = trial.unit[known:, 1]
+    directions = trial.unit[:, 1]
     assert np.ptp(directions) > 0.6 and not np.isclose(directions, 0.5).any()
-    np.testing.assert_allclose(trial.unit[known:, ::2], np.tile(unit, (len(directions), 1)))
-    assert trial.refined == len(directions)  # the others were run for another explanation
+    np.testing.assert_allclose(trial.unit[:, ::2], np.tile(unit, (len(directions), 1)))
     turned = searched.fits[trial.candidate.name].unit
     assert at_its_place(searched, trial.candidate.name)  # and what else may act in that direction
     other = searched.trials[f"{stop}_turned"]
-    np.testing.assert_allclose(other.unit[-4:, 2:], np.tile(turned[1:], (4, 1)))
+    np.testing.assert_allclose(other.unit[:, 2:], np.tile(turned[1:], (4, 1)))
     assert not turned_too(searched, trial.candidate.name)
     assert not turned_too(searched, STIFFNESS)
 

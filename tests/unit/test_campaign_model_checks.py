@@ -101,3 +101,24 @@ def test_several_deviating_channels_mean_a_model_error():
         "Several channels are off" in rows[0]["message"]
         and "check its unit" not in rows[0]["message"]
     )
+
+
+def test_noise_at_low_frequencies_is_no_other_unit():
+    """Two thirds of the logarithmic bands of an accelerometer are noise, well above the model, and
+    a fifth of its lines; where it follows the force it agrees.
+    """
+    measured, low = beam(1.005, 0.02), LINES < 50.0
+    measured[1, low] += 3.0 * np.abs(measured[1, low]).max()
+    coherence = np.full(measured.shape, 0.98)
+    coherence[1, low] = 0.1
+
+    def checks(response):
+        ones = np.ones(len(response))
+        found = compare_with_model(
+            Transfer(LINES, response, coherence, ones, ones, 12), beam(), NAMES, KINDS
+        )
+        return [(row["check"], row["channel"]) for row in found]
+
+    assert checks(measured) == []
+    measured[1] *= 10.0
+    assert checks(measured) == [("units", NAMES[1])]

@@ -1,5 +1,7 @@
 """Every threshold and prior of the linear stage, of features and of maps, in one file."""
 
+from math import exp
+
 # Priors of the nuisances of a measured structure, one relative sigma: the differences that a modal
 # test finds from a good model. An effect within them is not named.
 FREQUENCY_SD = 0.003  # of each modal frequency
@@ -10,6 +12,11 @@ SHAPE_SD = 0.003  # of a mode shape, relative to its largest value among the cha
 # Of the change of a mode shape by an effect: it depends on the frequencies without the effect,
 # which scatter.
 SHAPE_LAW_SD = 0.01
+# Degrees of freedom of the Student law of these differences, and the most that their spread is
+# taken to be over these: it differs from structure to structure, which makes tails heavier than
+# those of a normal law, yet no sound structure is off by many times as much. Both are assumptions.
+TAILS = 8.0
+WIDEST = 2.0
 PULLED = 2.0  # sigma of the prior: few nuisances of the lowest record are farther off
 # Share of the nuisances: where more are beyond PULLED and the lowest record is not linear, none is
 # taken from it.
@@ -58,7 +65,7 @@ UNREAD = 0.5
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
 # sigma: corrections of nuisances are limited to it, so that they can not hide an effect. The limit
 # is where an effect is adopted, as nothing else would correct a mode with a smaller error.
-CORRECTION_LIMIT = (2.0 * LINEAR_GAIN) ** 0.5
+CORRECTION_LIMIT = ((TAILS + 1.0) * exp(2.0 * LINEAR_GAIN / (TAILS + 1.0)) - TAILS) ** 0.5
 LINEAR_SECOND = 8.0  # the same for two effects over the better one of them
 # in all, including those of the lowest record: with more, differences between two codes in the
 # first effects are named as another

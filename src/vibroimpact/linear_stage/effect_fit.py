@@ -214,6 +214,7 @@ def descended(
             shorter *= 0.4
         else:
             values, covariance, sensitivity = linear.difference(measured, simulated, bare=bare)
+            sensitivity = sensitivity * linear.spread(values, covariance, sensitivity)[0]
             factor = linalg.cholesky(covariance + sensitivity @ sensitivity.T, lower=True)
             best, unit, shorter = (score, chi_square, len(values)), new, 1.0
             slopes = np.array(

@@ -152,6 +152,7 @@ class LinearMisfit:
         values, covariance, sensitivity = linear.difference(
             self.measured, simulated, self.seen, self.given
         )
+        sensitivity = sensitivity * linear.spread(values, covariance, sensitivity)[0]
         own = slice(len(values) - len(self.seen))
         return values[own], (covariance + sensitivity @ sensitivity.T)[own, own]
 

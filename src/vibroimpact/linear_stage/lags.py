@@ -15,15 +15,21 @@ EXCITED = 1.0e-3  # of the strongest line of the force
 REAL_ENOUGH = 0.6  # least agreement of twice the phase once the delay is compensated
 SEEN_S = 3.0e-4  # a smaller delay is found from the phases of modes
 SIGNED = 3  # modes that move a channel
+PHASE_SD = 0.02  # rad, of a participation: modes of a structure are not quite in phase
 DEAF = 0.3  # share of a channel that no mode explains: above it the delay can not be found
 
 
-def lags(found: ModalFit, model: ModalModel, signs_told: bool = True) -> np.ndarray:
-    """Return (channel,) s: the delay of each channel, from the phases of its participations in a
-    ModalFit with complex participations.
+def lags(
+    found: ModalFit, model: ModalModel, signs_told: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return ((channel,) s the delay of each channel, (channel,) its standard deviation, 0 where it
+    can not be found), from the phases of its participations in a ModalFit with complex
+    participations.
 
     Proportionally damped modes move in phase or in antiphase, with the signs of the model. A phase
     proportional to frequency is a delay, the same for all modes.
+
+    Modes count by the errors of their phases, those of the fit and PHASE_SD.
 
     signs_told: whether the model gives the sign of each mode in a channel. Where it does not, two
     modes, one of them with the wrong sign, look like a delay of half a period: with fewer than
@@ -32,7 +38,7 @@ def lags(found: ModalFit, model: ModalModel, signs_told: bool = True) -> np.ndar
     frequency = model.frequencies[found.modes] * np.exp(found.log_frequency)
     tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / frequency.max())
     driven = driven_modes(model, found.modes)
-    out = np.zeros(len(found.participation))
+    out, errors = np.zeros((2, len(found.participation)))
     for channel, (shape, own) in enumerate(
         zip(found.participation, model.sensor_shapes[found.modes].T, strict=True)
     ):
@@ -49,8 +55,28 @@ def lags(found: ModalFit, model: ModalModel, signs_told: bool = True) -> np.ndar
             best -= np.sum(frequency * turned.imag) / max(
                 2.0 * np.pi * np.sum(frequency**2 * np.abs(turned)), 1.0e-300
             )
-        out[channel] = best if np.abs(best) <= reach else 0.0
-    return out
+        best, error = _weighted(best, unit, frequency, _phase_errors(found, channel))
+        if np.abs(best) <= reach:
+            out[channel], errors[channel] = best, error
+    return out, errors
+
+
+def _phase_errors(found, channel):
+    """Return (fitted,) rad: the standard deviations of the phases of a channel's participations."""
+    size = np.maximum(np.abs(found.participation[channel]), 1.0e-300)
+    variance = np.diag(found.shape_covariance[channel])
+    return np.hypot(PHASE_SD, np.sqrt(np.maximum(variance, 0.0)) / size)
+
+
+def _weighted(lag, unit, frequency, errors):
+    """Return (s, its standard deviation): a delay near `lag` by the phases of unit (fitted,), each
+    known to errors (fitted,) in rad.
+    """
+    phase = np.angle(unit * np.exp(2j * np.pi * frequency * lag))
+    weight = np.where(unit != 0.0, 1.0 / errors**2, 0.0)
+    curvature = 2.0 * np.pi * np.sum(weight * frequency**2)
+    more = np.sum(weight * frequency * phase) / curvature
+    return lag - more, np.sqrt(1.0 / (2.0 * np.pi * curvature))
 
 
 def from_phases(lines: ModalLines, noise: np.ndarray) -> np.ndarray:

@@ -114,6 +114,9 @@ def workbench(
     campaign, refusal = usable_campaign(campaign_path, prepared.checks, config.integration)
     if refusal:
         raise CampaignError(refusal)
+    if prepared.fitted:
+        chosen = campaign["record_name"].isin(prepared.fitted)
+        campaign = campaign.assign(split=campaign["split"].where(~chosen, "fit"))
     bench = Workbench(config, campaign, seconds, prepared.draw)
     bench.linear_stage, bench.nonlinear_low = prepared.linear_stage, prepared.nonlinear_low
     if prepared.delays:

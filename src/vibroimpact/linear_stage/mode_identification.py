@@ -37,6 +37,7 @@ RESOLVED = 1.0e-6
 VISIBLE = 3.0  # times the noise in the band: below it a mode is not fitted
 UNEXPECTED = 60.0  # chi-square that a mode which the model does not excite must explain
 LEAST_LAG_S = 2.0e-5
+SURE = 4.0  # standard deviations of a delay that is taken for one
 # of a mode's largest displacement among the channels: below it a channel does not see the mode in
 # the model
 SILENT = 1.0e-4
@@ -248,7 +249,9 @@ def _lags(lines_at, delay, seen, noise, model, start):
         if left(free, model) >= LOST:
             return before, first.log_frequency
     # a base drives few modes, and a change of the structure may reverse the sign of one of them
-    return delay + lags(free, model, lines.record.base is None), free.log_frequency
+    more, error = lags(free, model, lines.record.base is None)
+    lag = delay + more
+    return np.where(np.abs(lag) > SURE * error, lag, 0.0), free.log_frequency
 
 
 def _significant(lag):

@@ -21,6 +21,7 @@ from .modal_fit import ModalFit
 
 # of a mode's largest participation among the channels: below it a channel does not see the mode
 SEEN = 0.05
+TURNS = 4  # of expectation and maximisation
 
 
 @dataclass(frozen=True)
@@ -183,6 +184,27 @@ def difference(
     return values, covariance, sensitivity
 
 
+def spread(
+    values: np.ndarray, covariance: np.ndarray, sensitivity: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Return (spread (nuisance,) in sigma of its prior, log of its prior density over that of 1) of
+    each nuisance, the most probable for values (n,) of the other arguments: see difference.
+
+    A Student law of priors.TAILS degrees of freedom is a normal law whose variance is itself drawn;
+    that variance, at most priors.WIDEST squared, is found by expectation and maximisation (Lange,
+    Little and Taylor, J. Am. Stat. Assoc. 84 (1989) 881-896).
+    """
+    variance, tails = np.ones(sensitivity.shape[1]), priors.TAILS
+    for _ in range(TURNS):
+        wide = sensitivity * variance
+        factor = linalg.cho_factor(covariance + wide @ sensitivity.T, lower=True)
+        pulls = wide.T @ linalg.cho_solve(factor, values)
+        unknown = variance - np.sum(wide * linalg.cho_solve(factor, wide), axis=0)
+        variance = np.minimum((tails + pulls**2 + unknown) / (tails + 1.0), priors.WIDEST**2)
+    cost = 0.5 * tails * np.sum(np.log(variance) + 1.0 / variance - 1.0)
+    return np.sqrt(variance), -float(cost)
+
+
 def likelihood(
     measured: Reading, simulated: Reading, bare: Reading | None = None
 ) -> tuple[float, float, np.ndarray]:
@@ -191,14 +213,15 @@ def likelihood(
     difference.
     """
     values, covariance, sensitivity = difference(measured, simulated, bare=bare)
-    total = covariance + sensitivity @ sensitivity.T
-    factor = linalg.cho_factor(total, lower=True)
+    wide, density = spread(values, covariance, sensitivity)
+    sensitivity = sensitivity * wide
+    factor = linalg.cho_factor(covariance + sensitivity @ sensitivity.T, lower=True)
     solved = linalg.cho_solve(factor, values)
     chi_square = float(values @ solved)
     return (
-        -0.5 * chi_square - np.sum(np.log(np.diag(factor[0]))),
+        density - 0.5 * chi_square - np.sum(np.log(np.diag(factor[0]))),
         chi_square,
-        sensitivity.T @ solved,
+        wide * (sensitivity.T @ solved),
     )
 
 

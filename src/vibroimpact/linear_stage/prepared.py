@@ -29,6 +29,7 @@ class Prepared:
     chi_square: of the lowest record. residual (channel,): over noise. delays: {channel: s}.
     fit: the ModalFit of the lowest record relative to the model with what is adopted.
     draw: see linear_analysis.prepare.
+    fitted: names of the held-out records that are fitted too, see verification.telling_record.
     """
 
     checks: list[dict[str, Any]]
@@ -47,6 +48,7 @@ class Prepared:
     not_testable: list[str] = field(default_factory=list)
     fit: dict[str, Any] | None = None
     draw: int = 0
+    fitted: list[str] = field(default_factory=list)
 
     def room(self, candidate: Candidate | Pair) -> bool:
         """Return whether a Candidate or Pair may be missing in addition to what was adopted, or

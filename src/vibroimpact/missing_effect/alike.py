@@ -10,7 +10,7 @@ from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.linear_stage.candidates import (
     AT_A_POINT,
     DIRECTED,
-    Candidate,
+    DIRECTION,
     Pair,
     candidate_named,
     elsewhere,
@@ -20,8 +20,7 @@ from vibroimpact.linear_stage.candidates import (
 from .first_points import first_points
 from .search import Search
 
-FORWARD = 0.5  # of the range of directions: along the force
-DIRECTIONS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0, 1.0)  # the others, every 30 degrees
+DIRECTIONS_DEG = (-45.0, -15.0, -5.0, 5.0, 15.0, 45.0, 90.0)
 
 
 def _similar(effect: Effect, leading: Effect) -> bool:
@@ -101,8 +100,6 @@ def at_its_place(search: Search, name: str) -> bool:
             there = first_points(other)[: 2 * len(EFFECTS[effect_id].parameters)]
             where = slice(len(EFFECTS[effect_id].parameters), None)
             there[:, where] = search.fits[name].unit[where.start - len(other.effect.parameters) :]
-            if leading.turned:
-                run_along_the_force(search, other)
             search.run([(other.name, there)])
     return True
 
@@ -110,35 +107,15 @@ def at_its_place(search: Search, name: str) -> bool:
 def turned_too(search: Search, name: str) -> bool:
     """Run a leading explanation of a tube in other directions than that of the force, return
     whether it acts in one: a spring or a stop may hold a tube in any direction across it.
+
+    What was run along the force tells nothing of them: the motion stays in one plane there, and
+    leaves it as soon as the direction does.
     """
     leading = candidate_named(name)
     if isinstance(leading, Pair) or leading.location != ALONG or leading.effect_id not in DIRECTED:
         return False
-    other = replace(leading, location=TURNED)
-    run_along_the_force(search, other)
-    unit = search.fits[name].unit
-    search.run([(other.name, np.array([in_direction(unit, turned) for turned in DIRECTIONS]))])
+    other, unit = replace(leading, location=TURNED), search.fits[name].unit
+    low, high = DIRECTION.low, DIRECTION.high
+    turned = [(degrees - low) / (high - low) for degrees in DIRECTIONS_DEG]
+    search.run([(other.name, np.array([np.insert(unit, -1, one) for one in turned]))])
     return True
-
-
-def run_along_the_force(search: Search, turned: Candidate) -> None:
-    """Take what was run along the force as runs of an explanation whose direction is a parameter,
-    unless that has runs.
-    """
-    known = search.trials.get(replace(turned, location=ALONG).name)
-    if known is None or turned.name in search.trials:
-        return
-    search.trials[turned.name] = replace(
-        known,
-        candidate=turned,
-        unit=np.array([in_direction(unit, FORWARD) for unit in known.unit]),
-        deviations=list(known.deviations),
-        failed=[(in_direction(unit, FORWARD), message) for unit, message in known.failed],
-        screened=0,
-        strewn=len(known.noise),
-    )
-
-
-def in_direction(unit: np.ndarray, turned: float) -> np.ndarray:
-    """Return normalised parameters whose last is a place, with a direction before it."""
-    return np.insert(unit, -1, turned)

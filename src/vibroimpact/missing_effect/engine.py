@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.cost import SIMULATED
 from vibroimpact.discrepancy.share_explained import share_explained
@@ -18,14 +19,14 @@ from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.stopwatch import Stopwatch
 
 from . import alike, constants, race, screening, so_far, two_effects, verdict
-from .decision import decide
+from .decision import Chosen, decide
 from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
 from .probabilities import posterior
 from .refused import write_refused
 from .search import Search
-from .verification import closing
+from .verification import Closing, closing, telling_record
 
 LEADING = 3  # explanations whose likes are looked at too
 OPEN = 0.3  # probability of something else, beside an explanation or alone, from which two effects
@@ -76,7 +77,15 @@ class Engine:
             write_refused(self.folder, prepared, provenance, self.spent_so_far)
             so_far.write_refusal(self.folder, prepared)
             return
-        search = self.null_stage(prepared)
+        search, closed = self.null_stage(prepared), None
+        if not search.null.differs:
+            closed = self.verify(prepared, search)
+            record = telling_record(closed)
+            if record is not None:
+                prepared = replace(
+                    prepared, fitted=[record], checks=[*prepared.checks, fitted_too(record)]
+                )
+                search, closed = self.null_stage(prepared), None
         so_far.write(self.folder, search, prepared)
         if search.null.differs:
             self.search(search, prepared)
@@ -90,12 +99,17 @@ class Engine:
             null.values,
             search.of_families(),
         )
-        with self.stage("verification"):
-            given, whole = self.whole_benches(prepared)
-            closed = closing(given, whole, search.bench, decision.chosen, prepared.scales)
+        if closed is None or decision.chosen is not None:
+            closed = self.verify(prepared, search, decision.chosen)
         verdict.write(
             self.folder, prepared, search, (decision, closed), self.spent_so_far, provenance
         )
+
+    def verify(self, prepared: Prepared, search: Search, chosen: Chosen | None = None) -> Closing:
+        """Return the Closing of what is Chosen, None for nothing."""
+        with self.stage("verification"):
+            given, whole = self.whole_benches(prepared)
+            return closing(given, whole, search.bench, chosen, prepared.scales)
 
     def search(self, search: Search, prepared: Prepared) -> None:
         """Run explanations until what is missing is known, or nothing more is to be learned."""
@@ -169,6 +183,17 @@ class Engine:
             return whole, whole
         bare = replace(prepared, adopted=None, fit=None)
         return workbench(self.config, self.campaign, bare), whole
+
+
+def fitted_too(record: str) -> dict[str, Any]:
+    """Return the row of checks for a held-out record that is fitted too."""
+    return check_row(
+        "split",
+        "warn",
+        "The fitted records agree with the model, this held-out one does not: it is fitted too, and"
+        " verified is on the other held-out records. Mark it as fit, and hold out one like it.",
+        record=record,
+    )
 
 
 def open_chance(search: Search) -> float:

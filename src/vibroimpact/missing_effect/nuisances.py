@@ -47,9 +47,12 @@ def _posterior(bench):
         return np.zeros(0, int), np.zeros(channels), np.eye(channels)
     fit = bench.measured_fit
     values, covariance, sensitivity = linear.difference(bench.measured_reading, bench.bare_reading)
+    wide, _ = linear.spread(values, covariance, sensitivity)
+    sensitivity = sensitivity * wide
     factor = linalg.cho_factor(covariance + sensitivity @ sensitivity.T, lower=True)
-    mean = sensitivity.T @ linalg.cho_solve(factor, values)
+    mean = wide * (sensitivity.T @ linalg.cho_solve(factor, values))
     left = np.eye(len(mean)) - sensitivity.T @ linalg.cho_solve(factor, sensitivity)
+    left = wide[:, None] * left * wide
     size, along = linalg.eigh(0.5 * (left + left.T))
     limit = priors.CORRECTION_LIMIT
     return (

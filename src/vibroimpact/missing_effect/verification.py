@@ -18,6 +18,7 @@ from .decision import Chosen
 
 FRESH = 20000  # first seed of the verification: none of the search's
 RUNS = 32  # of whole records in all
+LEAST_DB = 0.05  # of a floor: less is the scatter of no two runs
 
 
 @dataclass(frozen=True)
@@ -148,6 +149,25 @@ def _judged(benches, before, after):
     rows = misfits(benches[1], before, after)
     split = judged_split(rows)
     return Closing(benches, before, after, rows, split, misfit.makes_worse(rows[split]))
+
+
+def telling_record(closed: Closing) -> str | None:
+    """Return the name of the held-out record that disagrees most with the model as given, None
+    where none does by more than chance: an excess over the floor as large as the floor.
+
+    Where the fitted records show nothing, as they may when contact begins in the others, what is
+    missing is looked for with that record, and verified on the rest.
+    """
+    whole, features = closed.benches[0], closed.before.features
+    cells, mean = misfit.counted(whole), features.mean(axis=1)
+    most, name = 1.0, None
+    for record in whole.signals.holdout():
+        row = misfit.misfit_of(whole, np.array([record]), cells, mean, mean, features)
+        before, floor = float(row["before_dB"] or 0.0), float(row["floor_dB"] or 0.0)
+        share = misfit.excess(before, floor) / max(floor, LEAST_DB)
+        if share > most:
+            most, name = share, whole.signals.record_names[record]
+    return name
 
 
 def judged_split(rows: dict) -> str:

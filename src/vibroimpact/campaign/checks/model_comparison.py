@@ -17,7 +17,7 @@ from vibroimpact.campaign.signals import Transfer
 from .linear_record import mean_coherence
 
 BANDS = 30
-LEAST_COHERENCE = 0.3  # least mean coherence of a channel that is judged
+LEAST_COHERENCE = 0.3  # least mean coherence of a channel that is judged, and of a band of it
 # Two channels are swapped where exchanging them reduces their misfit to below this share of it and
 # by at least SWAP_DB.
 SWAP_RATIO = 0.6
@@ -47,8 +47,7 @@ def band_levels_dB(frequency: np.ndarray, h1: np.ndarray, weights: np.ndarray) -
 
     NaN where a band holds no line.
     """
-    edges = np.geomspace(frequency[0], frequency[-1] * (1.0 + 1e-9), BANDS + 1)
-    place = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
+    place = _bands(frequency)
     power = np.abs(h1) ** 2 * weights
     sums = np.array([[np.sum(values[place == band]) for band in range(BANDS)] for values in power])
     total = np.array(
@@ -58,6 +57,22 @@ def band_levels_dB(frequency: np.ndarray, h1: np.ndarray, weights: np.ndarray) -
     return np.where(
         filled, 10.0 * np.log10(np.where(filled, sums, 1.0) / np.where(filled, total, 1.0)), np.nan
     )
+
+
+def _bands(frequency):
+    """Return (line,): the band of each line."""
+    edges = np.geomspace(frequency[0], frequency[-1] * (1.0 + 1e-9), BANDS + 1)
+    return np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
+
+
+def coherent_bands(frequency: np.ndarray, coherence: np.ndarray) -> np.ndarray:
+    """Return (channel, band) bool: whether the mean coherence (channel, line) of a band is at least
+    LEAST_COHERENCE. The response in the others is noise, and more than any linear model has.
+    """
+    place = _bands(frequency)
+    chosen = place == np.arange(BANDS)[:, None]
+    mean = coherence @ chosen.T / np.maximum(chosen.sum(axis=1), 1)
+    return mean >= LEAST_COHERENCE
 
 
 def misfits_dB(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -93,8 +108,9 @@ def compare_with_model(
     channels = coherent.tolist()
     weights = np.maximum(spectra.coherence, 1e-3)[coherent]
     h1, model = spectra.h1[coherent], simulated[coherent]
+    seen = coherent_bands(spectra.frequency, spectra.coherence[coherent])
     misfit, offset = misfits_dB(
-        band_levels_dB(spectra.frequency, h1, weights),
+        np.where(seen, band_levels_dB(spectra.frequency, h1, weights), np.nan),
         band_levels_dB(spectra.frequency, model, weights),
     )
     rows: list[dict] = []
