@@ -2,9 +2,10 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from vibroimpact.discrepancy.misfit import closed_fraction
+from vibroimpact.discrepancy.misfit import closed_fraction, repeats
 from vibroimpact.missing_effect import verification
 
 
@@ -33,3 +34,12 @@ def test_growth_on_any_records_is_worse(fit, held_out, worse, monkeypatch):
     )
     chosen = SimpleNamespace(candidate=SimpleNamespace(physical=lambda *_: {}), unit=None)
     assert verification.closing(bench, bench, bench, chosen, {}).worse is worse
+
+
+def test_motion_that_is_there_by_chance_is_not_counted():
+    """A channel across the force rattles in one of two runs; the others repeat to 1 dB."""
+    power = np.random.default_rng(4).normal(-80.0, 1.0, (3, 8, 4, 24))
+    power[:, ::2, 1] -= 40.0
+    steady = repeats(power)
+    assert steady[:, [0, 2, 3]].all() and not steady[:, 1].any()
+    assert repeats(power[:, :, [1]]).all()  # where nothing repeats, all that there is

@@ -17,6 +17,8 @@ ABOVE_NOISE_DB = 6.0
 # A channel also senses motion across its direction, 1 % at best (transverse sensitivity, ISO
 # 16063-31). A signal farther below the strongest channel may be that of another direction.
 BELOW_STRONGEST_DB = 40.0
+# between seeds of a model, one standard deviation: impacts scatter by 1 to 3 dB
+UNSTEADY_DB = 6.0
 
 
 def counted(bench: ComparisonLike) -> np.ndarray:
@@ -40,6 +42,17 @@ def counted(bench: ComparisonLike) -> np.ndarray:
         strongest = np.max(moved, axis=1, keepdims=True, where=own, initial=-np.inf)
         strong &= ~own | (moved > strongest - BELOW_STRONGEST_DB)
     return (power > noise + ABOVE_NOISE_DB) & strong
+
+
+def repeats(power: np.ndarray) -> np.ndarray:
+    """Return (record, channel, band) bool: whether seeds of a model agree there, of power (record,
+    seed, channel, band) in dB; all where none does.
+
+    Motion across the force breaks out in one run of a straight tube and not in another: a cell that
+    is on or off by chance tells nothing of how near a model is.
+    """
+    steady = power.std(axis=1) < UNSTEADY_DB
+    return steady if steady.any() else np.ones_like(steady)
 
 
 def level_distance(difference: np.ndarray, chosen: np.ndarray) -> float:

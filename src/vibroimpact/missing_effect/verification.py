@@ -62,7 +62,7 @@ def misfits(whole: Workbench, before: Verified, after: Verified) -> dict[str, An
     """Return {split: misfit.misfit_of} of what two Verified leave, nothing known where a split has
     no records.
     """
-    cells = misfit.counted(whole)
+    cells = misfit.counted(whole) & _repeat(whole, before) & _repeat(whole, after)
     splits = {
         "fit": whole.signals.fit(),
         "holdout": whole.signals.holdout(),
@@ -82,6 +82,11 @@ def misfits(whole: Workbench, before: Verified, after: Verified) -> dict[str, An
         )
         for name, records in splits.items()
     }
+
+
+def _repeat(whole, runs):
+    """Return misfit.repeats of a Verified."""
+    return misfit.repeats(whole.layout.power(runs.features))
 
 
 @dataclass(frozen=True)
@@ -159,7 +164,7 @@ def telling_record(closed: Closing) -> str | None:
     missing is looked for with that record, and verified on the rest.
     """
     whole, features = closed.benches[0], closed.before.features
-    cells, mean = misfit.counted(whole), features.mean(axis=1)
+    cells, mean = misfit.counted(whole) & _repeat(whole, closed.before), features.mean(axis=1)
     most, name = 1.0, None
     for record in whole.signals.holdout():
         row = misfit.misfit_of(whole, np.array([record]), cells, mean, mean, features)
