@@ -80,12 +80,12 @@ class Engine:
         search, closed = self.null_stage(prepared), None
         if not search.null.differs:
             closed = self.verify(prepared, search)
-            record = telling_record(closed)
-            if record is not None:
-                prepared = replace(
-                    prepared, fitted=[record], checks=[*prepared.checks, fitted_too(record)]
-                )
-                search, closed = self.null_stage(prepared), None
+            more = with_telling_record(prepared, closed)
+            if more is not prepared:
+                found = self.null_stage(more)
+                # else what is not known of the sound model may explain that record
+                if found.null.differs:
+                    prepared, search, closed = more, found, None
         so_far.write(self.folder, search, prepared)
         if search.null.differs:
             self.search(search, prepared)
@@ -185,15 +185,21 @@ class Engine:
         return workbench(self.config, self.campaign, bare), whole
 
 
-def fitted_too(record: str) -> dict[str, Any]:
-    """Return the row of checks for a held-out record that is fitted too."""
-    return check_row(
+def with_telling_record(prepared: Prepared, closed: Closing) -> Prepared:
+    """Return the Prepared with the held-out record fitted too that disagrees most, itself where
+    none does.
+    """
+    record = telling_record(closed)
+    if record is None:
+        return prepared
+    row = check_row(
         "split",
         "warn",
         "The fitted records agree with the model, this held-out one does not: it is fitted too, and"
         " verified is on the other held-out records. Mark it as fit, and hold out one like it.",
         record=record,
     )
+    return replace(prepared, fitted=[record], checks=[*prepared.checks, row])
 
 
 def open_chance(search: Search) -> float:
