@@ -4,7 +4,7 @@ from time import process_time
 
 import pytest
 
-from vibroimpact.discrepancy.cost import Meter, count_simulated, job_cost, total_cost
+from vibroimpact.run_cost import Meter, count_simulated, job_cost, total_cost
 from vibroimpact.verdict.content import Cost
 
 

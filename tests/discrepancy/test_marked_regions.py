@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
 from vibroimpact.discrepancy.discrepancy_map import regions, significant, z_of
-from vibroimpact.discrepancy.driven_channels import driven_channels
+from vibroimpact.linear_stage import priors
+from vibroimpact.linear_stage.driven_channels import driven_channels
 from vibroimpact.observation.features import compressed, feature_layout
 
 RECORDS, CHANNELS, BANDS, SEEDS = 4, 5, 24, 16

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.discrepancy import priors
+from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.nuisance import Reading
 from vibroimpact.missing_effect.nuisances import nuisance_draws
 

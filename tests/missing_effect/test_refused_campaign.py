@@ -2,7 +2,7 @@
 
 import json
 
-from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.prepared import Prepared
 from vibroimpact.missing_effect import engine
 
 WRITTEN = {

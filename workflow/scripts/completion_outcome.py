@@ -3,7 +3,7 @@
 from vibroimpact.completion.outcome import outcome, write_outcome
 from vibroimpact.completion.store import read_kept, read_values
 from vibroimpact.completion.study import study_of
-from vibroimpact.discrepancy.cost import Meter, total_cost
+from vibroimpact.run_cost import Meter, total_cost
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import verdict_origin
 

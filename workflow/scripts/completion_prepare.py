@@ -4,7 +4,7 @@ from vibroimpact.completion.mounting import COLUMNS
 from vibroimpact.completion.prepare import prepared
 from vibroimpact.completion.store import write_kept, write_values
 from vibroimpact.completion.structure_file import StructureFile
-from vibroimpact.discrepancy.cost import job_cost
+from vibroimpact.run_cost import job_cost
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
 

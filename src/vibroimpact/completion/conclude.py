@@ -6,8 +6,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from vibroimpact.config.measured_structure import ELSEWHERE
-from vibroimpact.discrepancy.cost import Meter, total_cost, with_cost
 from vibroimpact.discrepancy.misfit import makes_worse
+from vibroimpact.run_cost import Meter, total_cost, with_cost
 from vibroimpact.spectra.periodic_lines import line_power
 from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
 

@@ -8,7 +8,6 @@ import numpy as np
 from scipy.fft import next_fast_len
 
 from vibroimpact.contact.laws import LocalLaws
-from vibroimpact.discrepancy.cost import count_simulated
 from vibroimpact.identify.modal_fit import Ridge, channel_scale, pack, unpack
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
@@ -16,6 +15,7 @@ from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.steady_response import PeriodicDrive, steady_elements
 from vibroimpact.least_squares import differences, minimise
 from vibroimpact.reduction.modal_structure import IdentifiedModes, modal_model
+from vibroimpact.run_cost import count_simulated
 
 from .local_laws import LAWS
 

@@ -1,50 +1,17 @@
-"""The completed model as a configuration: effects, corrected frequencies and damping of modes."""
+"""Corrected modes in a configuration, and the text in place of one that is no better."""
 
 from typing import Any
 
 import numpy as np
 import xarray as xr
-import yaml
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.effect import Values
+from vibroimpact.linear_stage.nuisance import Nuisance
 from vibroimpact.observation.attached_model import attach
-from vibroimpact.records import plain_values
 from vibroimpact.reduction.structural_modifications import with_frequency_factors
 
 from .misfit import makes_worse
-from .protocols import DecisionLike, NuisanceLike, PreparedLike, WorkbenchLike
-
-
-def updated_model(bench: WorkbenchLike, decision: DecisionLike, prepared: PreparedLike) -> str:
-    """Return the YAML text of the completed configuration: effects and corrected modes.
-
-    Gains of channels are a comment, because they are no part of the model.
-    """
-    values = bench.values
-    if decision.chosen is not None:
-        values = bench.variant(
-            decision.chosen.candidate,
-            decision.chosen.candidate.physical(decision.chosen.unit, prepared.scales),
-        )
-    if bench.nuisance is not None:
-        values = with_nuisance(
-            values, bench.nuisance, computed_modes(values, bench.campaign)[bench.nuisance.modes]
-        )
-    what = (
-        "The verdict is unknown: nothing was added to what the lowest record told."
-        if decision.verdict == "unknown"
-        else "The model with what the campaign showed to be missing."
-    )
-    lines = [f"# {what} Corrections of modes are in mode_frequency_factors and damping."]
-    if bench.nuisance is not None:
-        gains = ", ".join(
-            f"{name} {gain:.4f}"
-            for name, gain in zip(bench.signals.names, bench.nuisance.gain, strict=True)
-        )
-        lines.append(f"# Gains of the channels, measured over true: {gains}")
-    values = values | {"study": f"{values['study']}_updated"}
-    return "\n".join([*lines, yaml.safe_dump(plain_values(values), sort_keys=False, width=140)])
 
 
 def not_offered(withdrawn: dict[str, Any]) -> str:
@@ -76,7 +43,7 @@ def computed_modes(values: Values, campaign: xr.Dataset) -> np.ndarray:
     return with_frequency_factors(computed.omega, values["mode_frequency_factors"])[1]
 
 
-def with_nuisance(values: Values, nuisance: NuisanceLike, computed: np.ndarray) -> Values:
+def with_nuisance(values: Values, nuisance: Nuisance, computed: np.ndarray) -> Values:
     """Return the configuration in plain values with corrected frequencies and damping ratios.
 
     computed (mode,): indices of the corrected modes as computed_modes gives them.

@@ -5,9 +5,8 @@ Model discrepancy is the difference between two correct codes of the same physic
 
 import numpy as np
 
+from vibroimpact.linear_stage import priors
 from vibroimpact.observation.features import FeatureLayout
-
-from . import priors
 
 
 def shrunk(rows: np.ndarray, freedom: int) -> np.ndarray:

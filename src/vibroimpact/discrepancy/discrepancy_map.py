@@ -9,14 +9,15 @@ import xarray as xr
 from scipy import stats
 
 from vibroimpact.campaign.force_kinds import base_channels, load_unit
+from vibroimpact.linear_stage import priors
+from vibroimpact.linear_stage.counted_cells import counted
+from vibroimpact.linear_stage.driven_channels import driven_channels
+from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.observation.features import BLEND, FeatureLayout, compressed
 from vibroimpact.units import SI_OF_KIND
 
-from . import priors
 from .covariance import feature_sd, free_directions
-from .driven_channels import driven_channels
-from .misfit import counted
-from .protocols import ComparisonLike, NullLike
+from .null_like import NullLike
 
 SMOOTH = (0.25, 0.5, 0.25)  # weights of neighbouring bands in a variance from few seeds
 SPECTRUM_HZ = 0.4  # resolution of the spectra shown
@@ -28,7 +29,7 @@ Compared = tuple[np.ndarray, np.ndarray, np.ndarray]  # (D, z, sd) of z_of
 
 
 def z_of(
-    bench: ComparisonLike, null: NullLike, seeds: np.ndarray, model: np.ndarray | None = None
+    bench: Workbench, null: NullLike, seeds: np.ndarray, model: np.ndarray | None = None
 ) -> Compared:
     """Return (D, z, sd), each (record, channel, band): measured less simulated band powers in dB,
     in standard deviations, and the standard deviations in dB.
@@ -45,7 +46,7 @@ def z_of(
 
 
 def standard_deviation(
-    bench: ComparisonLike, null: NullLike, seeds: np.ndarray, model: np.ndarray | None = None
+    bench: Workbench, null: NullLike, seeds: np.ndarray, model: np.ndarray | None = None
 ) -> np.ndarray:
     """Return (record, feature): one sigma of a measured record about the mean of a model.
 
@@ -92,7 +93,7 @@ def significant(z: np.ndarray, chosen: np.ndarray) -> np.ndarray:
 
 
 def regions(
-    bench: ComparisonLike, difference: np.ndarray, z: np.ndarray, chosen: np.ndarray
+    bench: Workbench, difference: np.ndarray, z: np.ndarray, chosen: np.ndarray
 ) -> list[dict[str, Any]]:
     """Return the rows of `regions` of verdict.json: clusters of significant bands, the largest |z|
     first.
@@ -141,7 +142,7 @@ def clusters(difference: np.ndarray, marked: np.ndarray) -> list[np.ndarray]:
     return out
 
 
-def nearest(bench: ComparisonLike, low: float, high: float) -> list[float]:
+def nearest(bench: Workbench, low: float, high: float) -> list[float]:
     """Return the frequencies in Hz of the modes in a band, or of the one nearest to its middle."""
     frequencies = bench.bare.frequencies[bench.bare.frequencies < 3.0 * bench.layout.edges[-1]]
     inside = frequencies[(frequencies >= low) & (frequencies <= high)]
@@ -191,7 +192,7 @@ MAP_ABOUT = {
 
 
 def map_dataset(
-    bench: ComparisonLike, compared: Compared, seeds: np.ndarray, responses: np.ndarray
+    bench: Workbench, compared: Compared, seeds: np.ndarray, responses: np.ndarray
 ) -> xr.Dataset:
     """Return the map as a Dataset.
 

@@ -6,15 +6,17 @@ import numpy as np
 from scipy import stats
 
 from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.linear_stage import priors
+from vibroimpact.linear_stage.prepared import Prepared
+from vibroimpact.linear_stage.workbench import Workbench
 
-from . import priors
-from .protocols import ComparisonLike, NullLike, PreparedLike
+from .null_like import NullLike
 
 MIRROR_Z, SCALING_DB = 4.0, 1.0
 
 
 def broken_invariances(
-    bench: ComparisonLike, null: NullLike, prepared: PreparedLike, power: bool = False
+    bench: Workbench, null: NullLike, prepared: Prepared, power: bool = False
 ) -> list[str]:
     """Return [T1, ...]: the tests that fail beyond the scatter of the seeds.
 
@@ -44,7 +46,7 @@ def broken_invariances(
 
 
 def one_sided(
-    bench: ComparisonLike, null: NullLike, measured: np.ndarray, mean: np.ndarray
+    bench: Workbench, null: NullLike, measured: np.ndarray, mean: np.ndarray
 ) -> tuple[int, int, float] | None:
     """Return (record, channel, z) of the skewness that differs most from the model, None where no
     difference is significant.
@@ -66,7 +68,7 @@ def one_sided(
 
 
 def one_sided_rows(
-    bench: ComparisonLike, null: NullLike, measured: np.ndarray, completed: np.ndarray
+    bench: Workbench, null: NullLike, measured: np.ndarray, completed: np.ndarray
 ) -> list[dict[str, Any]]:
     """Return a row of checks on whether the completed model has the skewness of the measurement.
 

@@ -6,11 +6,10 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.force_kinds import base_channels
+from vibroimpact.linear_stage import priors
+from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.observation.sensed_motion import moving
 from vibroimpact.units import TIME_DERIVATIVES
-
-from . import priors
-from .protocols import ComparisonLike
 
 DRIVE_M = 5.0e-3  # largest distance of a channel at the drive point
 ALONG = 0.999  # least |cosine| between the channel and the force
@@ -57,7 +56,7 @@ def input_power(
     )
 
 
-def broken(bench: ComparisonLike, simulated: np.ndarray) -> bool:
+def broken(bench: Workbench, simulated: np.ndarray) -> bool:
     """Return whether the measured input power of any record differs from the simulated one by more
     than the scatter of the seeds and the gains of two channels allow.
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.effects.places import length_m, stations
 from vibroimpact.geometry.directions import transverse_directions
 from vibroimpact.observation.attached_model import displacement_shapes
 from vibroimpact.observation.sensed_motion import differentiated
 from vibroimpact.observation.strain import STRAIN
 
+from . import priors
 from .other_source import BLOCK, FREE, incoherent_rest
 from .workbench import Workbench
 

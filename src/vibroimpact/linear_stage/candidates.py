@@ -11,12 +11,13 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Effect, Parameter, Values
 from vibroimpact.effects.places import ALONG, TURNED
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.observation.sensor_chain import Measuring, measuring_of, places
+
+from . import priors
 
 ALONE = "@alone"
 AT_A_POINT = frozenset(

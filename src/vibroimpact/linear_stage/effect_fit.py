@@ -11,11 +11,11 @@ import numpy as np
 from scipy import linalg, optimize
 
 from vibroimpact.config.reading import Config, ConfigError, check_config
-from vibroimpact.discrepancy import priors
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.reduction.modal_model import ModalModel
 
 from . import nuisance as linear
+from . import priors
 from .candidates import Candidate, CandidateOrPair, Pair, Physical
 from .linearised import linearised, matched, same_modes
 from .workbench import Workbench

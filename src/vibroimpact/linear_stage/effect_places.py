@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 from scipy import optimize
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.effects import places
 
+from . import priors
 from .candidates import AT_A_POINT, Candidate
 from .effect_fit import LinearChanges, LinearResult, fitted
 from .effect_readings import LinearTable, table_of

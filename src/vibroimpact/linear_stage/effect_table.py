@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.force_kinds import FORCE, base_channels
-from vibroimpact.discrepancy import priors
 
+from . import priors
 from .candidates import Candidate, candidate_named, linear_candidates
 from .effect_fit import LinearChanges, LinearResult, fitted
 from .effect_pairs import Begun, best_pairs

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.campaign.checks.stated import check_row
-from vibroimpact.discrepancy import priors
 
+from . import priors
 from .acting_place import ActingPlace
 from .drift import drift_of
 from .goodness_of_fit import LinearMisfit, Mend

@@ -19,13 +19,13 @@ from scipy import interpolate, linalg, stats
 
 from vibroimpact.campaign.file import CampaignError
 from vibroimpact.config.reading import ConfigError, check_config
-from vibroimpact.discrepancy import priors
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.observation.strain import gauges_of
 from vibroimpact.reduction.modal_model import ModalModel
 
 from . import nuisance as linear
+from . import priors
 from .effect_fit import REACH, coarse, descended, moved
 from .linearised import linearised, matched, same_modes
 from .mode_identification import fit_modes, left, modelled_lines

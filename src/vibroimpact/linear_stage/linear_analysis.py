@@ -19,8 +19,6 @@ from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, read_campaign
 from vibroimpact.campaign.signals import CampaignSignals, campaign_signals, transfer
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.misfit import counted
 from vibroimpact.effects.places import length_m
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.observation.comparable import (
@@ -40,8 +38,10 @@ from vibroimpact.observation.signals import Signals
 from vibroimpact.observation.strain import STRAIN, speed_per_strain
 from vibroimpact.units import TIME_DERIVATIVES
 
+from . import priors
 from .adopted import adopt
 from .candidates import Candidate, candidate_named, local_candidates, not_testable
+from .counted_cells import counted
 from .effect_table import held, nearest_linear
 from .lowest_record import read_lowest
 from .modal_fit import ModalFit

@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.driven_channels import driven_channels
-from vibroimpact.discrepancy.share_explained import share_explained
-
+from . import priors
 from .acting_place import acting_place
 from .adopted import adopt
 from .candidates import candidate_named
+from .driven_channels import driven_channels
 from .effect_fit import LinearChanges
 from .effect_pairs import Begun
 from .effect_readings import LinearTable
@@ -26,6 +24,7 @@ from .mode_identification import left
 from .nearest_model import fit_from_nearest, translated
 from .prepared import Prepared
 from .scales import searched
+from .share_explained import share_explained
 from .workbench import Workbench, corrected_nuisance
 
 

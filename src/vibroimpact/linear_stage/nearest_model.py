@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.config.reading import ConfigError
-from vibroimpact.discrepancy import priors
 from vibroimpact.observation.sensed_motion import of_modes, orders
 from vibroimpact.reduction.modal_model import ModalModel
 
+from . import priors
 from .candidates import Pair, linear_candidates, unit_grid
 from .effect_fit import LinearChanges
 from .linearised import matched

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.observation.strain import by_family, gauges_of
 from vibroimpact.reduction.modal_model import NEAR, ModalModel
 
+from . import priors
 from .linearised import same_modes
 from .modal_fit import ModalFit
 

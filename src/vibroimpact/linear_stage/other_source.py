@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from vibroimpact.discrepancy import priors
-
+from . import priors
 from .modal_fit import RESIDUAL_SHARE
 from .mode_identification import unexplained_lines
 from .workbench import Workbench

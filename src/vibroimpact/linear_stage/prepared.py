@@ -5,8 +5,7 @@ from.
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from vibroimpact.discrepancy import priors
-
+from . import priors
 from .candidates import Candidate, Pair, candidate_named
 
 

@@ -15,7 +15,6 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.reading import Config, check_config
-from vibroimpact.discrepancy.cost import count_simulated
 from vibroimpact.effects.effect import Values
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
@@ -28,6 +27,7 @@ from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.observation.signals import signals_of
 from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.run_cost import count_simulated
 
 from . import nuisance as linear
 from .candidates import Candidate, Pair, Physical

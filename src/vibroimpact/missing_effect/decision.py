@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.share_explained import share_explained
+from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.candidates import Candidate, Pair, candidate_named
 from vibroimpact.linear_stage.nuisance import Nuisance
+from vibroimpact.linear_stage.share_explained import share_explained
 from vibroimpact.verdict.content import Conclusion
 
 from . import constants

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.campaign.checks.stated import check_row
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.cost import SIMULATED
-from vibroimpact.discrepancy.share_explained import share_explained
 from vibroimpact.effects.places import TURNED
+from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.candidates import candidate_named
-from vibroimpact.linear_stage.linear_analysis import Prepared, prepare, workbench
+from vibroimpact.linear_stage.linear_analysis import prepare, workbench
+from vibroimpact.linear_stage.prepared import Prepared
+from vibroimpact.linear_stage.share_explained import share_explained
 from vibroimpact.linear_stage.workbench import Workbench
+from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
 
 from . import alike, constants, race, screening, so_far, two_effects, verdict

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibroimpact.linear_stage.candidates import candidate_named
-from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.prepared import Prepared
 
 from . import constants
 from .decision import Sets

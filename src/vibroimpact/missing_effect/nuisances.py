@@ -5,8 +5,8 @@ damping and gains, given what the lowest record tells of them.
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.discrepancy import priors
 from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.workbench import Workbench
 
 

@@ -8,8 +8,8 @@ from scipy import linalg, stats
 
 from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
 from vibroimpact.discrepancy.divergence_filter import of_survivors
-from vibroimpact.discrepancy.driven_channels import bursting, driven_channels
 from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.linear_stage.driven_channels import bursting, driven_channels
 from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.observation.features import FeatureLayout, compressed
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import xarray as xr
 
 from vibroimpact.effects.effect import Values
-from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.prepared import Prepared
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import Misfit, MisfitBySplit, not_testable
 from vibroimpact.verdict.file import write_verdict

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.effects.effect import Values
 from vibroimpact.linear_stage.candidates import candidate_named
-from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.prepared import Prepared
 from vibroimpact.linear_stage.scales import clearance
 
 from .decision import Decision

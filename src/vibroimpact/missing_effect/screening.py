@@ -2,10 +2,10 @@
 more.
 """
 
-from vibroimpact.discrepancy import priors
-from vibroimpact.discrepancy.share_explained import share_explained
 from vibroimpact.effects.effect import Values
+from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.candidates import candidate_named, elsewhere
+from vibroimpact.linear_stage.share_explained import share_explained
 
 from .search import LITTLE, Search, telling
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.linear_stage.candidates import candidate_named
-from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.prepared import Prepared
 from vibroimpact.observation.signals import Signals
 from vibroimpact.records import plain_values, write_text
 

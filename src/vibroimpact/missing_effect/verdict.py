@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.discrepancy import discrepancy_map as mapping
-from vibroimpact.discrepancy import misfit, power_balance
-from vibroimpact.discrepancy.completed_model import not_offered, updated_model
+from vibroimpact.discrepancy import power_balance
+from vibroimpact.discrepancy.completed_model import not_offered
 from vibroimpact.discrepancy.invariances import broken_invariances, one_sided_rows
 from vibroimpact.discrepancy.next_measurement import next_measurement
 from vibroimpact.effects.effect import Values
-from vibroimpact.linear_stage.linear_analysis import Prepared
+from vibroimpact.linear_stage.counted_cells import counted
+from vibroimpact.linear_stage.prepared import Prepared
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
@@ -27,6 +28,7 @@ from .decision import Decision, partly_decision, withdrawn_decision
 from .null import Null
 from .rows import COLUMNS, SHOWN, bounds, contract_checks, effects_of, where
 from .search import Search
+from .updated_model import updated_model
 from .verification import Closing, without_chosen
 
 
@@ -141,7 +143,7 @@ def evidence_rows(
         "regions": (
             []
             if decision.verdict == "none"
-            else mapping.regions(given, compared[0], compared[1], misfit.counted(given))
+            else mapping.regions(given, compared[0], compared[1], counted(given))
         ),
         "misfit": closed.misfit,
         "p_global_before": p_before,

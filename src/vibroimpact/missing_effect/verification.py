@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.discrepancy import discrepancy_map as mapping
-from vibroimpact.discrepancy import misfit, priors
+from vibroimpact.discrepancy import misfit
 from vibroimpact.discrepancy.divergence_filter import survivors
 from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.linear_stage import priors
+from vibroimpact.linear_stage.counted_cells import counted
 from vibroimpact.linear_stage.workbench import Workbench
 
 from . import constants
@@ -62,7 +64,7 @@ def misfits(whole: Workbench, before: Verified, after: Verified) -> dict[str, An
     """Return {split: misfit.misfit_of} of what two Verified leave, nothing known where a split has
     no records.
     """
-    cells = misfit.counted(whole) & _repeat(whole, before) & _repeat(whole, after)
+    cells = counted(whole) & _repeat(whole, before) & _repeat(whole, after)
     splits = {
         "fit": whole.signals.fit(),
         "holdout": whole.signals.holdout(),
@@ -164,7 +166,7 @@ def telling_record(closed: Closing) -> str | None:
     missing is looked for with that record, and verified on the rest.
     """
     whole, features = closed.benches[0], closed.before.features
-    cells, mean = misfit.counted(whole) & _repeat(whole, closed.before), features.mean(axis=1)
+    cells, mean = counted(whole) & _repeat(whole, closed.before), features.mean(axis=1)
     most, name = 1.0, None
     for record in whole.signals.holdout():
         row = misfit.misfit_of(whole, np.array([record]), cells, mean, mean, features)

@@ -7,9 +7,9 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.signals import excited_band
-from vibroimpact.discrepancy.driven_channels import driven_channels
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.driven_channels import driven_channels
 from vibroimpact.linear_stage.linear_analysis import mixed_up
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
 from vibroimpact.observation.attached_model import attach

@@ -1,6 +1,7 @@
 """Which lowest records tell of linear effects by themselves."""
 
-from vibroimpact.linear_stage.linear_analysis import Prepared, telling_modes
+from vibroimpact.linear_stage.linear_analysis import telling_modes
+from vibroimpact.linear_stage.prepared import Prepared
 
 LINEAR = Prepared([], None, linear_stage=True)
 BENT = Prepared([], None, linear_stage=True, nonlinear_low=True)

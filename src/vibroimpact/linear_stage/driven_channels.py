@@ -5,10 +5,10 @@ import numpy as np
 from vibroimpact.observation.sensed_motion import motion_there
 
 from . import priors
-from .protocols import ComparisonLike
+from .workbench import Workbench
 
 
-def bursting(bench: ComparisonLike, records: np.ndarray, driven: np.ndarray) -> np.ndarray:
+def bursting(bench: Workbench, records: np.ndarray, driven: np.ndarray) -> np.ndarray:
     """Return (record, feature) bool: features of channels that the force does not drive and whose
     measured record has a few bursts above the noise.
 
@@ -21,7 +21,7 @@ def bursting(bench: ComparisonLike, records: np.ndarray, driven: np.ndarray) -> 
     return (peaked & ~driven)[:, layout.channel]
 
 
-def driven_channels(bench: ComparisonLike) -> np.ndarray:
+def driven_channels(bench: Workbench) -> np.ndarray:
     """Return (channel,) bool: whether the linear structure responds to a force at the channel, for
     a contact force at its support.
     """

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.campaign.file import read_campaign
-from vibroimpact.discrepancy import priors
 from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.acting_place import acting_place
 from vibroimpact.linear_stage.drift import drift_of
 from vibroimpact.linear_stage.findings import linear_findings

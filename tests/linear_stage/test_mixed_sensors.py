@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
-from vibroimpact.discrepancy.driven_channels import driven_channels
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.driven_channels import driven_channels
 from vibroimpact.linear_stage.linear_analysis import largest_motion, mixed_up
 from vibroimpact.linear_stage.mode_identification import fit_modes
 from vibroimpact.linear_stage.nearest_model import BandSpectra

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from vibroimpact.linear_stage.candidates import candidate_named
-from vibroimpact.linear_stage.linear_analysis import Prepared, taken_for_linear
+from vibroimpact.linear_stage.linear_analysis import taken_for_linear
+from vibroimpact.linear_stage.prepared import Prepared
 
 PAIR = "added_mass@apex+modal_damping@structure"
 

@@ -9,10 +9,10 @@ from tests.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
 from vibroimpact.completion.own_records import own_records
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.driven_channels import driven_channels
-from vibroimpact.discrepancy.misfit import counted
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage import nuisance as linear
+from vibroimpact.linear_stage.counted_cells import counted
+from vibroimpact.linear_stage.driven_channels import driven_channels
 from vibroimpact.linear_stage.linear_analysis import largest_motion, mixed_up, motion_of_strains
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
 from vibroimpact.observation.attached_model import attach, with_channel_points
