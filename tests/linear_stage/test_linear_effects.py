@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
 from vibroimpact.config.reading import check_config
@@ -250,3 +251,16 @@ def test_nonlinear_substitutes_sit_where_a_spring_would(study_config, tmp_path):
     assert (
         there == pytest.approx(prepared.adopted["gain"], abs=3.0) and elsewhere < 0.5 * there
     )  # that rod is a spring between that point and the ground
+
+
+def test_held_out_record_is_fitted_where_it_is_named(study_config, tmp_path):
+    path = file_of(study_config, tmp_path / "campaign.nc")
+    with xr.open_dataset(path) as campaign:
+        held = campaign.load().assign(split=("record", np.array(["fit", "holdout"], object)))
+    held.to_netcdf(path)
+    prepared = prepare(study_config, path)
+    bench = workbench(study_config, path, prepared, SECONDS)
+    assert (bench.signals.fit().tolist(), bench.signals.holdout().tolist()) == ([0], [1])
+    fitted = replace(prepared, fitted=[bench.signals.record_names[1]])
+    bench = workbench(study_config, path, fitted, SECONDS)
+    assert (bench.signals.fit().tolist(), bench.signals.holdout().tolist()) == ([0, 1], [])

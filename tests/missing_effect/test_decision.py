@@ -11,6 +11,7 @@ from vibroimpact.missing_effect.decision import (
     exactly_alike,
     partly_decision,
     smallest,
+    something_else,
 )
 from vibroimpact.missing_effect.evidence import Fit
 from vibroimpact.missing_effect.verification import Closing
@@ -95,6 +96,11 @@ def test_nothing_and_something_else_name_nothing():
     unknown = decided(nothing=0.01, something_else=0.94, friction=0.05)
     assert (none.verdict, none.ambiguity, none.chosen) == ("none", [], None)
     assert (unknown.verdict, unknown.ambiguity, unknown.chosen) == ("unknown", [], None)
+
+
+def test_model_of_another_structure_names_nothing():
+    none = something_else(decided(nothing=0.9, something_else=0.05, friction=0.05))
+    assert (none.verdict, none.nothing, none.something_else) == ("unknown", 0.0, 1.0)
 
 
 def test_family_is_named_where_its_law_leaves_something():

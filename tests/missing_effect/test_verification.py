@@ -43,3 +43,30 @@ def test_motion_that_is_there_by_chance_is_not_counted():
     steady = repeats(power)
     assert steady[:, [0, 2, 3]].all() and not steady[:, 1].any()
     assert repeats(power[:, :, [1]]).all()  # where nothing repeats, all that there is
+
+
+def closed_with(rises):
+    """A Closing of three held-out records, two channels and six bands, whose measurement is `rises`
+    (record,) in dB above the model as given; seeds scatter by 1 dB.
+    """
+    power = np.random.default_rng(2).normal(-60.0, 1.0, (4, 8, 2, 6))
+    measured = power[:, 0] + np.array([0.0, *rises])[:, None, None]
+    whole = SimpleNamespace(
+        layout=SimpleNamespace(power=lambda features: features),
+        measured_features=measured,
+        signals=SimpleNamespace(
+            holdout=lambda: np.array([1, 2, 3]), record_names=("low", "high", "higher", "other")
+        ),
+    )
+    runs = verification.Verified(power, power.mean(axis=1), None)
+    rows = {"fit": split(1.2, 1.2), "holdout": split(3.0, 3.0)}
+    return verification.Closing((whole, whole), runs, runs, rows, "holdout")
+
+
+@pytest.mark.parametrize(
+    ("rises", "record"),
+    [((0.0, 0.3, 0.0), None), ((0.0, 5.0, 0.0), "higher"), ((4.0, 0.0, 8.0), "other")],
+)
+def test_held_out_record_that_disagrees_most_is_told(rises, record, monkeypatch):
+    monkeypatch.setattr(verification, "counted", lambda bench: np.ones((4, 2, 6), bool))
+    assert verification.telling_record(closed_with(rises)) == record

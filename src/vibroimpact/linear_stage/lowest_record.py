@@ -63,8 +63,10 @@ def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared)
     identified = read_driven(bench, fresh, out, begun)
     bench = read_all(bench, fresh, out, tables, begun) if identified is None else identified
     if out.adopted is not None and not adopted_explains(bench, fresh, out.adopted):
-        out.adopted, out.nonlinear_low, bench = None, True, fresh()
+        bench = fresh()
         bench.measured_fit = fit
+        out.other_structure = is_of_another_structure(bench)
+        out.adopted, out.nonlinear_low = None, not out.other_structure
     # of the last fit: where modes shifted far, misfit of the first one appears as delay
     fit = bench.measured_fit or fit
     out.delays = {
@@ -190,6 +192,18 @@ def adopted_explains(
     before, after = LinearMisfit(given), LinearMisfit(bench, len(adopted["unit"]), given.bare)
     share = share_explained(after.chi_square, before.chi_square, after.count)
     return after.p() > priors.SIGNIFICANT or share > priors.EXPLAINED
+
+
+def is_of_another_structure(bench: Workbench) -> bool:
+    """Return whether another length, section or factor of all frequencies takes most of the misfit
+    beyond chance from the lowest record: its response is linear then, and the model is not its own.
+    """
+    found = LinearMisfit(bench)
+    return found.p() < priors.SIGNIFICANT and any(
+        share_explained(mend.chi_square, found.chi_square, found.count) > priors.EXPLAINED
+        for mend in found.mends
+        if mend.kind in ("length", "section", "frequencies")
+    )
 
 
 UNREAD_MESSAGE = (

@@ -25,6 +25,8 @@ class Prepared:
     linear_stage: whether the lowest record identifies the linear structure.
     still_linear: whether it does with what is adopted in the model, which may then touch.
     nonlinear_low: whether the response is nonlinear in the lowest record.
+    other_structure: whether the lowest record is that of another linear structure than the model,
+    see lowest_record.is_of_another_structure.
     chi_square: of the lowest record. residual (channel,): over noise. delays: {channel: s}.
     fit: the ModalFit of the lowest record relative to the model with what is adopted.
     draw: see linear_analysis.prepare.
@@ -41,6 +43,7 @@ class Prepared:
     linear_stage: bool = False
     still_linear: bool = False
     nonlinear_low: bool = False
+    other_structure: bool = False
     chi_square: float = 0.0
     residual: list[float] = field(default_factory=list)
     delays: dict[str, float] = field(default_factory=dict)

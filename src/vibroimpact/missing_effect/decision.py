@@ -143,6 +143,13 @@ def withdrawn_decision(decision: Decision) -> Decision:
     return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
 
 
+def something_else(decision: Decision) -> Decision:
+    """Return the Decision where the lowest record is that of another linear structure: what would
+    be named beside a wrong model makes up for it.
+    """
+    return replace(decision, verdict="unknown", nothing=0.0, something_else=1.0)
+
+
 def partly_decision(decision: Decision) -> Decision:
     """Return the Decision where what was chosen, or adopted, leaves most of what is missing on
     records that took no part.

@@ -20,7 +20,7 @@ from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
 
 from . import alike, constants, race, screening, so_far, two_effects, verdict
-from .decision import Chosen, decide
+from .decision import Chosen, decide, something_else
 from .effort import EFFORTS, Effort
 from .linear_sets import linear_sets
 from .null import null_of
@@ -79,7 +79,7 @@ class Engine:
             so_far.write_refusal(self.folder, prepared)
             return
         search, closed = self.null_stage(prepared), None
-        if not search.null.differs:
+        if not (search.null.differs or prepared.other_structure):
             closed = self.verify(prepared, search)
             more = with_telling_record(prepared, closed)
             if more is not prepared:
@@ -88,7 +88,7 @@ class Engine:
                 if found.null.differs:
                     prepared, search, closed = more, found, None
         so_far.write(self.folder, search, prepared)
-        if search.null.differs:
+        if search.null.differs and not prepared.other_structure:
             self.search(search, prepared)
         null = search.null
         decision = decide(
@@ -100,6 +100,8 @@ class Engine:
             null.values,
             search.of_families(),
         )
+        if prepared.other_structure:
+            decision = something_else(decision)
         if closed is None or decision.chosen is not None:
             closed = self.verify(prepared, search, decision.chosen)
         verdict.write(
