@@ -10,18 +10,18 @@ import numpy as np
 from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.workbench import Workbench
 
-# between seeds of a model, one standard deviation: impacts scatter by 1 to 3 dB
+# between seeds of a model, one standard deviation, mean over bands: impacts scatter by 1 to 3 dB
 UNSTEADY_DB = 6.0
 
 
 def repeats(power: np.ndarray) -> np.ndarray:
-    """Return (record, channel, band) bool: whether seeds of a model agree there, of power (record,
-    seed, channel, band) in dB; all where none does.
+    """Return (record, channel, 1) bool: whether seeds of a model agree on a channel of a record, of
+    power (record, seed, channel, band) in dB; all where none does.
 
-    Motion across the force breaks out in one run of a straight tube and not in another: a cell that
-    is on or off by chance tells nothing of how near a model is.
+    Motion across the force breaks out in one run of a straight tube and not in another: a channel
+    that moves or not by chance tells nothing of how near a model is.
     """
-    steady = power.std(axis=1) < UNSTEADY_DB
+    steady = power.std(axis=1).mean(axis=-1, keepdims=True) < UNSTEADY_DB
     return steady if steady.any() else np.ones_like(steady)
 
 
