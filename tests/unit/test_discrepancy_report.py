@@ -19,6 +19,7 @@ from tests.discrepancy_results import (
     made_up_ranking,
     made_up_verdict,
 )
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.discrepancy.results_folder import best_places, read_results
 from vibroimpact.display_units import display_unit
 from vibroimpact.figures.discrepancy.place import place_figure
@@ -27,6 +28,7 @@ from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
 from vibroimpact.figures.discrepancy.spectra import chosen_channels, chosen_records
 from vibroimpact.records import write_record, write_table
 from vibroimpact.reports.discrepancy_page import discrepancy_page, verdict_sentence
+from vibroimpact.reports.verdict_words import next_steps
 from vibroimpact.verdict.content import CONCLUSIONS, Estimate, FoundEffect
 from vibroimpact.verdict.file import write_verdict
 
@@ -223,6 +225,21 @@ def test_closest_effect_is_shown_if_nothing_is_named():
     )
     assert told.endswith("The best candidate, clearance and support offset, does not explain it.")
     assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
+
+
+def test_model_of_another_structure_is_told_first():
+    rows = [
+        check_row(
+            "linear model", "warn", "First look at the legs. Modes against the model's: 11 Hz."
+        ),
+        check_row("other structure", "warn", "Nothing was looked for beside this model."),
+    ]
+    verdict = made_up_verdict("unknown", checks=rows)
+    told = verdict_sentence(verdict)
+    assert "nothing was looked for beside it. First look at the legs" in told
+    assert "Modes against" not in told and "no effect of the catalogue" not in told
+    (step,) = next_steps(verdict, "model.yaml")
+    assert step["words"].startswith("Mend the model")
 
 
 def test_most_probable_of_several_is_shown():

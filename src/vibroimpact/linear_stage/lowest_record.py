@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.verdict.content import OTHER_STRUCTURE
+
 from . import priors
 from .acting_place import acting_place
 from .adopted import adopt
@@ -67,6 +70,8 @@ def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared)
         bench.measured_fit = fit
         out.other_structure = is_of_another_structure(bench)
         out.adopted, out.nonlinear_low = None, not out.other_structure
+        if out.other_structure:
+            out.checks.append(check_row(OTHER_STRUCTURE, "warn", OTHER_MESSAGE))
     # of the last fit: where modes shifted far, misfit of the first one appears as delay
     fit = bench.measured_fit or fit
     out.delays = {
@@ -206,6 +211,10 @@ def is_of_another_structure(bench: Workbench) -> bool:
     )
 
 
+OTHER_MESSAGE = (
+    "No effect explains the lowest record, another length or section does: nothing was looked for"
+    " beside this model. Mend it first."
+)
 UNREAD_MESSAGE = (
     "No modes explain the lowest record: it touches already, or the structure is another one."
     " Linear effects are tried by simulation, beside the others. A record at a lower load would"

@@ -64,7 +64,8 @@ LINEAR_RESIDUAL = 2.0
 UNREAD = 0.5
 LINEAR_GAIN = 8.0  # of log likelihood: a linear effect is adopted above it
 # sigma: corrections of nuisances are limited to it, so that they can not hide an effect. The limit
-# is where an effect is adopted, as nothing else would correct a mode with a smaller error.
+# is where an effect is adopted, as nothing else would correct a mode with a smaller error: 6.7 by
+# the Student law, 6.5 with the spread limited to WIDEST.
 CORRECTION_LIMIT = ((TAILS + 1.0) * exp(2.0 * LINEAR_GAIN / (TAILS + 1.0)) - TAILS) ** 0.5
 LINEAR_SECOND = 8.0  # the same for two effects over the better one of them
 # in all, including those of the lowest record: with more, differences between two codes in the

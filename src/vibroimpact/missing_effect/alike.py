@@ -20,6 +20,7 @@ from vibroimpact.linear_stage.candidates import (
 from .first_points import first_points
 from .search import Search
 
+# from that of the force: close to it the response changes most, along it the motion is plane
 DIRECTIONS_DEG = (-45.0, -15.0, -5.0, 5.0, 15.0, 45.0, 90.0)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from vibroimpact.display_units import display_unit
 from vibroimpact.effects.places import place_in_words
-from vibroimpact.verdict.content import Estimate, Verdict
+from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict
 
 from .number_text import digits, percent
 
@@ -34,6 +34,7 @@ def verdict_sentence(verdict: Verdict) -> str:
     )
     near = [] if verdict.withdrawn else [effect.id for effect in verdict.most_probable]
     nearest = f" The best candidate, {in_words(near)}, does not explain it." if near else ""
+    other = next((row.message for row in verdict.checks if row.check == "linear model"), "")
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
         "none": (
@@ -53,6 +54,11 @@ def verdict_sentence(verdict: Verdict) -> str:
         "unknown": (
             "The model and the measurement disagree, and no effect of the catalogue explains it:"
             f" the map says where to look.{nearest}"
+        )
+        if not of_another_structure(verdict)
+        else (
+            "The structure that was measured is another one than the model's, and nothing was"
+            f" looked for beside it. {other.split(' Modes against')[0]}"
         ),
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
@@ -153,6 +159,11 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     return "explains less" if shown else "leaves a difference beyond chance"
 
 
+def of_another_structure(verdict: Verdict) -> bool:
+    """Return whether the lowest record is that of another linear structure than the model."""
+    return any(row.check == OTHER_STRUCTURE for row in verdict.checks)
+
+
 def next_steps(verdict: Verdict, model: str) -> list[dict]:
     """Return [{words, command}] of what to do next; command: None where there is none.
 
@@ -162,6 +173,8 @@ def next_steps(verdict: Verdict, model: str) -> list[dict]:
         return [_step("Mend what the checks refuse, then give the same command again.")]
     if verdict.verdict == "none":
         return [_step("Nothing: the model stands as it is for records like these.")]
+    if of_another_structure(verdict):
+        return [_step("Mend the model where its lowest record says, then give the same command.")]
     if not verdict.shown_effects():
         return [
             _step(
