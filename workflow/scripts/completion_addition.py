@@ -4,8 +4,8 @@ from vibroimpact.campaign.file import read_campaign
 from vibroimpact.completion.candidate import run_addition
 from vibroimpact.completion.store import read_values, write_values
 from vibroimpact.completion.study import study_of
-from vibroimpact.run_cost import job_cost
 from vibroimpact.job_log import redirect_output
+from vibroimpact.run_cost import job_cost
 
 redirect_output(snakemake.log[0])
 campaign = read_campaign(snakemake.input.campaign)

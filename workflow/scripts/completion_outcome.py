@@ -3,9 +3,9 @@
 from vibroimpact.completion.outcome import outcome, write_outcome
 from vibroimpact.completion.store import read_kept, read_values
 from vibroimpact.completion.study import study_of
-from vibroimpact.run_cost import Meter, total_cost
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import verdict_origin
+from vibroimpact.run_cost import Meter, total_cost
 
 redirect_output(snakemake.log[0])
 meter = Meter("verdict", begun=0.0)

@@ -4,9 +4,9 @@ from vibroimpact.completion.mounting import COLUMNS
 from vibroimpact.completion.prepare import prepared
 from vibroimpact.completion.store import write_kept, write_values
 from vibroimpact.completion.structure_file import StructureFile
-from vibroimpact.run_cost import job_cost
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table
+from vibroimpact.run_cost import job_cost
 
 redirect_output(snakemake.log[0])
 with job_cost(snakemake.output.study, "prepare", begun=0.0):
