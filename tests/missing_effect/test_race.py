@@ -21,7 +21,7 @@ from vibroimpact.missing_effect.first_points import first_points
 from vibroimpact.missing_effect.race import leaders, look_wider, race
 from vibroimpact.missing_effect.screening import led
 from vibroimpact.missing_effect.search import Search
-from vibroimpact.missing_effect.two_effects import parts_alone
+from vibroimpact.missing_effect.two_effects import exchanged_too, parts_alone
 
 VALUES, NOISE = 200, 1.0e-2
 AXES = np.linalg.qr(np.random.default_rng(9).standard_normal((VALUES, 6)))[0].T
@@ -115,6 +115,23 @@ def test_each_of_two_effects_is_run_alone(searched):
     parts_alone(searched, pair)
     assert len(searched.trials[FRICTION].noise) == runs + 1
     assert searched.trials[FRICTION].unit[-1] == pytest.approx(searched.fits[pair].unit[1:])
+
+
+def test_each_of_two_effects_is_exchanged_for_what_is_like_it(searched):
+    pair = f"{STIFFNESS}+{FRICTION}"
+    searched.run([(pair, np.array([[0.5, 0.5], [0.6, 0.6]]))])
+    assert exchanged_too(searched, pair, room=lambda _: True)
+    exchanged = searched.trials[f"{FRICTION}+{HERTZ}"]  # Hertz's law softens as a softer contact
+    kept = searched.fits[pair].unit[1]
+    assert exchanged.unit[:, 0] == pytest.approx(kept)
+    assert exchanged.unit[:, 1] == pytest.approx(first_points(candidate_named(HERTZ))[:2, 0])
+    assert not exchanged_too(searched, pair, room=lambda _: True)  # what is known is not run again
+
+
+def test_an_effect_without_room_is_not_exchanged_for(searched):
+    pair = f"{STIFFNESS}+{FRICTION}"
+    searched.run([(pair, np.array([[0.5, 0.5]]))])
+    assert not exchanged_too(searched, pair, room=lambda _: False)
 
 
 def test_effects_at_a_point_are_run_where_one_leads(searched):

@@ -11,6 +11,7 @@ from vibroimpact.linear_stage.candidates import (
     AT_A_POINT,
     DIRECTED,
     DIRECTION,
+    Candidate,
     Pair,
     candidate_named,
     elsewhere,
@@ -27,6 +28,20 @@ DIRECTIONS_DEG = (-45.0, -15.0, -5.0, 5.0, 15.0, 45.0, 90.0)
 def _similar(effect: Effect, leading: Effect) -> bool:
     """Return whether an Effect may look like a leading one."""
     return effect.family == leading.family or effect.id in leading.aliases
+
+
+def is_like(search: Search, other: str, leading: Candidate) -> bool:
+    """Return whether what was run may look like a leading one: at its place, or that of the first
+    runs.
+    """
+    trial = search.trials[other]
+    candidate = trial.candidate
+    return (
+        not isinstance(candidate, Pair)
+        and candidate.effect_id != leading.effect_id
+        and _similar(candidate.effect, leading.effect)
+        and (trial.screened > 1 or candidate.location == leading.location)
+    )
 
 
 def laws_of(search: Search, name: str) -> list[str]:

@@ -19,14 +19,16 @@ from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
 
-from . import alike, constants, race, screening, so_far, two_effects, verdict
+from . import alike, constants, race, screening, so_far, verdict
 from .decision import Chosen, decide, something_else
 from .effort import EFFORTS, Effort
+from .gauss_newton import descend
 from .linear_sets import linear_sets
 from .null import null_of
 from .probabilities import posterior
 from .refused import write_refused
 from .search import Search
+from .two_effects import exchanged_too, parts_alone, seek_pairs
 from .verification import Closing, closing, telling_record
 
 LEADING = 3  # explanations whose likes are looked at too
@@ -34,6 +36,7 @@ OPEN = 0.3  # probability of something else, beside an explanation or alone, fro
 # are looked for
 ROOM = 20.0  # of log evidence: two effects can gain no less than they cost
 LEAST = 0.8  # chi-square per value of a model that explains a record
+EXCHANGES = 3  # of the effects of leading pairs for what is like them
 
 
 @dataclass
@@ -157,6 +160,9 @@ class Engine:
             self.turn(search)
         for name in race.leaders(search, 1):
             race.race(search, self.spent, laws=alike.laws_of(search, name))
+        for name in race.leaders(search, 1):
+            descend(search, name)
+            race.race(search, self.spent)  # others may come as near
 
     def turn(self, search: Search) -> None:
         """Run what leads in other directions, and what may act in the one that is found."""
@@ -170,10 +176,18 @@ class Engine:
     def seek_pairs(self, search: Search, prepared: Prepared) -> None:
         """Look for two effects where one leaves room for a second."""
         if self.spent.pairs and unexplained(search):
-            two_effects.seek_pairs(search, prepared.room, seconds=self.spent.pairs)
+            seek_pairs(search, prepared.room, seconds=self.spent.pairs)
             race.race(search, self.spent, pairs=True)
+            for _ in range(EXCHANGES):
+                leading = race.leaders(search, LEADING, pairs=True)
+                new = [exchanged_too(search, name, prepared.room) for name in leading]
+                search.look()
+                race.race(search, self.spent, pairs=True)
+                if not any(new):
+                    break
             for name in race.leaders(search, 1, pairs=True):
-                two_effects.parts_alone(search, name)
+                descend(search, name)
+                parts_alone(search, name)
                 race.race(search, self.spent)  # a part alone may be better than all so far
         search.look()
 

@@ -1,6 +1,6 @@
 """The search: what was run of every explanation, and what its runs say."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -88,8 +88,11 @@ class Search:
         trial = self.trials[name]
         if not len(trial.noise):
             return
-        start = trial.unit[np.argmin(np.sum((self.null.measured - trial.change) ** 2, axis=1))]
-        self.fits[name] = fit(self.emulator(name), trial.unit.shape[1], self.null, start)
+        run_leaves = np.sum((self.null.measured - trial.change) ** 2, axis=1)
+        start = trial.unit[np.argmin(run_leaves)]
+        found = fit(self.emulator(name), trial.unit.shape[1], self.null, start)
+        # of few runs an emulator may smooth away what one of them shows
+        self.fits[name] = replace(found, left=min(found.left, float(run_leaves.min())))
 
     def emulator(self, name: str) -> AnyEmulator:
         """Return the Emulator, or PairEmulator, of an explanation that has runs."""
