@@ -185,8 +185,9 @@ class Engine:
                 race.race(search, self.spent, pairs=True)
                 if not any(new):
                     break
-            for name in race.leaders(search, 1, pairs=True):
+            for name in race.leaders(search, LEADING, pairs=True):
                 descend(search, name)
+            for name in race.leaders(search, 1, pairs=True):
                 parts_alone(search, name)
                 race.race(search, self.spent)  # a part alone may be better than all so far
         search.look()
