@@ -8,7 +8,8 @@ import pytest
 
 from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.nuisance import Reading
-from vibroimpact.missing_effect.nuisances import nuisance_draws
+from vibroimpact.missing_effect import constants
+from vibroimpact.missing_effect.nuisances import clearance_draws, nuisance_draws
 
 COUNT, MODES, CHANNELS = 4000, 3, 2
 
@@ -73,3 +74,9 @@ def test_a_mode_three_sigma_off_is_corrected_as_far_as_it_is():
     shift = 3.0 * priors.FREQUENCY_SD
     rows = scattered(bench_with(told=True, shift=shift))
     assert np.log(rows["frequency"])[:, :2].mean(axis=0) == pytest.approx(shift, rel=0.02)
+
+
+def test_clearances_are_drawn_about_their_own():
+    scales = np.log(clearance_draws(4000, seed=2))
+    assert scales.mean() == pytest.approx(0.0, abs=0.1 * constants.CLEARANCE_SD)
+    assert scales.std() == pytest.approx(constants.CLEARANCE_SD, rel=0.05)

@@ -9,6 +9,8 @@ from vibroimpact.linear_stage import nuisance as linear
 from vibroimpact.linear_stage import priors
 from vibroimpact.linear_stage.workbench import Workbench
 
+from . import constants
+
 
 def nuisance_draws(bench: Workbench, count: int, seed: int) -> list[linear.Nuisance]:
     """Return `count` Nuisances of a Workbench: of the modes that its lowest record shows from
@@ -36,6 +38,12 @@ def nuisance_draws(bench: Workbench, count: int, seed: int) -> list[linear.Nuisa
             linear.Nuisance(np.arange(modes), np.exp(frequency), np.exp(damping), gain[:channels])
         )
     return out
+
+
+def clearance_draws(count: int, seed: int) -> np.ndarray:
+    """Return (count,): what all clearances are multiplied by."""
+    random = np.random.default_rng([seed, 1])
+    return np.exp(constants.CLEARANCE_SD * random.standard_normal(count))
 
 
 def _posterior(bench):

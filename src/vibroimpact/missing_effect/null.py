@@ -8,13 +8,14 @@ from scipy import linalg, stats
 
 from vibroimpact.discrepancy.covariance import feature_sd, free_directions, shrunk
 from vibroimpact.discrepancy.divergence_filter import of_survivors
+from vibroimpact.effects import gap
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.linear_stage.driven_channels import bursting, driven_channels
 from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.observation.features import FeatureLayout, compressed
 
 from . import constants
-from .nuisances import nuisance_draws
+from .nuisances import clearance_draws, nuisance_draws
 from .side_by_side import side_by_side
 
 
@@ -126,12 +127,19 @@ class Null:
         return float(stats.chi2.sf(rest @ rest, self.values))
 
 
+NOWHERE = 1.0e3  # times the clearances: no tube touches
+HARDLY = 0.05  # dB: a record that contact changes by less, in the median, hardly touches
+
+
 def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) -> Null:
     """Return the Null of records of a Workbench; threads: runs at a time.
 
     Its mean is that of the most probable nuisances, with which explanations are run too. What
     drawn nuisances change on average is in the covariance: left in the mean, it is in the change
     of every explanation and in none of the measurement's.
+
+    Whether a record that hardly touches does so depends on clearances to a few percent: they are
+    drawn in those alone. Where contact is strong a small scale is one of many effects alike.
     """
     draws = nuisance_draws(bench, constants.NULL_DRAWS, seed)
     seeds = max(1, LANES // len(records))
@@ -139,11 +147,24 @@ def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) 
     benches += [bench.corrected_by(nuisance) for nuisance in draws]
 
     def features(job):
-        number, there = job
-        runs = bench.runs(records, seeds, seed + seeds * number)
-        return there.features(there.model(), runs).reshape(len(records), seeds, -1)
+        (number, there), which, scale = job
+        runs = bench.runs(which, seeds, seed + seeds * number)
+        scaled = gap.apply(there.values, {"gap_factor": scale}, "all")
+        model = there.model(None if scale == 1.0 else scaled)
+        return there.features(model, runs).reshape(len(which), seeds, -1)
 
-    rows = side_by_side(features, enumerate(benches), threads)
+    jobs = [*enumerate(benches)]
+    rows = side_by_side(features, ((job, records, 1.0) for job in jobs), threads)
+    untouched = features((jobs[0], records, NOWHERE))
+    near = np.flatnonzero(np.median(np.abs(rows[0] - untouched), axis=(1, 2)) < HARDLY)
+    if len(near):
+        scales = clearance_draws(len(draws), seed)
+        again = zip(jobs[-len(draws) :], scales, strict=True)
+        other = ((job, records[near], scale) for job, scale in again)
+        for row, found in zip(
+            rows[-len(draws) :], side_by_side(features, other, threads), strict=True
+        ):
+            row[near] = found
     central, drawn = (
         of_survivors(np.concatenate(part, axis=1))
         for part in (rows[: -len(draws)], rows[-len(draws) :])
