@@ -31,16 +31,22 @@ def _similar(effect: Effect, leading: Effect) -> bool:
 
 
 def is_like(search: Search, other: str, leading: Candidate) -> bool:
-    """Return whether what was run may look like a leading one: at its place, or that of the first
+    """Return whether another effect that was run may look like a leading one."""
+    candidate = candidate_named(other)
+    return (
+        _run_near(search, other, leading)
+        and candidate.effect_id != leading.effect_id
+        and _similar(candidate.effect, leading.effect)
+    )
+
+
+def _run_near(search: Search, other: str, leading: Candidate) -> bool:
+    """Return whether one effect was run at the place of a leading one, or at that of the first
     runs.
     """
     trial = search.trials[other]
-    candidate = trial.candidate
-    return (
-        not isinstance(candidate, Pair)
-        and candidate.effect_id != leading.effect_id
-        and _similar(candidate.effect, leading.effect)
-        and (trial.screened > 1 or candidate.location == leading.location)
+    return not isinstance(trial.candidate, Pair) and (
+        trial.screened > 1 or trial.candidate.location == leading.location
     )
 
 
@@ -52,10 +58,9 @@ def laws_of(search: Search, name: str) -> list[str]:
     return [
         other
         for other, trial in search.trials.items()
-        if "+" not in other
-        and other in search.fits
+        if other in search.fits
+        and _run_near(search, other, leading)
         and trial.candidate.effect.family == leading.effect.family
-        and (trial.screened > 1 or trial.candidate.location == leading.location)
     ]
 
 
@@ -69,10 +74,9 @@ def similar_too(search: Search, name: str) -> bool:
     found = [
         other
         for other, trial in search.trials.items()
-        if "+" not in other
-        and not trial.refined
+        if not trial.refined
+        and _run_near(search, other, leading)
         and _similar(trial.candidate.effect, leading.effect)
-        and (trial.screened > 1 or trial.candidate.location == leading.location)
     ]
     search.screen([search.first(other) for other in found])
     for other in found:

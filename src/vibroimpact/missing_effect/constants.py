@@ -36,6 +36,7 @@ ALIKE = 0.3
 # Standard deviation of the logarithm of clearances that are right, in records that hardly touch:
 # two right codes, and a drawing and a support, differ by as much in how near a tube comes.
 CLEARANCE_SD = 0.03
+HARDLY_DB = 0.05  # by which contact changes such a record at most, in the median
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances

@@ -127,8 +127,7 @@ class Null:
         return float(stats.chi2.sf(rest @ rest, self.values))
 
 
-NOWHERE = 1.0e3  # times the clearances: no tube touches
-HARDLY = 0.05  # dB: a record that contact changes by less, in the median, hardly touches
+OUT_OF_REACH = 1.0e3  # times the clearances: no tube touches
 
 
 def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) -> Null:
@@ -146,31 +145,35 @@ def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) 
     benches = [bench] * -(-constants.MEAN_RUNS // seeds)
     benches += [bench.corrected_by(nuisance) for nuisance in draws]
 
-    def features(job):
-        (number, there), which, scale = job
-        runs = bench.runs(which, seeds, seed + seeds * number)
-        scaled = gap.apply(there.values, {"gap_factor": scale}, "all")
-        model = there.model(None if scale == 1.0 else scaled)
-        return there.features(model, runs).reshape(len(which), seeds, -1)
+    first = len(benches) - len(draws)  # of those with nuisances drawn
 
-    jobs = [*enumerate(benches)]
-    rows = side_by_side(features, ((job, records, 1.0) for job in jobs), threads)
-    untouched = features((jobs[0], records, NOWHERE))
-    near = np.flatnonzero(np.median(np.abs(rows[0] - untouched), axis=(1, 2)) < HARDLY)
+    def features(job):
+        number, which, scale = job
+        there, runs = benches[number], bench.runs(which, seeds, seed + seeds * number)
+        scaled = None if scale == 1.0 else gap.apply(there.values, {"gap_factor": scale}, "all")
+        return there.features(there.model(scaled), runs).reshape(len(which), seeds, -1)
+
+    jobs = [(number, records, 1.0) for number in range(len(benches))]
+    rows = side_by_side(features, jobs, threads)
+    near = hardly_touching(rows[0], features((0, records, OUT_OF_REACH)))
     if len(near):
-        scales = clearance_draws(len(draws), seed)
-        again = zip(jobs[-len(draws) :], scales, strict=True)
-        other = ((job, records[near], scale) for job, scale in again)
-        for row, found in zip(
-            rows[-len(draws) :], side_by_side(features, other, threads), strict=True
-        ):
+        scales = enumerate(clearance_draws(len(draws), seed), start=first)
+        jobs = [(number, records[near], scale) for number, scale in scales]
+        for row, found in zip(rows[first:], side_by_side(features, jobs, threads), strict=True):
             row[near] = found
     central, drawn = (
-        of_survivors(np.concatenate(part, axis=1))
-        for part in (rows[: -len(draws)], rows[-len(draws) :])
+        of_survivors(np.concatenate(part, axis=1)) for part in (rows[:first], rows[first:])
     )
     null = _of_runs(bench, records, central, drawn)
     return replace(null, measured=null.change(bench.measured_features[records]))
+
+
+def hardly_touching(features: np.ndarray, untouched: np.ndarray) -> np.ndarray:
+    """Return the numbers of the records whose features (record, run, feature) contact hardly
+    changes; untouched: those of the same runs without any.
+    """
+    changed = np.median(np.abs(features - untouched), axis=(1, 2))
+    return np.flatnonzero(changed < constants.HARDLY_DB)
 
 
 def scatter(rows: np.ndarray) -> np.ndarray:
