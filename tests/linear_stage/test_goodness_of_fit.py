@@ -10,7 +10,7 @@ import pytest
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.geometry.centreline import build_centreline
-from vibroimpact.linear_stage import priors
+from vibroimpact.linear_stage import priors, workbench
 from vibroimpact.linear_stage.acting_place import acting_place
 from vibroimpact.linear_stage.drift import drift_of
 from vibroimpact.linear_stage.findings import linear_findings
@@ -99,6 +99,12 @@ def test_sensor_elsewhere_is_found_along_the_tube(study_config, tmp_path, shift_
     row = rows_of(bench, bent)["linear model"]
     assert row["level"] == "warn" and row["channel"] == name
     assert f"first look at the place of {name}" in row["message"]
+
+
+def test_place_that_no_mode_fits_is_left_out(study_config, tmp_path, monkeypatch):
+    misfit = LinearMisfit(Workbench(study_config, campaign_of(tmp_path / "a.nc", 1003)))
+    monkeypatch.setattr(workbench, "fit_modes", lambda *args, **rest: None)
+    assert misfit.places == []
 
 
 def test_second_force_is_power_that_the_first_does_not_explain(study_config, tmp_path):

@@ -128,7 +128,7 @@ class LinearMisfit:
         """Return the Mends by another place of the channels that disagree most."""
         channels = self._channels[~self._gauges[self._channels]]
         suspects = sorted(channels, key=lambda channel: self._channel(channel).chi_square)
-        return [self._place(channel) for channel in suspects[:SUSPECTS]]
+        return [*filter(None, map(self._place, suspects[:SUSPECTS]))]
 
     @property
     def _gauges(self):
@@ -231,11 +231,13 @@ class LinearMisfit:
 
     def _place(self, channel):
         """Return the Mend of a channel at another place along the tube, with the modes fitted again
-        for that place.
+        for that place; None where none can be fitted.
         """
         arcs = np.linspace(0.0, self._line.length, TRIED)
         far = _farness(self.bench, channel, self._moving(arcs))
         there = self._read_at(channel, arcs[np.argmin(far)])
+        if there is None:
+            return None
         arcs = there._stated(channel) + np.linspace(-NEARBY_M, NEARBY_M, NEARBY)
         arcs = arcs[(arcs >= 0.0) & (arcs <= self._line.length)]
         chi_square = [there._moved_to(channel, arc) for arc in arcs]
@@ -316,12 +318,14 @@ class LinearMisfit:
 
     def _read_at(self, channel, arc):
         """Return the LinearMisfit with a channel at an arc length in m and the modes fitted
-        again.
+        again, None where none can be fitted.
         """
         points = self.bench.campaign["channel_point"].astype(float).copy()
         points[channel] = self._line.position(arc)
         bench = self.bench.again(self.bench.campaign.assign(channel_point=points))
         bench.followed = True  # the other channels are unchanged: the modes are near the model's
+        if bench.measured_fit is None:
+            return None
         return LinearMisfit(bench, self.freed, self.given_model)
 
     def place(self, mend: Mend) -> np.ndarray:
