@@ -21,7 +21,7 @@ EFFECT = Effect(
         Parameter(
             "stiffness",
             "N/m",
-            0.03,
+            0.005,
             10.0,
             None,
             per="contact_stiffness",

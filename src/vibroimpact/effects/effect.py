@@ -37,6 +37,7 @@ SCALES = {
     "damping_per_length": "that damping constant over the length of the structure",
     "cubic": "the static stiffness over the squared RMS displacement",
     "quadratic": "the static stiffness over the RMS displacement",
+    "slowness": "one over the speed of the lowest mode with the clearance as its amplitude",
     "drag": "the damping constant over length and RMS velocity of the drive point",
 }
 WHERE = ("contact", "nonlinear structure", "linear structure", "measurement")

@@ -21,9 +21,10 @@ EFFECT = Effect(
         Parameter(
             "alpha",
             "s/m",
-            0.03,
-            30.0,
+            0.003,
+            5.0,
             0.0,
+            per="slowness",
             gain_power=-1.0,
             meaning="damping over stiffness and indentation",
         ),

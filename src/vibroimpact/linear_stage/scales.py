@@ -67,6 +67,7 @@ def scales(
         "damping_per_length": damping / length,
         "cubic": stiffness / displacement**2,
         "quadratic": stiffness / displacement,
+        "slowness": 1.0 / speed,
         "drag": damping / length / speed,
     }
 
