@@ -12,7 +12,7 @@ from vibroimpact.campaign.file import CampaignError, Channel, Level, campaign_da
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage import nuisance as linear
 from vibroimpact.linear_stage.modal_fit import ModalLines
-from vibroimpact.linear_stage.mode_identification import fit_modes
+from vibroimpact.linear_stage.mode_identification import fit_modes, left
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
 from vibroimpact.observation.attached_model import attach, with_channel_points
 from vibroimpact.observation.linear_record import LinearRecord
@@ -158,6 +158,14 @@ def test_linear_responses_are_those_of_the_integration(rig, study_config):
     fit = fit_modes(lines, marched, bench.bare, bench.signals.kinds, np.full(len(PLACES), 1e-6))
     assert np.abs(fit.log_frequency).max() < 5e-5 and np.abs(fit.log_damping).max() < 1e-2
     assert fit.share[[0, 1, 2]].max() < 4e-3
+
+
+def test_what_is_left_where_the_force_drives_no_mode_fitted(rig):
+    """All channels count then: a channel said to be elsewhere may see such modes alone."""
+    bench, _ = rig
+    fit = bench.measured_fit
+    undriven = replace(bench.bare, drive_shapes=np.zeros_like(bench.bare.drive_shapes))
+    assert left(fit, undriven) == fit.residual.max()
 
 
 def test_plate_clearances_are_taken_from_the_campaign(study_config):

@@ -269,12 +269,12 @@ def _elsewhere(record, measured, weights, model, visible, kinds):
 
 def left(found: ModalFit, model: ModalModel) -> float:
     """Return the largest residual over noise of a ModalFit among the channels that the force drives
-    in the model.
+    in the model; among all where it drives none by these modes.
     """
     driven = np.abs(as_displacements(model)[found.modes].T) @ np.abs(
         model.drive_shapes[found.modes]
     ).max(axis=1)
-    return found.residual[driven > 1.0e-3 * driven.max()].max()
+    return found.residual[driven >= 1.0e-3 * driven.max()].max()
 
 
 def _fitted(record, found, drive, model, kinds):
