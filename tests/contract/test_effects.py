@@ -53,6 +53,7 @@ SCALES = {
     "damping_per_length": 0.7,
     "cubic": 7.0e10,
     "quadratic": 1.8e7,
+    "slowness": 50.0,
     "drag": 20.0,
 }
 OF_THE_MODEL = sorted(effect.id for effect in EFFECTS.values() if not effect.measured)
@@ -84,6 +85,17 @@ def test_variant_is_valid_and_leaves_the_original_unchanged(study_config, name):
         assert varied != values
         check_config(varied, name)
     assert repr(values) == before
+
+
+@pytest.mark.parametrize("name", OF_THE_MODEL)
+@pytest.mark.parametrize("unit", [0.0, 1.0], ids=["low", "high"])
+def test_variant_is_valid_at_the_ends_of_its_range(study_config, name, unit):
+    """Of a structure with much damping too."""
+    values = study_config.model_dump(mode="json")
+    values["damping"] |= {"first_ratios": [0.05, 0.05], "other_ratio": 0.04}
+    candidate = Candidate(name, EFFECTS[name].locations(values)[0])
+    physical = candidate.physical(np.full(len(EFFECTS[name].parameters), unit), SCALES)
+    check_config(candidate.variant(values, physical), name)
 
 
 @pytest.mark.parametrize("name", sorted(set(OF_THE_MODEL) - {"clearance"}))
