@@ -47,8 +47,8 @@ EFFECT = Effect(
         Parameter(
             "force_x",
             "N",
-            -2.0,
-            2.0,
+            -5.0,
+            5.0,
             0.0,
             per="gap_force",
             log=False,
@@ -58,8 +58,8 @@ EFFECT = Effect(
         Parameter(
             "force_y",
             "N",
-            -2.0,
-            2.0,
+            -5.0,
+            5.0,
             0.0,
             per="gap_force",
             log=False,
