@@ -10,6 +10,7 @@ from vibroimpact.campaign.signals import excited_band
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage import nuisance as linear
 from vibroimpact.linear_stage.driven_channels import driven_channels
+from vibroimpact.linear_stage.goodness_of_fit import LinearMisfit
 from vibroimpact.linear_stage.linear_analysis import mixed_up
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
 from vibroimpact.observation.attached_model import attach
@@ -98,3 +99,11 @@ def test_band_is_that_of_both_forces():
     )
     band = excited_band(np.stack([low, 1e-3 * high])[None], RATE)
     np.testing.assert_allclose(band, (10.0, 300.0), atol=2.0)
+
+
+def test_channel_at_its_own_place_leaves_what_it_left(rig):
+    """Channels across see the modes of the second force alone."""
+    misfit = LinearMisfit(rig[0])
+    for channel in range(len(PLACES)):
+        there = misfit.moved_to(channel, misfit.stated(channel))
+        assert there == pytest.approx(misfit.chi_square, rel=1.0e-3)

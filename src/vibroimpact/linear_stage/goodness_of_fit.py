@@ -215,8 +215,8 @@ class LinearMisfit:
         moves in one direction there.
         """
         modes = self.bench.measured_fit.modes
-        moving = self._moving(self._stated(channel))[:, modes]
-        three = self._shapes(channel, moving * self.bench.bare.drive_shapes[modes, 0])
+        moving = self._moving(self.stated(channel))[:, modes]
+        three = self._shapes(channel, moving * linear.driven(self.bench.bare.drive_shapes[modes]))
         size = linalg.svdvals(self._whitened(three))
         if size[1] <= ONE_WAY * size[0]:
             return None
@@ -238,19 +238,20 @@ class LinearMisfit:
         there = self._read_at(channel, arcs[np.argmin(far)])
         if there is None:
             return None
-        arcs = there._stated(channel) + np.linspace(-NEARBY_M, NEARBY_M, NEARBY)
+        arcs = there.stated(channel) + np.linspace(-NEARBY_M, NEARBY_M, NEARBY)
         arcs = arcs[(arcs >= 0.0) & (arcs <= self._line.length)]
-        chi_square = [there._moved_to(channel, arc) for arc in arcs]
+        chi_square = [there.moved_to(channel, arc) for arc in arcs]
         best = int(np.argmin(chi_square))
-        moved = float(arcs[best] - self._stated(channel))
+        moved = float(arcs[best] - self.stated(channel))
         return Mend("place", self._name(channel), moved, chi_square[best], 1, there.left)
 
-    def _moved_to(self, channel, arc):
+    def moved_to(self, channel: int, arc: float) -> float:
         """Return the chi-square with a channel at an arc length in m, with the same modal fit."""
         modes, chain = self.bench.measured_fit.modes, self.bench.measuring
         gain = 1.0 if chain is None else chain.gain[channel] / chain.force_gain
         direction = self.bench.bare.sensor_directions[channel]
-        shape = direction @ self._moving(arc)[:, modes] * self.bench.bare.drive_shapes[modes, 0]
+        drive = linear.driven(self.bench.bare.drive_shapes[modes])
+        shape = direction @ self._moving(arc)[:, modes] * drive
         rows = self.simulated.participation.copy()
         rows[channel] = gain * shape
         return self._chi_square(replace(self.simulated, participation=rows))
@@ -331,7 +332,7 @@ class LinearMisfit:
     def place(self, mend: Mend) -> np.ndarray:
         """Return (3,) m: the place to which a Mend moves its channel."""
         channel = self.bench.signals.names.index(mend.which)
-        return self._line.position(self._stated(channel) + mend.amount)
+        return self._line.position(self.stated(channel) + mend.amount)
 
     def _name(self, channel):
         return self.bench.signals.names[channel]
@@ -340,7 +341,7 @@ class LinearMisfit:
     def _line(self):
         return build_centreline(self.bench.config.structure)
 
-    def _stated(self, channel):
+    def stated(self, channel: int) -> float:
         """Return the arc length in m at which a channel is stated to be."""
         name = self._name(channel)
         return self._line.locate(self.bench.bare.sensor_positions[channel], name)
