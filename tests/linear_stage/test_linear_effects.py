@@ -3,19 +3,26 @@ that touches.
 """
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
+from vibroimpact.campaign.file import (
+    Channel,
+    Level,
+    campaign_dataset,
+    read_campaign,
+    write_campaign,
+)
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.places import between
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage.candidates import Pair, candidate_named
 from vibroimpact.linear_stage.effect_fit import LinearChanges
 from vibroimpact.linear_stage.linear_analysis import adopt, prepare, workbench
-from vibroimpact.linear_stage.lowest_record import told_apart
+from vibroimpact.linear_stage.lowest_record import suffices, told_apart
 from vibroimpact.linear_stage.nearest_model import translated
 from vibroimpact.linear_stage.nonlinear_substitutes import gain_of_spring
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
@@ -118,6 +125,18 @@ def test_turned_force_is_a_gain_to_the_modes_it_drives():
     # another place of the same effect, and a pair that holds it, are no other effect
     other = ("force_misalignment@about_tube", 2003.2)
     assert told_apart(rows_of(turned, other, ("added_mass@apex+sensor_gain@force", 2010.0)))
+
+
+@pytest.mark.parametrize("effects", [(MASS,), (MASS, DAMPED)], ids=["alone", "of two"])
+def test_one_effect_suffices_where_it_is_alone(study_config, tmp_path, effects):
+    path = file_of(study_config, tmp_path / "a.nc", *effects)
+    prepared = prepare(study_config, path)
+    masses = [row for row in prepared.linear if row["name"].startswith("added_mass")]
+    prepared.adopted, prepared.fit = next(row for row in masses if "+" not in row["name"]), None
+    fresh = partial(Workbench, study_config, read_campaign(path))
+    moved = fresh()
+    adopt(moved, prepared)
+    assert suffices(moved, fresh, prepared.adopted) is (len(effects) == 1)
 
 
 @pytest.mark.slow

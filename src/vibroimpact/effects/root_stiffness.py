@@ -34,7 +34,7 @@ EFFECT = Effect(
         Parameter(
             "rotation",
             "N m/rad",
-            1.0,
+            0.1,
             1.0e3,
             None,
             per="tube_rotation",

@@ -28,9 +28,10 @@ def linear_rows(
     sizes: dict[str, float],
     tables: dict[str, LinearTable],
     begun: Begun = (),
+    pairs: bool = True,
 ) -> list[dict[str, Any]]:
     """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a
-    Workbench, best first, and of two of them at once where one does not suffice.
+    Workbench, best first, and with pairs of two of them at once where one does not suffice.
 
     sizes: see Candidate.physical; tables are extended; begun: see best_pairs.
     """
@@ -58,7 +59,7 @@ def linear_rows(
     ]
     rows = sorted(map(plain_row, found), key=lambda row: -row["gain"])
     single = rows[0]
-    if nameable(single, sizes):
+    if pairs and nameable(single, sizes):
         for row in map(plain_row, best_pairs(bench, changes, rows, sizes, tables, begun)):
             if nameable(row, sizes) and row["gain"] > single[
                 "gain"

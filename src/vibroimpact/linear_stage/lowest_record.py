@@ -192,11 +192,27 @@ def adopted_explains(
     """
     if not bench.linear_stage:  # the model touches with it, which is no evidence against it
         return True
-    given = fresh()
-    given.measured_fit = translated(bench.measured_fit, bench.bare, given.bare)
-    before, after = LinearMisfit(given), LinearMisfit(bench, len(adopted["unit"]), given.bare)
+    before, after = misfits(bench, fresh, adopted)
     share = share_explained(after.chi_square, before.chi_square, after.count)
     return after.p() > priors.SIGNIFICANT or share > priors.EXPLAINED
+
+
+def misfits(
+    bench: Workbench, fresh: Callable[[], Workbench], adopted: dict[str, Any]
+) -> tuple[LinearMisfit, LinearMisfit]:
+    """Return the LinearMisfits without and with what was adopted (a row of linear_rows), of the
+    modes fitted with it in the model of a Workbench. fresh() gives a Workbench without it.
+    """
+    given = fresh()
+    given.measured_fit = translated(bench.measured_fit, bench.bare, given.bare)
+    return LinearMisfit(given), LinearMisfit(bench, len(adopted["unit"]), given.bare)
+
+
+def suffices(bench: Workbench, fresh: Callable[[], Workbench], adopted: dict[str, Any]) -> bool:
+    """Return whether one effect that was adopted leaves no more than chance of the lowest record:
+    a second has nothing to explain. Arguments as in misfits.
+    """
+    return "+" not in adopted["name"] and misfits(bench, fresh, adopted)[1].p() > priors.SIGNIFICANT
 
 
 def is_of_another_structure(bench: Workbench) -> bool:
@@ -249,7 +265,8 @@ def read_again(
         if driven_alone:
             fit = fit.of_modes(driven_modes(moved.bare, fit.modes))
         bare.measured_fit = translated(fit, moved.bare, bare.bare)
-        rows = linear_rows(bare, out.scales, tables, begun)
+        alone = suffices(moved, fresh, out.adopted)
+        rows = linear_rows(bare, out.scales, tables, begun, pairs=not alone)
         if not nameable(rows[0], out.scales):
             return moved
         out.linear, out.adopted = rows, rows[0]
