@@ -122,3 +122,10 @@ def test_noise_at_low_frequencies_is_no_other_unit():
     assert checks(measured) == []
     measured[1] *= 10.0
     assert checks(measured) == [("units", NAMES[1])]
+
+
+def test_level_that_differs_from_band_to_band_is_no_unit():
+    """From a third at 5 Hz to sixty times at 200 Hz, four times in the median."""
+    measured = beam(1.005, 0.02)
+    measured[1] *= 0.3 * (LINES / 5.0) ** (np.log(200.0) / np.log(40.0))
+    assert compare_with_model(spectra(measured), beam(), NAMES, KINDS) == []

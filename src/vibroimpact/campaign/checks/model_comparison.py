@@ -145,7 +145,8 @@ def compare_with_model(
                 )
             )
         gain = float(offset[index, place])
-        if abs(gain) > UNIT_FACTOR_DB:
+        # of bands that differ by more than their offset, none is all of one unit
+        if abs(gain) > max(UNIT_FACTOR_DB, misfit[index, place]):
             rows.append(
                 _row(
                     "units",
