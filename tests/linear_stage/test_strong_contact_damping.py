@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from tests.sound_campaign import sound_campaign
+from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.observation.simulated_records import Forces, simulate_records
 
 STRONG = {"damping": 1000.0}  # N s/m per plate
+ALPHA = 100.0  # s/m
 CANDIDATE = candidate_named("contact_damping@all")
 
 
@@ -24,6 +26,16 @@ def test_only_what_the_exact_step_feeds_takes_newmark_steps(bench):
     assert usual is bench.schedule and usual.scheme == "exact"
     fed, _ = bench.stepped(bench.model(bench.variant(CANDIDATE, STRONG)))
     assert fed.scheme == "newmark" and fed.steps_per_second > usual.steps_per_second
+
+
+def test_runs_that_diverge_are_marched_with_finer_steps(bench):
+    """Hunt-Crossley damping grows with the indentation, so that no check before tells of it."""
+    heavy = bench.model(bench.variant(candidate_named("hunt_crossley@all"), {"alpha": ALPHA}))
+    record = int(bench.signals.load.argmax())
+    runs = bench.runs([record], 8)
+    with pytest.raises(IntegrationError, match="diverged"):
+        bench.respond(heavy, runs)
+    assert np.isfinite(bench.features(heavy, runs)).all()
 
 
 @pytest.mark.slow

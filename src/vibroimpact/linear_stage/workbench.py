@@ -17,7 +17,11 @@ import xarray as xr
 from vibroimpact.config.reading import Config, check_config
 from vibroimpact.effects.effect import Values
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.integration.contact_convergence import CONTRACTION_LIMIT, contact_contraction
+from vibroimpact.integration.contact_convergence import (
+    CONTRACTION_LIMIT,
+    IntegrationError,
+    contact_contraction,
+)
 from vibroimpact.integration.step_stability import LARGEST_GROWTH, step_growth
 from vibroimpact.observation.attached_model import attach, with_channel_points
 from vibroimpact.observation.features import feature_layout, record_features
@@ -294,22 +298,35 @@ class Workbench:
                 contact_contraction(model, dt, scheme) < CONTRACTION_LIMIT
                 and step_growth(model, dt, scheme) <= LARGEST_GROWTH
             ):
-                if (finer, scheme) not in self._finer:
-                    schedule = replace(self.schedule, steps_per_second=finer * usual, scheme=scheme)
-                    self._finer[finer, scheme] = schedule, Forces(self.signals.force, schedule)
-                return self._finer[finer, scheme]
+                return self._steps(finer, scheme)
         return self.schedule, self.forces
 
+    def _steps(self, finer, scheme):
+        """Return (Schedule, Forces) with so many times the usual steps, of a scheme."""
+        if (finer, scheme) not in self._finer:
+            steps = finer * self.schedule.steps_per_second
+            schedule = replace(self.schedule, steps_per_second=steps, scheme=scheme)
+            self._finer[finer, scheme] = schedule, Forces(self.signals.force, schedule)
+        return self._finer[finer, scheme]
+
     def respond(
-        self, model: ModalModel, runs: Sequence[Run], measuring: Measuring | None = None
+        self,
+        model: ModalModel,
+        runs: Sequence[Run],
+        measuring: Measuring | None = None,
+        finest: bool = False,
     ) -> np.ndarray:
         """Return (run, channel, sample) responses with the gains of the nuisance and the faults of
-        the measuring chain (Measuring), relative to the base.
+        the measuring chain (Measuring), relative to the base; finest: with the finest steps,
+        whatever the model needs.
 
         The measuring chain acts on the absolute motion of a structure on a moving base, from which
         the measured motion of the base is subtracted as it is from the measurement.
         """
-        schedule, forces = self.stepped(model)
+        if finest:
+            schedule, forces = self._steps(FINER[-1], self.schedule.scheme)
+        else:
+            schedule, forces = self.stepped(model)
         chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
         factor = np.prod([fault.force_gain for fault in chain])
         forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
@@ -339,9 +356,18 @@ class Workbench:
         self, model: ModalModel, runs: Sequence[Run], measuring: Measuring | None = None
     ) -> np.ndarray:
         """Return (run, feature): the features of runs with measuring noise, each cut to the valid
-        samples of its record.
+        samples of its record; NaN for a run that diverges.
+
+        Runs of which one diverges are all marched again with the finest steps: what contact needs
+        that dissipates with its indentation is not known before.
         """
-        return self.noisy_features(runs, self.respond(model, runs, measuring))
+        try:
+            found = self.noisy_features(runs, self.respond(model, runs, measuring))
+        except IntegrationError:
+            found = None
+        if found is not None and not np.isnan(found).any():
+            return found
+        return self.noisy_features(runs, self.respond(model, runs, measuring, finest=True))
 
     @staticmethod
     def valid(values: np.ndarray) -> np.ndarray:
