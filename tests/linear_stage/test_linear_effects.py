@@ -127,6 +127,7 @@ def test_turned_force_is_a_gain_to_the_modes_it_drives():
     assert told_apart(rows_of(turned, other, ("added_mass@apex+sensor_gain@force", 2010.0)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effects", [(MASS,), (MASS, DAMPED)], ids=["alone", "of two"])
 def test_one_effect_suffices_where_it_is_alone(study_config, tmp_path, effects):
     path = file_of(study_config, tmp_path / "a.nc", *effects)
