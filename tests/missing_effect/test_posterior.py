@@ -7,7 +7,7 @@ from tests.white_null import white_null
 from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.missing_effect.probabilities import averaged, posterior
 from vibroimpact.missing_effect.race import contenders
-from vibroimpact.missing_effect.search import Search
+from vibroimpact.missing_effect.search import LITTLE, Search
 from vibroimpact.missing_effect.trials import Trial
 
 VALUES = 200
@@ -87,6 +87,17 @@ def test_race_leaves_out_what_is_known_to_be_worse():
     search = searched(chance() + 30.0 * DIRECTIONS[FRICTION])
     left = contenders(search)
     assert left == [FRICTION]  # until it has been run a few times more
+
+
+def test_what_takes_most_runs_on_though_its_scatter_hides_it():
+    """Few values change, and of many the scatter hides how much."""
+    search = searched(9.0 * DIRECTIONS[FRICTION])
+    trial = search.trials[FRICTION]
+    trial.change, trial.noise = 0.2 * trial.change, np.full(len(UNITS), 0.6)
+    search.fit(FRICTION)
+    assert search.explains(search.null.measured)[FRICTION] == 0.0
+    assert search.fits[FRICTION].takes > LITTLE
+    assert FRICTION in contenders(search)
 
 
 def test_two_that_only_their_scatter_tells_apart_share():

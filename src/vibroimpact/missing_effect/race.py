@@ -101,7 +101,7 @@ def contenders(search: Search, pairs: bool = False, laws: Sequence[str] = ()) ->
     left = [
         name
         for name in upper
-        if explains.get(name, np.inf) > LITTLE
+        if max(explains.get(name, np.inf), fits[name].takes) > LITTLE
         and (laws or upper[name] > best - DECIDED)
         and search.trials[name].refined < RUNS * (1 + (known[name] == best))
         and (
