@@ -28,7 +28,7 @@ EFFECT = Effect(
             "stiffness",
             "N/m",
             0.05,
-            300.0,
+            50.0,
             0.0,
             per="tube_translation",
             meaning="stiffness below the limit",

@@ -31,9 +31,10 @@ def linear_rows(
     pairs: bool = True,
 ) -> list[dict[str, Any]]:
     """Return [{name, unit, gain, interval}] of every linear candidate on the lowest record of a
-    Workbench, best first, and with pairs of two of them at once where one does not suffice.
+    Workbench, best first, and of two of them at once where one does not suffice.
 
-    sizes: see Candidate.physical; tables are extended; begun: see best_pairs.
+    sizes: see Candidate.physical; tables are extended; begun: see best_pairs; pairs: whether two at
+    once are tried.
     """
     found: list[LinearResult[Candidate]] = []
     changes = LinearChanges(bench)
