@@ -320,6 +320,9 @@ class Workbench:
         the measuring chain (Measuring), relative to the base; finest: with the finest steps,
         whatever the model needs.
 
+        Runs of which one diverges are all marched again with the finest steps: what contact needs
+        that dissipates with its indentation is not known before.
+
         The measuring chain acts on the absolute motion of a structure on a moving base, from which
         the measured motion of the base is subtracted as it is from the measurement.
         """
@@ -330,7 +333,12 @@ class Workbench:
         chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
         factor = np.prod([fault.force_gain for fault in chain])
         forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
-        responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)
+        try:
+            responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)
+        except IntegrationError:
+            if finest:
+                raise
+            return self.respond(model, runs, measuring, finest=True)
         count_simulated(len(runs))
         base = self._base_of(runs, responses.shape[-1])
         if base is not None:
@@ -356,16 +364,10 @@ class Workbench:
         self, model: ModalModel, runs: Sequence[Run], measuring: Measuring | None = None
     ) -> np.ndarray:
         """Return (run, feature): the features of runs with measuring noise, each cut to the valid
-        samples of its record; NaN for a run that diverges.
-
-        Runs of which one diverges are all marched again with the finest steps: what contact needs
-        that dissipates with its indentation is not known before.
+        samples of its record; NaN for a run that is thrown off with the finest steps too.
         """
-        try:
-            found = self.noisy_features(runs, self.respond(model, runs, measuring))
-        except IntegrationError:
-            found = None
-        if found is not None and not np.isnan(found).any():
+        found = self.noisy_features(runs, self.respond(model, runs, measuring))
+        if not np.isnan(found).any():
             return found
         return self.noisy_features(runs, self.respond(model, runs, measuring, finest=True))
 
