@@ -22,6 +22,7 @@ from tests.discrepancy_results import (
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.discrepancy.results_folder import best_places, read_results
 from vibroimpact.display_units import display_unit
+from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.figures.discrepancy.place import place_figure
 from vibroimpact.figures.discrepancy.ranking import axis_label, found_of, named_of
 from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
@@ -223,7 +224,8 @@ def test_closest_effect_is_shown_if_nothing_is_named():
             ],
         )
     )
-    assert told.endswith("The best candidate, clearance and support offset, does not explain it.")
+    near = "stop behind a clearance and support offset"
+    assert told.endswith(f"The best candidate, {near}, does not explain it.")
     assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
 
 
@@ -344,7 +346,7 @@ def test_every_verdict_has_its_sentence_and_page(kind):
         and {
             "none": "No effect",
             "named": "lacks dry friction",
-            "ambiguous": "dry friction, or foliate obstacle",
+            "ambiguous": "dry friction, or lobed hole",
             "unknown": "no effect of the catalogue",
             "partly_explained": "something else",
             "not_testable": "can not be judged",
@@ -485,4 +487,4 @@ def test_place_of_an_effect_is_marked(study_config, effect, location, marked):
         assert len(spots) > 100
     else:
         np.testing.assert_allclose(spots, marked, atol=2.0e-4)
-    assert effect.replace("_", " ") in [text.get_text() for text in sheet.axes["main"].texts]
+    assert effects_in_words([effect]) in [text.get_text() for text in sheet.axes["main"].texts]

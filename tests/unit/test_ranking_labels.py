@@ -30,7 +30,7 @@ def rows(*pairs):
         ),
         (
             [("foliate_obstacle", "all"), ("foliate_obstacle", "all, foliate lands")],
-            ["foliate obstacle (all)", "foliate obstacle (all, foliate lands)"],
+            ["lobed hole (all)", "lobed hole (all, foliate lands)"],
         ),
     ],
 )

@@ -7,6 +7,7 @@ import xarray as xr
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.effect import Values
+from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.linear_stage.nuisance import Nuisance
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.reduction.structural_modifications import with_frequency_factors
@@ -19,7 +20,7 @@ def not_offered(withdrawn: dict[str, Any]) -> str:
 
     withdrawn: verdict.content.Withdrawn in plain values.
     """
-    effects = " and ".join(row["id"].replace("_", " ") for row in withdrawn["effects"])
+    effects = effects_in_words(row["id"] for row in withdrawn["effects"])
     splits = {
         "the records that took no part": withdrawn["misfit"]["holdout"],
         "the records that it was fitted to, run anew,": withdrawn["misfit"]["fit"],

@@ -29,6 +29,7 @@ def _section(effect: Effect) -> str:
     ]
     broken = ", ".join(f"{test} ({TESTS[test]})" for test in effect.broken)
     facts = {
+        "In reports": effect.called,
         "Family": effect.family,
         "Law": effect.law,
         "Reported as": f"`{effect.law_of}`" if effect.law_of else "",

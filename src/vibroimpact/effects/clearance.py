@@ -23,6 +23,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="clearance",
+    called="stop behind a clearance",
     family="spring",
     explanation="a stop behind a clearance that the model lacks",
     law="force = stiffness (|u| - half_gap) beyond half_gap, 0 within it; u along the force",

@@ -19,6 +19,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="coulomb_friction",
+    called="Coulomb friction",
     family="damping",
     explanation="something rubs with a constant force",
     law="elastic stick spring that slips at +-force; u along the force",

@@ -19,6 +19,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="cubic_stiffness",
+    called="cubic spring",
     family="spring",
     explanation="a spring stiffens with the amplitude",
     law="force = coefficient u^3, u along the force",

@@ -100,6 +100,7 @@ class Effect:
     below_contact: it is nonlinear and acts without contact, so that it resembles a linear effect.
     measured: it changes the measurement, not the model.
     needs: what the campaign must hold: "force", measured at a point of the structure, "voltage".
+    called: its name where that is not the words of its id.
     law_of: id of the effect under which this one is reported, where it is another law of it.
     """
 
@@ -117,7 +118,13 @@ class Effect:
     below_contact: bool = False
     measured: bool = False
     needs: tuple[str, ...] = ()
+    called: str = ""
     law_of: str = ""
+
+    @property
+    def name(self) -> str:
+        """Return the name that a reader is told: Hunt-Crossley damping."""
+        return self.called or self.id.replace("_", " ")
 
     @property
     def acts_on(self) -> str:

@@ -32,6 +32,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="fluid_added_mass_damping",
+    called="mass and damping of a fluid",
     family="damping",
     explanation="a fluid adds mass and damping along the tube",
     law="force per length = mass a + damping v, along the whole tube",

@@ -19,6 +19,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="foliate_lands",
+    called="hole with lands",
     family="shape of the hole",
     law_of="foliate_obstacle",
     explanation="the hole is not circular: four flat lands, the limit of its lobes",

@@ -26,6 +26,7 @@ def lobed(count: int, id: str, source: str) -> Effect:
     """Return the effect of a hole of so many lobes, reported as foliate_obstacle."""
     return Effect(
         id=id,
+        called="lobed hole",
         family="shape of the hole",
         law_of="" if id == REPORTED else REPORTED,
         explanation=f"the hole is not circular: {count} lobes, or flat lands as their limit",

@@ -15,6 +15,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="hertz",
+    called="Hertz contact",
     family="contact stiffness",
     explanation="the contact stiffens with the indentation (Hertz)",
     law="force = coefficient p^1.5 at each contact point",

@@ -13,6 +13,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="hunt_crossley",
+    called="Hunt-Crossley damping",
     family="contact damping",
     explanation="the contact dissipates with indentation times its speed",
     law="force = k p max(0, 1 + alpha dp/dt)",

@@ -16,6 +16,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="mode_frequency_error",
+    called="other frequency of a mode",
     family="mass",
     explanation="a mode has another frequency than computed",
     law="frequency of one mode = factor times the computed one",

@@ -19,6 +19,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="quadratic_stiffness",
+    called="quadratic spring",
     family="spring",
     explanation="a spring is stiffer to one side",
     law="force = coefficient u^2, u along the force",

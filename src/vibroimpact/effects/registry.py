@@ -1,5 +1,6 @@
 """The catalogue: every effect by its id. A new effect needs one line here, its import."""
 
+from collections.abc import Iterable
 from types import ModuleType
 
 from . import (
@@ -41,3 +42,10 @@ EFFECTS: dict[str, Effect] = {
     for module in tuple(globals().values())
     if isinstance(module, ModuleType)
 }
+
+
+def effects_in_words(ids: Iterable[str]) -> str:
+    """Return effects as a reader is told them: dry friction and Hertz contact."""
+    return " and ".join(
+        EFFECTS[name].name if name in EFFECTS else str(name).replace("_", " ") for name in ids
+    )

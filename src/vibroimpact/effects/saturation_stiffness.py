@@ -19,6 +19,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
 EFFECT = Effect(
     id="saturation_stiffness",
+    called="saturating spring",
     family="spring",
     explanation="a spring holds up to a limit only",
     law="force = stiffness u, at most +-limit; u along the force",

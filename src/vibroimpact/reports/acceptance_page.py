@@ -8,7 +8,9 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from .discrepancy_page import embedded, in_words
+from vibroimpact.effects.registry import effects_in_words
+
+from .discrepancy_page import embedded
 from .number_text import digits, percent
 from .page_style import STYLE
 
@@ -117,7 +119,7 @@ def _limit_row(row):
         if row[key] == row[key]
     ]
     return {
-        "effect": in_words([row["effect"]]),
+        "effect": effects_in_words([row["effect"]]),
         "campaigns": row["campaigns"],
         "found": row["found"],
         "limit": digits(row["limit_over_floor"]),
@@ -126,14 +128,14 @@ def _limit_row(row):
 
 
 def _campaign_row(row):
-    sets = [in_words(names.split("+")) for names in row["named"].split("|") if names]
+    sets = [effects_in_words(names.split("+")) for names in row["named"].split("|") if names]
     return {
         "number": row["campaign"].removeprefix("campaign_"),
         "kind": row["kind"].replace("_", " "),
-        "hidden": in_words(row["hidden"].split("+")) or "nothing",
+        "hidden": effects_in_words(row["hidden"].split("+")) or "nothing",
         "verdict": row["verdict"].replace("_", " "),
         "sets": ", or ".join(sets) or "-",
-        "first": in_words(row["first_name"].split("+")) or "-",
+        "first": effects_in_words(row["first_name"].split("+")) or "-",
         "strength": digits(row["strength"]),
         "closed": percent(row["closed"]),
     }

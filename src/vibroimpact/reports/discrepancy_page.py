@@ -15,14 +15,13 @@ from jinja2 import Environment, StrictUndefined
 from vibroimpact.discrepancy.results_folder import best_places
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
-from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.effects.registry import EFFECTS, effects_in_words
 from vibroimpact.verdict.content import Misfit, Verdict
 
 from .number_text import digits, percent
 from .page_style import STYLE
 from .verdict_words import (
     for_reading,
-    in_words,
     judgement,
     next_steps,
     probability_text,
@@ -52,7 +51,8 @@ SECTIONS = {
 }
 BAR_PX = 240  # of a probability of 1
 LEAST_SHOWN = 0.005  # of the probabilities of explanations
-MOST_ROWS, MOST_MODES = 20, 6
+MOST_ROWS, MOST_MODES = 10, 6
+WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
 # Meanings of the floor of the misfit.
@@ -106,7 +106,7 @@ def discrepancy_page(
         figures=_by_section(figures),
         ranking=_ranking_rows(verdict),
         scored=any(row.heldout_score is not None for row in verdict.ranking),
-        untestable=", ".join(in_words([name]) for name in verdict.not_testable),
+        untestable=", ".join(effects_in_words([name]) for name in verdict.not_testable),
         steps=next_steps(verdict, model or "model_updated.yaml"),
         checks=sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level]),
         seconds=digits(verdict.seconds),
@@ -131,7 +131,7 @@ def _ranking_rows(verdict):
         ids = tuple(sorted(row["ids"]))
         rows.append(
             {
-                "ids": in_words(row["ids"]),
+                "ids": effects_in_words(row["ids"]),
                 "location": ", ".join(map(place_in_words, (row.get("location") or "").split("+"))),
                 "probability": percent(row.get("probability")),
                 "score": digits(row["heldout_score"]),
@@ -155,7 +155,9 @@ def _probabilities(verdict):
             known[ids] = known.get(ids, 0.0) + row.probability
     sets = zip(verdict.ambiguity_set, verdict.ambiguity_probability, strict=False)
     known |= {tuple(sorted(ids)): probability for ids, probability in sets}
-    rows = [(in_words(ids), chance) for ids, chance in known.items() if chance >= LEAST_SHOWN]
+    rows = [
+        (effects_in_words(ids), chance) for ids, chance in known.items() if chance >= LEAST_SHOWN
+    ]
     rows.append(("nothing is missing", verdict.probability_none))
     rows.append(("something that is not in the catalogue", verdict.probability_something_else))
     told = sorted([row for row in rows if row[1] is not None], key=lambda row: -row[1])
@@ -179,29 +181,34 @@ def _stages(verdict):
 
 
 def embedded(figures: Iterable[Path]) -> list[dict]:
-    """Return {name, caption, data} of PNG files; data is the text of a data: address.
+    """Return {name, caption, data, percent} of PNG files; data is the text of a data: address,
+    percent the share of the page's width with which their letters are as large as in others.
 
     The caption is in a .txt file of the same name.
     """
-    return [
-        {
-            "name": file.stem,
-            "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
-            "data": base64.b64encode(file.read_bytes()).decode(),
-        }
-        for file in map(Path, figures)
-    ]
+    return [_embedded(file, file.read_bytes()) for file in map(Path, figures)]
+
+
+def _embedded(file, content):
+    """Return the row of embedded of a file and its content."""
+    pixels = int.from_bytes(content[16:20], "big")  # the width in the header of a PNG file
+    return {
+        "name": file.stem,
+        "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
+        "data": base64.b64encode(content).decode(),
+        "percent": min(100, round(100 * pixels / WHOLE_PX)),
+    }
 
 
 def _effect_rows(verdict):
     for effect in verdict.shown_effects():
         known = EFFECTS.get(effect.id)
         head = {
-            "effect": in_words([effect.id]),
+            "effect": effects_in_words([effect.id]),
             "explanation": known.explanation if known else "",
             "family": effect.family or "",
             "law_fits": effect.law_fits or "",
-            "location": place_in_words(effect.location or "all"),
+            "location": _where(effect.location or "all", known),
         }
         for name, value in [
             (name, for_reading(row)) for name, row in effect.parameters.items()
@@ -214,6 +221,12 @@ def _effect_rows(verdict):
                 "unit": unit_text(value["unit"]).strip() or "-" if value else "",
             }
             head = dict.fromkeys(head, "")
+
+
+def _where(location, effect):
+    """Return a location in words; effect: its entry of the catalogue, None."""
+    of_supports = effect is not None and effect.acts_on == "contact" and location == "all"
+    return "all supports" if of_supports else place_in_words(location)
 
 
 def _misfit_rows(verdict):

@@ -7,6 +7,7 @@ from typing import Any
 
 from vibroimpact.display_units import display_unit
 from vibroimpact.effects.places import place_in_words
+from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict
 
 from .number_text import digits, percent
@@ -33,7 +34,7 @@ def verdict_sentence(verdict: Verdict) -> str:
         else ""
     )
     near = [] if verdict.withdrawn else [effect.id for effect in verdict.most_probable]
-    nearest = f" The best candidate, {in_words(near)}, does not explain it." if near else ""
+    nearest = f" The best candidate, {effects_in_words(near)}, does not explain it." if near else ""
     other = next((row.message for row in verdict.checks if row.check == "linear model"), "")
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
@@ -65,14 +66,9 @@ def verdict_sentence(verdict: Verdict) -> str:
     return sentences[verdict.verdict]
 
 
-def in_words(ids: Sequence[str]) -> str:
-    """Return effect ids as words: dry friction and gap."""
-    return " and ".join(str(name).replace("_", " ") for name in ids)
-
-
 def sets_in_words(sets: Sequence[Sequence[str]]) -> str:
-    """Return the members of an ambiguity set: dry friction, or foliate obstacle."""
-    return ", or ".join(in_words(ids) for ids in sets)
+    """Return the members of an ambiguity set: dry friction, or lobed hole."""
+    return ", or ".join(effects_in_words(ids) for ids in sets)
 
 
 def _with_parameters(effect):
@@ -86,9 +82,9 @@ def _with_parameters(effect):
         for name, value in ((name, for_reading(row)) for name, row in effect.parameters.items())
     )
     place = f" at {place_in_words(effect.location)}" if effect.location not in ("", "all") else ""
-    told = f"{in_words([effect.id])}{place}" + (f" ({values})" if values else "")
+    told = f"{effects_in_words([effect.id])}{place}" + (f" ({values})" if values else "")
     if effect.law_fits == "no":
-        family = in_words([effect.family or effect.id])
+        family = effect.family or effects_in_words([effect.id])
         return f"{family}{place}, by no law that was tried; the nearest is {told}"
     return told
 
@@ -97,7 +93,10 @@ def withdrawn_sentence(verdict: Verdict) -> str:
     """Return what was tried and is not offered, empty where that is nothing."""
     if verdict.withdrawn is None:
         return ""
-    misfit, tried = verdict.withdrawn.misfit, in_words([e.id for e in verdict.withdrawn.effects])
+    misfit, tried = (
+        verdict.withdrawn.misfit,
+        effects_in_words([e.id for e in verdict.withdrawn.effects]),
+    )
     numbers = [
         f"{name}, {digits(split.before_dB)} dB before, {digits(split.after_dB)} dB after"
         for name, split in (

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.effects.places import arc_length_m, place_in_words
-from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.effects.registry import EFFECTS, effects_in_words
 from vibroimpact.figures.labels import spread_labels
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.study.tube import view_axes
@@ -123,8 +123,8 @@ def place_figure(config, data, effects):
             (role, colour, marker),
         )
     labels = [_marked(sheet, axes, places, effect, view, columns) for effect in effects]
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.12)
+    axes.set_aspect("equal", adjustable="box")
+    axes.margins(0.2, 0.12)  # the bars of supports reach beyond the tube
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     spread_labels(sheet.figure, [label for label in labels if label is not None])
     return [sheet]
@@ -223,7 +223,7 @@ def _marked(sheet, axes, places, effect, view, columns):
     )
     top = int(np.argmax(up))
     return axes.annotate(
-        effect.id.replace("_", " "),
+        effects_in_words([effect.id]),
         (across[top], up[top]),
         xytext=(14, 12),
         textcoords="offset points",

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.discrepancy.results_folder import best_places
 from vibroimpact.display_units import display_unit
+from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -97,7 +98,7 @@ def _label(row, names):
     ids = str(row["ids"]).split("+")
     told_by_place = names.count("+".join(sorted(ids))) > 1 or len(set(ids)) < len(ids)
     place = f" ({row['location']})" if told_by_place and row.get("location") else ""
-    return f"{row['ids']}{place}".replace("_", " ").replace("+", " + ")
+    return " + ".join(effects_in_words([name]) for name in ids) + place.replace("_", " ")
 
 
 def _value(value):
@@ -141,7 +142,7 @@ def profiles_figure(candidates, effects):
         return [sheet]
     title = "How well the parameters are known"
     if not effects:
-        ids = " + ".join(name.replace("_", " ") for name in shown[0]["ids"])
+        ids = " + ".join(effects_in_words([name]) for name in shown[0]["ids"])
         title = f"What comes nearest, {ids}: how well its parameters are known"
     across = min(3, len(curves))
     keys = [f"{index} {curve['parameter']}" for index, curve in enumerate(curves)]
