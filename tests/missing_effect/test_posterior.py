@@ -5,6 +5,7 @@ import pytest
 
 from tests.white_null import white_null
 from vibroimpact.linear_stage.candidates import candidate_named
+from vibroimpact.missing_effect.engine import nothing_near
 from vibroimpact.missing_effect.probabilities import averaged, posterior
 from vibroimpact.missing_effect.race import contenders
 from vibroimpact.missing_effect.search import LITTLE, Search
@@ -122,3 +123,9 @@ def test_family_that_holds_most_is_told_though_no_law_of_it_fits():
     assert sum(families.values()) == pytest.approx(1.0)
     neither = searched(chance() + 40.0 * DIRECTIONS["none of them"]).of_families()
     assert max(neither.values()) < 0.9
+
+
+@pytest.mark.parametrize(("of_friction", "near"), [(0.0, False), (8.0, False), (30.0, True)])
+def test_nothing_is_near_where_no_effect_takes_a_quarter_away(of_friction, near):
+    missing = 30.0 * DIRECTIONS["none of them"] + of_friction * DIRECTIONS[FRICTION]
+    assert nothing_near(searched(chance() + missing)) != near

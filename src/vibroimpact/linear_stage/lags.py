@@ -3,6 +3,7 @@ modes.
 """
 
 import numpy as np
+from scipy.signal import CZT
 
 from vibroimpact.observation.sensed_motion import orders
 from vibroimpact.reduction.modal_model import ModalModel
@@ -90,21 +91,25 @@ def from_phases(lines: ModalLines, noise: np.ndarray) -> np.ndarray:
     force = record.short_spectra(record.spectrum[:1])[0]
     # most lines of a periodic force are empty
     driven = np.abs(force) > EXCITED * np.abs(force).max()
-    tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, 0.02 / record.frequency[-1])
+    if len(record.frequency) < FEWEST:
+        return np.zeros(len(lines.measured))
+    step = 0.02 / record.frequency[-1]
+    tried = np.arange(-LONGEST_LAG_S, LONGEST_LAG_S, step)
+    apart = 4j * np.pi * (record.frequency[1] - record.frequency[0])
+    transform = CZT(  # the lines are evenly spaced
+        len(record.frequency), len(tried), np.exp(apart * step), np.exp(-apart * tried[0])
+    )
+    first = np.exp(4j * np.pi * record.frequency[0] * tried)
     out = np.zeros(len(lines.measured))
     sense = 1.0 - 2.0 * (orders(lines.kinds) % 2)
     for channel, own in enumerate(lines.measured):
         heard = (np.abs(own) > HEARD * noise[channel] / np.sqrt(own.size)) & driven
         if heard.sum() < FEWEST:
             continue
-        squared = sense[channel] * (own[heard] / force[heard]) ** 2
-        score = (
-            np.real(
-                (squared / np.abs(squared))
-                @ np.exp(4j * np.pi * np.outer(record.frequency[heard], tried))
-            )
-            / heard.sum()
-        )
+        squared = np.zeros(own.size, complex)
+        squared[heard] = sense[channel] * (own[heard] / force[heard]) ** 2
+        squared[heard] /= np.abs(squared[heard])
+        score = np.real(first * transform(squared)) / heard.sum()
         if score.max() > REAL_ENOUGH and abs(tried[np.argmax(score)]) > SEEN_S:
             out[channel] = tried[np.argmax(score)]
     return out

@@ -128,6 +128,8 @@ class Engine:
             if self.spent.pairs and unexplained(search):
                 race.look_wider(search, self.spent.pairs)
                 search.look()
+                if nothing_near(search):
+                    return
                 self.refine(search)
         with self.stage("two effects"):
             self.seek_pairs(search, prepared)
@@ -240,6 +242,16 @@ def unexplained(search: Search) -> bool:
         return False
     explained = share_explained(left, nothing, null.values)
     return explained < priors.EXPLAINED or open_chance(search) > OPEN
+
+
+def nothing_near(search: Search) -> bool:
+    """Return whether no explanation takes as much of the chi-square beyond chance away as a part of
+    what is missing does: such a part would be withdrawn, and two of them are not looked for.
+    """
+    before = float(search.null.measured @ search.null.measured)
+    most = max((max(fit.takes, before - fit.left) for fit in search.fits.values()), default=0.0)
+    share = share_explained(before - most, before, search.null.values)
+    return share < 1.0 - priors.EXPLAINED
 
 
 def screened(prepared: Prepared) -> list[str]:
