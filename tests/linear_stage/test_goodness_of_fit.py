@@ -3,6 +3,7 @@ where it says to look first.
 """
 
 from math import pi
+from types import SimpleNamespace
 
 import netCDF4
 import numpy as np
@@ -10,12 +11,14 @@ import pytest
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.geometry.centreline import build_centreline
-from vibroimpact.linear_stage import priors, workbench
+from vibroimpact.linear_stage import lowest_record, priors, workbench
 from vibroimpact.linear_stage.acting_place import acting_place
 from vibroimpact.linear_stage.drift import drift_of
 from vibroimpact.linear_stage.findings import linear_findings
 from vibroimpact.linear_stage.goodness_of_fit import LinearMisfit
 from vibroimpact.linear_stage.lowest_record import is_of_another_structure
+from vibroimpact.linear_stage.mode_identification import left
+from vibroimpact.linear_stage.nearest_model import BandSpectra, begun_from_factor
 from vibroimpact.linear_stage.other_source import other_sources
 from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact_truth.campaign import Plan, make_campaign
@@ -72,6 +75,42 @@ def test_other_wall_thickness_is_read_as_mass_and_stiffness(study_config, tmp_pa
     assert misfit.p(misfit.mends[0].chi_square, 2) > priors.SIGNIFICANT
     message = rows_of(bench)["linear model"]["message"]
     assert "first look at the section or the material" in message and "mends it" in message
+
+
+def test_modes_of_a_much_thinner_tube_are_read_from_a_factor(study_config, tmp_path):
+    """Its frequencies are a sixth lower, farther off than modes are looked for."""
+    campaign = campaign_of(tmp_path / "a.nc", 2006, outer_diameter=0.0189, wall=0.00165)
+    bench = Workbench(study_config, campaign)
+    assert left(bench.measured_fit, bench.bare) > priors.LINEAR_RESIDUAL
+    remains, found = begun_from_factor(bench, BandSpectra(bench))
+    assert remains < priors.LINEAR_RESIDUAL
+    mass, stiffness = (
+        after / before
+        for before, after in zip(
+            section_of(0.02222, 0.00127), section_of(0.0189, 0.00165), strict=True
+        )
+    )
+    expected = 0.5 * np.log(stiffness / mass)
+    assert np.median(found.log_frequency) == pytest.approx(expected, abs=0.01)
+    bench.measured_fit = found
+    assert is_of_another_structure(bench)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "left_there", "wanted"),
+    [
+        ("fluid_added_mass_damping@tube+sensor_gain@force", "section", 115.0, True),
+        ("fluid_added_mass_damping@tube+sensor_gain@force", "section", 130.0, False),
+        ("fluid_added_mass_damping@tube+sensor_gain@force", "channel", 115.0, False),
+        ("fluid_added_mass_damping@tube", "section", 115.0, False),
+    ],
+)
+def test_one_cause_is_preferred_to_two_effects(monkeypatch, name, kind, left_there, wanted):
+    before = SimpleNamespace(mends=[SimpleNamespace(kind=kind, chi_square=left_there)])
+    after = SimpleNamespace(chi_square=124.0)
+    monkeypatch.setattr(lowest_record, "misfits", lambda *_: (before, after))
+    bench = SimpleNamespace(linear_stage=True)
+    assert lowest_record.structure_says_as_much(bench, None, {"name": name}) == wanted
 
 
 @pytest.mark.slow

@@ -65,7 +65,10 @@ def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared)
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
     identified = read_driven(bench, fresh, out, begun)
     bench = read_all(bench, fresh, out, tables, begun) if identified is None else identified
-    if out.adopted is not None and not adopted_explains(bench, fresh, out.adopted):
+    if out.adopted is not None and (
+        not adopted_explains(bench, fresh, out.adopted)
+        or structure_says_as_much(bench, fresh, out.adopted)
+    ):
         bench = fresh()
         bench.measured_fit = fit
         out.other_structure = is_of_another_structure(bench)
@@ -223,8 +226,27 @@ def is_of_another_structure(bench: Workbench) -> bool:
     return found.p() < priors.SIGNIFICANT and any(
         share_explained(mend.chi_square, found.chi_square, found.count) > priors.EXPLAINED
         for mend in found.mends
-        if mend.kind in ("length", "section", "frequencies")
+        if mend.kind in OF_STRUCTURE
     )
+
+
+OF_STRUCTURE = ("length", "section", "frequencies")
+
+
+def structure_says_as_much(
+    bench: Workbench, fresh: Callable[[], Workbench], adopted: dict[str, Any]
+) -> bool:
+    """Return whether another length or section, one cause, leaves no more of the lowest record than
+    two effects that were adopted. Arguments as in misfits.
+
+    A fluid beside a gain of the force shifts all modes and scales all responses as another section
+    does.
+    """
+    if "+" not in adopted["name"] or not bench.linear_stage:
+        return False
+    before, after = misfits(bench, fresh, adopted)
+    mends = [mend.chi_square for mend in before.mends if mend.kind in OF_STRUCTURE]
+    return min(mends, default=np.inf) <= after.chi_square
 
 
 OTHER_MESSAGE = (

@@ -29,6 +29,8 @@ FARTHEST_DB = 12.0
 # points along each parameter, by the number of parameters: of one effect, of a second one
 GRID = ({1: 7, 2: 5, 3: 4}, {1: 5, 2: 3, 3: 3})
 BEGUN = 3  # models from which the fit is begun
+# of all frequencies: those of tubes of another length or section
+FACTORS = np.geomspace(1.0 / 1.5, 1.5, 41)
 
 Ranked = tuple[float, Any, np.ndarray, ModalModel]  # distance, Candidate or Pair, unit, model
 
@@ -40,7 +42,8 @@ def fit_from_nearest(
     relative to its bare model, begun from the linear effects whose spectra come nearest, and the
     pairs among these. The Workbench's own fit where none of them leads to a better one.
 
-    One effect is tried, then two where one does not lead to a fit. changes: LinearChanges of the
+    First all frequencies times a factor are tried, as those of another length or section are; then
+    one effect, and two where one does not lead to a fit. changes: LinearChanges of the
     Workbench; scales: see Candidate.physical; held: see candidates.linear_candidates.
     """
     spectra = BandSpectra(bench)
@@ -54,6 +57,11 @@ def fit_from_nearest(
     pairs: list[tuple[Pair, np.ndarray]] = []
     known: list[Ranked] = []
     least, best = left(bench.measured_fit, bench.bare), bench.measured_fit
+    remains, found = begun_from_factor(bench, spectra)
+    if found is not None and remains < least:
+        least, best = remains, found
+    if least < priors.LINEAR_RESIDUAL:
+        return best, pairs
     for second in (False, True):
         tried: list[Any] = (
             singles
@@ -81,16 +89,41 @@ def fit_from_nearest(
         for _, candidate, unit, model in islice(_different(ranked), BEGUN):
             pairs += [(candidate, unit)] * second
             remains, found = begun_from(bench, model)
-            if remains < least:
+            if found is not None and remains < least:
                 least, best = remains, found
         if least < priors.LINEAR_RESIDUAL:
             break
     return best, pairs
 
 
+def begun_from_factor(bench: Workbench, spectra: "BandSpectra") -> tuple[float, ModalFit | None]:
+    """Return begun_from the bare model with all frequencies times the factor whose spectra come
+    nearest; its modes are those of the bare model.
+    """
+    models = [(factor, _scaled(bench.bare, factor)) for factor in FACTORS]
+    factor, model = min(models, key=lambda one: spectra.distance(one[1]))
+    remains, found = _from(bench, model)
+    if found is None:
+        return np.inf, None
+    return remains, replace(found, log_frequency=found.log_frequency + np.log(factor))
+
+
+def _scaled(model, factor):
+    """Return a ModalModel with all frequencies times a factor and the same damping ratios."""
+    return replace(model, omega=model.omega * factor, damping=model.damping * factor)
+
+
 def begun_from(bench: Workbench, model: ModalModel) -> tuple[float, ModalFit | None]:
     """Return (largest residual over noise, ModalFit relative to the bare model) of the lowest
     record fitted from another model; (inf, None) where it shows no mode of that.
+    """
+    remains, found = _from(bench, model)
+    return remains, found if found is None else translated(found, model, bench.bare)
+
+
+def _from(bench, model):
+    """Return (largest residual over noise, ModalFit relative to a ModalModel) of the lowest record
+    fitted from it; (inf, None) where it shows no mode of that.
     """
     record = bench.signals.lowest
     responses = bench.valid(bench.signals.response[record])
@@ -102,11 +135,7 @@ def begun_from(bench: Workbench, model: ModalModel) -> tuple[float, ModalFit | N
         bench.signals.noise_in_band,
         search=False,
     )
-    return (
-        (np.inf, None)
-        if found is None
-        else (left(found, model), translated(found, model, bench.bare))
-    )
+    return (np.inf, None) if found is None else (left(found, model), found)
 
 
 def at_modes(model: ModalModel, fit: ModalFit) -> ModalModel:
