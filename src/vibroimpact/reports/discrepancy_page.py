@@ -51,7 +51,7 @@ SECTIONS = {
 }
 BAR_PX = 240  # of a probability of 1
 LEAST_SHOWN = 0.005  # of the probabilities of explanations
-MOST_ROWS, MOST_MODES = 10, 6
+MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6
 WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
@@ -100,7 +100,7 @@ def discrepancy_page(
         misfit=[*_misfit_rows(verdict)],
         p_before=probability_text(verdict.p_global_before),
         p_after=probability_text(verdict.p_global_after),
-        regions=[_region_row(region) for region in verdict.regions[:MOST_ROWS]],
+        regions=[_region_row(region) for region in verdict.regions[:MOST_REGIONS]],
         where_it_shows=where_it_shows(verdict),
         broken="; ".join(tests),
         figures=_by_section(figures),
