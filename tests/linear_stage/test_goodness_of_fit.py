@@ -15,7 +15,7 @@ from vibroimpact.linear_stage import lowest_record, priors, workbench
 from vibroimpact.linear_stage.acting_place import acting_place
 from vibroimpact.linear_stage.drift import drift_of
 from vibroimpact.linear_stage.findings import linear_findings
-from vibroimpact.linear_stage.goodness_of_fit import LinearMisfit
+from vibroimpact.linear_stage.goodness_of_fit import LinearMisfit, Mend
 from vibroimpact.linear_stage.lowest_record import is_of_another_structure
 from vibroimpact.linear_stage.mode_identification import left
 from vibroimpact.linear_stage.nearest_model import BandSpectra, begun_from_factor
@@ -97,16 +97,31 @@ def test_modes_of_a_much_thinner_tube_are_read_from_a_factor(study_config, tmp_p
 
 
 @pytest.mark.parametrize(
-    ("name", "kind", "left_there", "wanted"),
+    ("modes", "amount", "wanted"),
     [
-        ("fluid_added_mass_damping@tube+sensor_gain@force", "section", 115.0, True),
-        ("fluid_added_mass_damping@tube+sensor_gain@force", "section", 130.0, False),
-        ("fluid_added_mass_damping@tube+sensor_gain@force", "channel", 115.0, False),
-        ("fluid_added_mass_damping@tube", "section", 115.0, False),
+        (3, (0.9, 1.1), True),
+        (2, (0.9, 1.1), False),  # a factor explains any two shifts
+        (4, (2.706, 2.716), False),  # of a force turned by 1.2 rad
     ],
 )
-def test_one_cause_is_preferred_to_two_effects(monkeypatch, name, kind, left_there, wanted):
-    before = SimpleNamespace(mends=[SimpleNamespace(kind=kind, chi_square=left_there)])
+def test_structure_is_another_where_frequencies_tell(monkeypatch, modes, amount, wanted):
+    section = Mend("section", None, amount, 70.0, 2)
+    misfit = SimpleNamespace(chi_square=568.0, count=16, p=lambda: 0.0, of_structure=[section])
+    monkeypatch.setattr(lowest_record, "LinearMisfit", lambda _: misfit)
+    bench = SimpleNamespace(measured_fit=SimpleNamespace(modes=range(modes)))
+    assert is_of_another_structure(bench) == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "left_there", "wanted"),
+    [
+        ("fluid_added_mass_damping@tube+sensor_gain@force", 115.0, True),
+        ("fluid_added_mass_damping@tube+sensor_gain@force", 130.0, False),
+        ("fluid_added_mass_damping@tube", 115.0, False),
+    ],
+)
+def test_one_cause_is_preferred_to_two_effects(monkeypatch, name, left_there, wanted):
+    before = SimpleNamespace(of_structure=[SimpleNamespace(chi_square=left_there)])
     after = SimpleNamespace(chi_square=124.0)
     monkeypatch.setattr(lowest_record, "misfits", lambda *_: (before, after))
     bench = SimpleNamespace(linear_stage=True)

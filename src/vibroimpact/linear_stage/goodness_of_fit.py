@@ -67,6 +67,16 @@ class Mend:
         """Return chi-square with a cost for each fitted value."""
         return self.chi_square + 2.0 * priors.PARAMETER_COST * self.freed
 
+    @property
+    def shift(self) -> float:
+        """Return ln of the factor by which another structure shifts frequencies, about so for one
+        of several lengths.
+        """
+        if self.kind == "section":
+            mass, stiffness = self.amount
+            return float(0.5 * np.log(stiffness / mass))
+        return float(-2.0 * np.log(self.amount) if self.kind == "length" else self.amount)
+
 
 class LinearMisfit:
     """The chi-square of a Workbench's lowest record given its bare linear model, with nuisances
@@ -106,9 +116,7 @@ class LinearMisfit:
         """Return the Mends, the likeliest first."""
         channels = self._channels
         found = [
-            self._frequencies(),
-            self._section(),
-            *filter(None, starmap(self._length, parts(self.bench.config.structure).items())),
+            *self.of_structure,
             *map(self._mode, range(self.modes)),
             *map(self._channel, channels),
             *map(self._gain, channels),
@@ -122,6 +130,14 @@ class LinearMisfit:
 
     def _mended(self, mend):
         return self.p(mend.chi_square, mend.freed) > priors.SIGNIFICANT
+
+    @cached_property
+    def of_structure(self) -> list[Mend]:
+        """Return the Mends by another structure: a factor of all frequencies, another section,
+        other lengths.
+        """
+        lengths = starmap(self._length, parts(self.bench.config.structure).items())
+        return [self._frequencies(), self._section(), *filter(None, lengths)]
 
     @cached_property
     def places(self) -> list[Mend]:

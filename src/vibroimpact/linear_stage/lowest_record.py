@@ -65,16 +65,19 @@ def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared)
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
     identified = read_driven(bench, fresh, out, begun)
     bench = read_all(bench, fresh, out, tables, begun) if identified is None else identified
+    out.other_structure = out.adopted is not None and structure_says_as_much(
+        bench, fresh, out.adopted
+    )
     if out.adopted is not None and (
-        not adopted_explains(bench, fresh, out.adopted)
-        or structure_says_as_much(bench, fresh, out.adopted)
+        out.other_structure or not adopted_explains(bench, fresh, out.adopted)
     ):
-        bench = fresh()
+        bench, out.adopted, out.nonlinear_low = fresh(), None, True
         bench.measured_fit = fit
-        out.other_structure = is_of_another_structure(bench)
-        out.adopted, out.nonlinear_low = None, not out.other_structure
-        if out.other_structure:
-            out.checks.append(check_row(OTHER_STRUCTURE, "warn", OTHER_MESSAGE))
+    if out.adopted is None:
+        out.other_structure = out.other_structure or is_of_another_structure(bench)
+    if out.other_structure:
+        out.nonlinear_low = False
+        out.checks.append(check_row(OTHER_STRUCTURE, "warn", OTHER_MESSAGE))
     # of the last fit: where modes shifted far, misfit of the first one appears as delay
     fit = bench.measured_fit or fit
     out.delays = {
@@ -222,15 +225,19 @@ def is_of_another_structure(bench: Workbench) -> bool:
     """Return whether another length, section or factor of all frequencies takes most of the misfit
     beyond chance from the lowest record: its response is linear then, and the model is not its own.
     """
+    if len(bench.measured_fit.modes) < TELLING_MODES:
+        return False
     found = LinearMisfit(bench)
     return found.p() < priors.SIGNIFICANT and any(
         share_explained(mend.chi_square, found.chi_square, found.count) > priors.EXPLAINED
-        for mend in found.mends
-        if mend.kind in OF_STRUCTURE
+        for mend in found.of_structure
+        if abs(mend.shift) > SHIFTED
     )
 
 
-OF_STRUCTURE = ("length", "section", "frequencies")
+TELLING_MODES = 3  # of fewer, a factor explains any shift
+# a section of another mass and stiffness that leaves all frequencies as they are is another force
+SHIFTED = priors.NAMED_BEYOND * priors.FREQUENCY_SD
 
 
 def structure_says_as_much(
@@ -245,8 +252,7 @@ def structure_says_as_much(
     if "+" not in adopted["name"] or not bench.linear_stage:
         return False
     before, after = misfits(bench, fresh, adopted)
-    mends = [mend.chi_square for mend in before.mends if mend.kind in OF_STRUCTURE]
-    return min(mends, default=np.inf) <= after.chi_square
+    return min(mend.chi_square for mend in before.of_structure) <= after.chi_square
 
 
 OTHER_MESSAGE = (
