@@ -101,9 +101,13 @@ class State(NamedTuple):
     """The variables that change with time.
 
     q, v (mode,). fx, fy (plate, node): contact force. bristle (plate, node, PARTS): deflections.
+    was_x, was_y (plate, node): displacements from the plate's centre at the last step, m.
     approach (plate, node): rate at first touch, m/s, 0 where a node is free.
     memory (element,). plate (plate, 4) and loose (mass, 4): x, y and their rates. slider (mass, 3):
-    displacement, rate and deflection.
+    displacement, rate and how far its bristle slid.
+
+    Bristles are bent by displacements, not by sums of rates: these are rates before the kick of a
+    step, and without half of each kick what sticks would be driven.
     """
 
     q: np.ndarray
@@ -111,6 +115,8 @@ class State(NamedTuple):
     fx: np.ndarray
     fy: np.ndarray
     bristle: np.ndarray
+    was_x: np.ndarray
+    was_y: np.ndarray
     approach: np.ndarray
     memory: np.ndarray
     plate: np.ndarray
@@ -180,21 +186,20 @@ def normal_force(table, share, depth, rate, approach):
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
-def dahl(stiffness, limit, deflection, speed, step):
-    """Deflection [m] of a Dahl bristle after a step of constant speed: integrated exactly."""
-    end = limit / stiffness
-    way = np.sign(speed)
+def dahl(end, deflection, slip):
+    """Deflection [m], `end` at most, of a Dahl bristle after a slip [m]: integrated exactly."""
+    way = np.sign(slip)
     deflection = min(max(deflection, -end), end)
-    return way * end + (deflection - way * end) * np.exp(-abs(speed) * step / end)
+    return way * end + (deflection - way * end) * np.exp(-abs(slip) / end)
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
-def friction_force(table, share, bristle, normal, speed, step, keep):
-    """Tangential force in N on the tube; bristle (PARTS,) is moved by a step where `keep`.
+def friction_force(table, share, bristle, normal, slip, speed, step, keep):
+    """Tangential force in N on the tube; bristle (PARTS,) is moved by a slip [m] where `keep`.
 
-    law 0: a Dahl bristle. 1: Coulomb friction smoothed by tanh, limited so that it can not reverse
-    the sliding within a step. 2: LuGre. 3: parallel Jenkins elements after Iwan. 4: a spring and
-    damper that slide at the limit.
+    speed: m/s, at the end of the step. law 0: a Dahl bristle. 1: Coulomb friction smoothed by tanh,
+    limited so that it can not reverse the sliding within a step. 2: LuGre. 3: parallel Jenkins
+    elements after Iwan. 4: a spring and damper that slide at the limit.
     """
     law = int(table[FRICTION_LAW])
     limit = table[MU] * normal
@@ -210,10 +215,10 @@ def friction_force(table, share, bristle, normal, speed, step, keep):
         return 0.0
     stiffness = share * table[BRISTLE]
     if law == 3:
-        return jenkins_force(stiffness, limit, bristle, speed, step, keep)
+        return jenkins_force(stiffness, limit, bristle, slip, keep)
     if law == 4:
         damper = table[STICK_TIME] * stiffness * speed
-        force = stiffness * (bristle[0] + step * speed) + damper
+        force = stiffness * (bristle[0] + slip) + damper
         force = min(max(force, -limit), limit)
         if keep:
             bristle[0] = (force - damper) / stiffness
@@ -221,7 +226,7 @@ def friction_force(table, share, bristle, normal, speed, step, keep):
     if law == 2:
         ratio = speed / table[STRIBECK_SPEED]
         limit *= 1.0 + (table[STATIC] - 1.0) * np.exp(-ratio * ratio)
-    moved = dahl(stiffness, limit, bristle[0], speed, step)
+    moved = dahl(limit / stiffness, bristle[0], slip)
     force = stiffness * moved
     if law == 2:
         force += table[STICK_TIME] * stiffness * (moved - bristle[0]) / step
@@ -231,18 +236,24 @@ def friction_force(table, share, bristle, normal, speed, step, keep):
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
-def jenkins_force(stiffness, limit, bristle, speed, step, keep):
+def jenkins_force(stiffness, limit, bristle, slip, keep):
     """Force in N of PARTS equal springs in parallel, which slide at 0.4, 0.8, 1.2 and 1.6 of their
     share of the limit.
     """
     force, each = 0.0, stiffness / PARTS
     for part in range(PARTS):
         end = 0.4 * (part + 1) * limit / stiffness
-        moved = min(max(bristle[part] + step * speed, -end), end)
+        moved = min(max(bristle[part] + slip, -end), end)
         force += each * moved
         if keep:
             bristle[part] = moved
     return -force
+
+
+@njit(fastmath=FAST, **NRT, inline="always")
+def slid(displacement, way, slip, end):
+    """How far [m] a Dahl bristle slid after a slip [m] to a displacement [m]; way: before it."""
+    return displacement - dahl(end, displacement - way - slip, slip)
 
 
 @njit(fastmath=FAST, **NRT, inline="always")
@@ -252,9 +263,9 @@ def element_force(law, p, d, v, memory, step, time):
     law: number of rig.LAWS. p: its parameters. d, v: displacement and rate.
 
     linear k, c; cubic k3; quadratic k2; saturation k, limit (smooth); coulomb limit, bristle
-    stiffness; clearance half gap, k; bouc_wen k, limit (makes the structure's spring k hysteretic);
-    one_sided k, distance; drag c; self_excited a, b (a v - b v³); parametric k, frequency [Hz],
-    phase [rad]; breathing k (taken from the structure while d > 0).
+    stiffness (its memory: how far it slid); clearance half gap, k; bouc_wen k, limit (makes the
+    structure's spring k hysteretic); one_sided k, distance; drag c; self_excited a, b (a v - b v³);
+    parametric k, frequency [Hz], phase [rad]; breathing k (taken from the structure while d > 0).
     """
     if law == 0:
         return -p[0] * d - p[1] * v, memory
@@ -266,18 +277,17 @@ def element_force(law, p, d, v, memory, step, time):
         ratio = p[0] * d / p[1]
         return -p[0] * d / np.sqrt(1.0 + ratio * ratio), memory
     if law == 4:
-        end, way = p[0] / p[1], np.sign(v)
-        memory = way * end + (memory - way * end) * np.exp(-abs(v) * step / end)
-        return -p[1] * memory, memory
+        memory = slid(d, memory, step * v, p[0] / p[1])
+        return -p[1] * (d - memory), memory
     if law == 5:
         over = max(0.0, d - p[0]) + min(0.0, d + p[0])
         return -p[1] * over, memory
     if law == 6:
-        # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²); the structure's own spring k d is removed
-        end = p[1] / p[0]
-        share = memory / end
-        memory += step * v * (1.0 - (0.5 + 0.5 * np.sign(v * memory)) * share * share)
-        return p[0] * (d - memory), memory
+        # z' = v (1 - (0.5 + 0.5 sign(v z)) (z / end)²) with z = d - memory; the structure's own
+        # spring k d is removed
+        share = (d - memory) * p[0] / p[1]
+        memory += step * v * (0.5 + 0.5 * np.sign(v * share)) * share * share
+        return p[0] * memory, memory
     if law == 7:
         return -p[0] * max(0.0, d - p[1]), memory
     if law == 8:
@@ -409,10 +419,13 @@ def lift_to_nodes(lift, p, amplitude, nodes):
 
 
 @njit(fastmath=FAST, **NRT)
-def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, approach, step, keep):
+def node_forces(
+    table, share, gap, ux, uy, moved_x, moved_y, rate_x, rate_y, bristle, approach, step, keep
+):
     """Force fx, fy in N on the tube of a node, and its rate of approach at first touch.
 
-    ux, uy: from the plate's centre, m. rate_x, rate_y: m/s. bristle (PARTS,) is moved where `keep`.
+    ux, uy: from the plate's centre, m. moved_x, moved_y: since the last step, m. rate_x, rate_y:
+    m/s. bristle (PARTS,) is moved where `keep`.
     """
     depth, nx, ny = obstacle(table, gap, ux, uy)
     if depth <= 0.0:
@@ -421,12 +434,14 @@ def node_forces(table, share, gap, ux, uy, rate_x, rate_y, bristle, approach, st
                 bristle[part] = 0.0
         return 0.0, 0.0, 0.0
     rate = nx * rate_x + ny * rate_y
+    slip = nx * moved_y - ny * moved_x
     if approach == 0.0:
-        approach = max(rate, SLOWEST_APPROACH)
+        approach, slip = max(rate, SLOWEST_APPROACH), 0.0
     force = normal_force(table, share, depth, rate, approach)
     if table[MU] == 0.0:
         return -force * nx, -force * ny, approach
-    along = friction_force(table, share, bristle, force, nx * rate_y - ny * rate_x, step, keep)
+    speed = nx * rate_y - ny * rate_x
+    along = friction_force(table, share, bristle, force, slip, speed, step, keep)
     return -force * nx - along * ny, -force * ny + along * nx, approach
 
 
@@ -449,7 +464,7 @@ def contact_forces(
     """Set load_y, load_x (row,) to the forces of all contacts on the shapes.
 
     place_y, place_x (row,): displacements of the shapes.
-    touching (plate,): set to 1.0 where a node touches.
+    touching (plate,): set to 1.0 where a node touches, to 0.5 where one is inside without a force.
     work (6, plate, 8): displacements x and y, the same with the residual, rates x and y.
     rates (2, row): of the shapes, x and y.
     """
@@ -507,6 +522,8 @@ def contact_forces(
                     gap,
                     ex[p, i],
                     ey[p, i],
+                    ux[p, i] - state.was_x[p, i],
+                    uy[p, i] - state.was_y[p, i],
                     wx[p, i] - state.plate[p, 2],
                     wy[p, i] - state.plate[p, 3],
                     state.bristle[p, i],
@@ -516,6 +533,7 @@ def contact_forces(
                 )
                 if last:
                     state.approach[p, i] = approach
+                    state.was_x[p, i], state.was_y[p, i] = ux[p, i], uy[p, i]
         for k in range(SHAPES):
             for i in range(NODES):
                 load_x[SHAPES * p + k] += contacts.lift_x[p, k, i] * fx[p, i]
@@ -523,6 +541,8 @@ def contact_forces(
         for i in range(NODES):
             if fx[p, i] != 0.0 or fy[p, i] != 0.0:
                 touching[p] = 1.0
+            elif state.approach[p, i] != 0.0:
+                touching[p] = max(touching[p], 0.5)
 
 
 @njit(fastmath=FAST, **NRT)
@@ -595,11 +615,10 @@ def local_kick(local, state, kick, step, time):
         state.loose[b, 1] += step * state.loose[b, 3]
     for b in range(len(local.slider)):
         speed = dot(local.slider_row[b], state.v) - state.slider[b, 1]
-        state.slider[b, 2] = dahl(
-            local.slider[b, 2], local.slider[b, 1], state.slider[b, 2], speed, step
-        )
-        apart = dot(local.slider_row[b], state.q) - state.slider[b, 0]
-        force = local.slider[b, 2] * state.slider[b, 2] + local.slider[b, 3] * apart
+        apart, way = dot(local.slider_row[b], state.q) - state.slider[b, 0], state.slider[b, 2]
+        way = slid(apart, way, step * speed, local.slider[b, 1] / local.slider[b, 2])
+        state.slider[b, 2] = way
+        force = local.slider[b, 2] * (apart - way) + local.slider[b, 3] * apart
         add(kick, local.slider_row[b], -force)
         state.slider[b, 1] += step * force / local.slider[b, 0]
         state.slider[b, 0] += step * state.slider[b, 1]
@@ -679,7 +698,7 @@ def march(
             touching,
         )
         for p in range(count):
-            touched[p] += touching[p]
+            touched[p] += touching[p] == 1.0
         if has_local:
             local_kick(local, state, extra, step, start + n * step)
         if n % stride == 0 and len(sensors):

@@ -103,7 +103,7 @@ def rest_state(reduced, imperfection, rng):
         np.zeros(modes),
         *np.zeros((2, plates, kernel.NODES)),
         np.zeros((plates, kernel.NODES, kernel.PARTS)),
-        np.zeros((plates, kernel.NODES)),
+        *np.zeros((3, plates, kernel.NODES)),
         np.zeros(len(reduced.local.law)),
         np.zeros((plates, 4)),
         np.zeros((len(reduced.local.loose), 4)),

@@ -80,7 +80,7 @@ def simulate(
         np.zeros(2 * modes),
         *np.zeros((2, len(stops), kernel.NODES)),
         np.zeros((len(stops), kernel.NODES, kernel.PARTS)),
-        np.zeros((len(stops), kernel.NODES)),
+        *np.zeros((3, len(stops), kernel.NODES)),
         np.zeros(len(laws)),
         np.zeros((len(stops), 4)),
         np.zeros((0, 4)),

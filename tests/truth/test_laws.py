@@ -32,7 +32,9 @@ def loop(law, amplitude, frequency=1.0, steps=20000, **columns):
         speed = (
             2.0 * np.pi * frequency * amplitude * np.cos(2.0 * np.pi * frequency * (n + 0.5) * step)
         )
-        force = kernel.friction_force(table, 1.0, bristle, LIMIT / 0.2, speed, step, True)
+        force = kernel.friction_force(
+            table, 1.0, bristle, LIMIT / 0.2, step * speed, speed, step, True
+        )
         energy -= 0.5 * (before + force) * speed * step if n >= steps else 0.0
         before = force
     return energy
@@ -79,6 +81,35 @@ def test_lugre_slides_slowly_at_its_static_friction():
     )
     assert slow == pytest.approx(1.5 * 4.0 * LIMIT * 1.0e-2, rel=1.0e-2)
     assert fast == pytest.approx(4.0 * LIMIT * 1.0e-2, rel=5.0e-2)
+
+
+@pytest.mark.parametrize(
+    ("law", "parameters"), [("coulomb", (1.0e3, 1.0e6)), ("bouc_wen", (1.0e6, 1.0e3))]
+)
+def test_bristle_that_sticks_is_a_spring(law, parameters):
+    """Bent by a sum of rates, it grew by 5/s until it slid, at however small a load."""
+    force = 1.0e-3 * np.random.default_rng(1).standard_normal(200000)
+    # an element of bouc_wen makes the structure's own spring hysteretic
+    own = 1.0e6 if law == "bouc_wen" else 0.0
+    x, _ = simulate(1.0, 1.0e4 + own, force, STEP, damping=20.0, laws=[(law, parameters)])
+    spring, _ = simulate(1.0, 1.01e6, force, STEP, damping=20.0)
+    assert np.std(x - spring) < 1.0e-3 * np.std(spring)
+
+
+def test_node_is_bent_by_what_it_moved_since_it_touches():
+    table = np.zeros(kernel.PLATE_COLUMNS)
+    table[[kernel.MU, kernel.STIFFNESS, kernel.BRISTLE]] = 1.0, 1.0e6, STIFFNESS
+    bristle, moved, fast = np.zeros(kernel.PARTS), 1.0e-8, 1.0
+
+    def along(approach, moved_x):
+        force = kernel.node_forces(
+            table, 1.0, 0.0, 0.0, 1.0e-4, moved_x, 0.0, fast, 0.0, bristle, approach, STEP, True
+        )
+        return force[0]
+
+    assert along(0.0, 1.0) == 0.0  # first touch: it moved before
+    assert along(1.0, 0.0) == 0.0
+    assert along(1.0, moved) == pytest.approx(-STIFFNESS * moved, rel=1.0e-3)
 
 
 def rebound(factor, exponent=1.0):
