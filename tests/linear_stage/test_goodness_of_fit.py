@@ -11,7 +11,7 @@ import pytest
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.geometry.centreline import build_centreline
-from vibroimpact.linear_stage import lowest_record, priors, workbench
+from vibroimpact.linear_stage import findings, lowest_record, priors, workbench
 from vibroimpact.linear_stage.acting_place import acting_place
 from vibroimpact.linear_stage.drift import drift_of
 from vibroimpact.linear_stage.findings import linear_findings
@@ -110,6 +110,26 @@ def test_structure_is_another_where_frequencies_tell(monkeypatch, modes, amount,
     monkeypatch.setattr(lowest_record, "LinearMisfit", lambda _: misfit)
     bench = SimpleNamespace(measured_fit=SimpleNamespace(modes=range(modes)))
     assert is_of_another_structure(bench) == wanted
+
+
+@pytest.mark.parametrize(("left_there", "told"), [(882.0, True), (1400.0, False)])
+def test_cause_that_takes_about_as_much_is_told_too(monkeypatch, left_there, told):
+    section = Mend("section", None, (0.72, 1.2), 727.0, 2)
+    length = Mend("length", "tube", 0.88, left_there, 1)
+    moved = SimpleNamespace(log_frequency=np.log([190.0]))
+    misfit = SimpleNamespace(
+        chi_square=6650.0,
+        count=20,
+        p=lambda *_: 0.0,
+        mends=[section, length, Mend("channel", "s1", None, 6600.0, 3)],
+        of_structure=[section, length],
+        measured=moved,
+        simulated=moved,
+    )
+    monkeypatch.setattr(findings, "LinearMisfit", lambda *_: misfit)
+    message = findings.misfit_row(None, None, None, "low")[0]["message"]
+    assert "bending stiffness), which takes 89% of it" in message
+    assert ("0.880 times what is stated), 87%" in message) == told
 
 
 @pytest.mark.parametrize(

@@ -217,11 +217,15 @@ def _does_not(misfit, bases, record, adopted=None):
             break
     mends = base.p(first.chi_square, first.freed) > priors.SIGNIFICANT
     alike = _as_good(base, first)
-    share = 1.0 - first.chi_square / base.chi_square
+    share = _taken(first, base)
     if mends:
         where = f"first look at {_listed(alike, base)}, which mends it{beside}"
     elif share > 0.5:
         where = f"first look at {_listed([first], base)}, which takes {share:.0%} of it"
+        for mend in base.of_structure:
+            own = _taken(mend, base)
+            if own > ABOUT_AS_MUCH * share and mend.kind not in (first.kind, "frequencies"):
+                where += f", or at {text_of(mend, base)}, {own:.0%}"
     else:
         where = (
             "no length, section, single mode or single channel mends half of it: first look at the"
@@ -237,6 +241,14 @@ def _does_not(misfit, bases, record, adopted=None):
         record,
         first.which if mends and first.kind in ("gain", "direction", "place") else None,
     )
+
+
+ABOUT_AS_MUCH = 0.9  # of the share that the best takes, where neither mends all
+
+
+def _taken(mend, misfit):
+    """Return the share of the chi-square of a LinearMisfit that a Mend takes away."""
+    return 1.0 - mend.chi_square / misfit.chi_square
 
 
 def _as_good(misfit, best):
