@@ -1,6 +1,5 @@
-"""Where model and measurement disagree: maps of D and z over record, channel and band.
-
-They are drawn before and after the model is completed.
+"""Where model and measurement disagree: maps of D and z over record, channel and band, before and
+after the model is completed.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, PALE, label_of
 
 QUANTITIES = (("D", "discrepancy_dB", "Discrepancy D"), ("z", "z", "Significance z"))
-STAGES = ("before", "after")
+MODELS = "left with the model as given, right with the completed one"
 LARGEST = {"D": 20.0, "z": 10.0}  # largest end of the colour scale
 SMALLEST = {"D": 3.0, "z": 4.0}  # smallest end of the colour scale
 ROW_IN = 0.155
@@ -21,26 +20,28 @@ COLOURS = "RdBu_r"  # red and blue are distinct with any colour vision; zero is 
 def map_figure(before, after):
     """Return [Sheet] of the maps.
 
-    before, after: Datasets with D, z, counted, band_Hz, record_name and channel_name, or None.
+    before, after: Datasets with D, z, counted, band_Hz, record_name and channel_name; None where
+    nothing was compared, and where nothing completes the model.
 
     Cells where the measurement is not 6 dB above its noise are grey.
     """
     rows = before.sizes["record"] * before.sizes["channel"] if before is not None else 4
+    maps = {"before": before} if after is None else {"before": before, "after": after}
     height = min(max(1.6 + 2.0 * (0.5 + ROW_IN * rows), 5.0), 22.0)
     caption = (
         "Measured over simulated band power (D, dB; mean over seeds) and its significance (z, in"
         " the standard deviations that the verdict is decided by: seeds, what two codes differ by,"
-        " damping that no record tells), by record and channel against frequency band:"
-        " left with the model as given, right with the completed one. Red:"
-        " the measurement is stronger; blue: the simulation is. Grey: the measurement is not 6 dB"
+        " damping that no record tells), by record and channel against frequency band: "
+        f"{MODELS if after is not None else 'with the model as given'}. Red: the measurement is"
+        " stronger; blue: the simulation is. Grey: the measurement is not 6 dB"
         " above its noise. Records that were held out of the fit are marked with *."
     )
     sheet = Sheet(
         "discrepancy_map",
         "Where measurement and model disagree",
         caption,
-        [[f"{name} {stage}" for stage in STAGES] for name, _, _ in QUANTITIES],
-        size=(11.0, height),
+        [[f"{name} {stage}" for stage in maps] for name, _, _ in QUANTITIES],
+        size=(11.0 if after is not None else 6.5, height),
         sharex=True,
         sharey=before is not None,
     )
@@ -48,21 +49,27 @@ def map_figure(before, after):
         limit = _limit(name, before)
         meshes = [
             _panel(
-                sheet, sheet.axes[f"{name} {stage}"], data, name, column, limit, f"{title}, {stage}"
+                sheet,
+                sheet.axes[f"{name} {stage}"],
+                data,
+                name,
+                column,
+                limit,
+                title if after is None else f"{title}, {stage}",
             )
-            for stage, data in zip(STAGES, (before, after), strict=True)
+            for stage, data in maps.items()
         ]
         mesh = next((mesh for mesh in meshes if mesh is not None), None)
         if mesh is not None:
             bar = sheet.colour_bar(
                 mesh,
-                [sheet.axes[f"{name} {stage}"] for stage in STAGES],
+                [sheet.axes[f"{name} {stage}"] for stage in maps],
                 column,
                 extend="both",
                 aspect=30,
             )
             bar.ax.grid(False)
-    for stage in STAGES:
+    for stage in maps:
         sheet.axes[f"D {stage}"].set_xlabel("")
     return [sheet]
 
@@ -86,12 +93,7 @@ def _panel(sheet, axes, data, name, column, limit, title):
     """Draw one map and return its mesh, or None where there is nothing to draw."""
     axes.set_title(title)
     if data is None:
-        sheet.note(
-            axes,
-            "no completed model" if title.endswith("after") else "no map: the campaign was refused",
-            "frequency_Hz",
-            "place_in_list",
-        )
+        sheet.note(axes, "no map: the campaign was refused", "frequency_Hz", "place_in_list")
         axes.set_yticks([])
         return None
     records, channels = (
@@ -131,5 +133,5 @@ def _panel(sheet, axes, data, name, column, limit, title):
         for place, channel in enumerate(channels)
     ]
     axes.set_yticks(np.arange(len(values)) + 0.5, labels, fontsize=6.5)
-    axes.tick_params(axis="y", length=0, labelleft=title.endswith("before"))
+    axes.tick_params(axis="y", length=0, labelleft=not title.endswith("after"))
     return mesh

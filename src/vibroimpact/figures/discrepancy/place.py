@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.effects.places import arc_length_m, place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 from vibroimpact.figures.labels import spread_labels
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.study.tube import view_axes
 from vibroimpact.figures.style import BLACK, BLUE, GREY, ORANGE, PALE
 from vibroimpact.geometry.centreline import build_centreline
@@ -20,6 +20,8 @@ from vibroimpact.geometry.support_spans import support_middles
 
 TUBES = ("u_tube", "path")
 LINE_POINTS = 300
+# Height of the figure: of title, labels and legend, beside the structure; least and largest.
+AROUND_IN, LEAST_IN, MOST_IN = 1.7, 2.6, 4.4
 ARROW = 0.07  # length of an arrow of a direction, of the largest extent drawn
 # Locations of measuring faults: the forces, the channels, or both.
 FORCES, CHANNELS = ("force", "force_and_responses"), ("responses", "force_and_responses")
@@ -41,6 +43,15 @@ class Places:
     def named(self):
         """Return {name: (3,)} of all that has a name."""
         return self.points | self.forces | self.channels | self.supports
+
+    def known(self):
+        """Return (point, 3) of all that has a place."""
+        return np.array([*self.named().values(), *([] if self.line is None else self.line)])
+
+    def tips(self, length):
+        """Return (tip, 3) of the arrows of channels and forces, of a length (m)."""
+        at = self.channels | self.forces
+        return np.array([at[name] + length * self.directions[name] for name in at])
 
     def of(self, effect):
         """Return [(3,)] where a FoundEffect acts, empty where that is the whole structure."""
@@ -102,15 +113,18 @@ def place_figure(config, data, effects):
     if effects:
         caption += ", in orange where the effect acts. What acts everywhere marks all of it"
     title = "Where it acts" if effects else "The structure as it was measured"
-    sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(7.6, 4.4))
-    axes = sheet.axes["main"]
     places = None if data is None or "channel_point" not in data else places_of(config, data)
-    known = [] if places is None else [*places.named().values(), *_line(places)]
-    if places is None or np.ptp(np.array(known), axis=0).max() == 0.0:
-        sheet.note(axes, "no places are known", "x_m", "z_m")
+    size = 0.0 if places is None else np.ptp(places.known(), axis=0).max()
+    if places is None or size == 0.0:
+        sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(WIDTH_IN, LEAST_IN))
+        sheet.note(sheet.axes["main"], "no places are known", "x_m", "z_m")
         return [sheet]
-    view = view_axes(np.array(known))[:2]
-    size = np.ptp(np.array(known), axis=0).max()
+    drawn = np.vstack([places.known(), places.tips(ARROW * size)])  # of a straight tube, the plane
+    view = view_axes(drawn)[:2]  # that its channels point in
+    across, up = np.ptp(drawn, axis=0)[list(view)]
+    height = np.clip(AROUND_IN + WIDTH_IN * up / max(across, 1e-3 * size), LEAST_IN, MOST_IN)
+    sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(WIDTH_IN, float(height)))
+    axes = sheet.axes["main"]
     columns = tuple("xyz"[axis] + "_m" for axis in view)
     _structure(sheet, axes, places, view, columns)
     for role, colour, marker in (("channels", BLUE, "o"), ("forces", BLACK, "s")):
@@ -123,15 +137,11 @@ def place_figure(config, data, effects):
             (role, colour, marker),
         )
     labels = [_marked(sheet, axes, places, effect, view, columns) for effect in effects]
-    axes.set_aspect("equal", adjustable="box")
+    axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.2, 0.12)  # the bars of supports reach beyond the tube
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     spread_labels(sheet.figure, [label for label in labels if label is not None])
     return [sheet]
-
-
-def _line(places):
-    return [] if places.line is None else places.line
 
 
 def _structure(sheet, axes, places, view, columns):
@@ -200,7 +210,7 @@ def _marked(sheet, axes, places, effect, view, columns):
     spots = places.of(effect)
     whole = not spots
     if whole:
-        spots = [*_line(places)] or [*places.channels.values()]
+        spots = [*places.channels.values()] if places.line is None else places.line
     across, up = (np.array(spots)[:, axis] for axis in view)
     style = {"linewidth": 9, "alpha": 0.35} if whole and places.line is not None else {}
     sheet.line(

@@ -17,10 +17,11 @@ def discrepancy_figures(results, config=None):
     """
     effects = results.verdict.shown_effects()
     named = [effect.id for effect in effects]
+    after = results.after if effects else None  # where nothing is added, it is the same again
     return [
         *place_figure(config, results.before, effects),
-        *map_figure(results.before, results.after),
-        *spectra_figure(results.before, results.after, results.verdict.regions),
+        *map_figure(results.before, after),
+        *spectra_figure(results.before, after, results.verdict.regions),
         *ranking_figure(results.ranking, named),
         *profiles_figure(results.candidates, effects),
     ]

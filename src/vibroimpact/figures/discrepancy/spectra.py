@@ -1,4 +1,4 @@
-"""Measured and simulated spectra before and after the model is completed, with seed scatter."""
+"""Measured and simulated spectra, before and after the model is completed, with seed scatter."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ STAGES = (("before", "model as given", ORANGE), ("after", "completed model", BLU
 def spectra_figure(before, after, regions=()):
     """Return [Sheet] with a row per channel and a column per record, for those that matter most.
 
-    before, after: Datasets of the maps, or None, with psd_frequency, psd_measured and
+    before, after: as of map_figure, with psd_frequency, psd_measured and
     psd_simulated_mean, _low, _high (record, channel, frequency), and optionally channel_unit
     (channel), m s-2 where it is missing.
     regions: those of verdict.json, shaded in their panels.
     """
     caption = (
-        "PSD, measured (black) and simulated: with the model as given (orange) and with the"
-        " completed one (blue); bands hold the spectra of the seeds. Records: the lowest load, the"
-        " highest fitted one, and the held-out one that disagrees most; channels: the one that"
-        " disagrees most, and the next that the lowest load moves beyond noise. Dotted: edges of"
-        " the compared bands."
+        "PSD, measured (black) and simulated: with the model as given (orange)"
+        f"{' and with the completed one (blue)' if after is not None else ''}; bands hold the"
+        " spectra of the seeds. Records: the lowest load, the highest fitted one, and the held-out"
+        " one that disagrees most; channels: the one that disagrees most, and the next that the"
+        " lowest load moves beyond noise. Dotted: edges of the compared bands."
     )
     if before is None or "psd_measured" not in before:
         sheet = Sheet("discrepancy_psd", "Measured and simulated spectra", caption)
@@ -44,7 +44,7 @@ def spectra_figure(before, after, regions=()):
     mosaic = [[f"{record} {channel}" for record in records] for channel in channels]
     sheet = Sheet(
         "discrepancy_psd",
-        "Measured and simulated spectra, before and after",
+        f"Measured and simulated spectra{', before and after' if after is not None else ''}",
         caption,
         mosaic,
         size=(1.2 + 3.7 * len(records), 0.9 + 2.9 * len(channels)),
