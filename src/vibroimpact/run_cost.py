@@ -12,15 +12,17 @@ from typing import Any
 
 from vibroimpact.records import read_json, write_text
 
-# {"records": number of records that this process has simulated}
-SIMULATED = {"records": 0}
+# {"records": number of records that this process has simulated, "steps": of their time steps, known
+# of the records of a search alone}
+SIMULATED = {"records": 0, "steps": 0}
 COUNTING = Lock()
 
 
-def count_simulated(records: int) -> None:
-    """Add to the number of simulated records."""
+def count_simulated(records: int, steps: int = 0) -> None:
+    """Add to the numbers of simulated records and of their time steps."""
     with COUNTING:
         SIMULATED["records"] += records
+        SIMULATED["steps"] += steps
 
 
 class Meter:

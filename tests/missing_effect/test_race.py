@@ -18,10 +18,13 @@ from vibroimpact.missing_effect.alike import (
 )
 from vibroimpact.missing_effect.effort import Effort
 from vibroimpact.missing_effect.first_points import first_points
+from vibroimpact.missing_effect.gauss_newton import descend
 from vibroimpact.missing_effect.race import leaders, look_wider, race
 from vibroimpact.missing_effect.screening import led
 from vibroimpact.missing_effect.search import Search
 from vibroimpact.missing_effect.two_effects import exchanged_too, parts_alone
+from vibroimpact.missing_effect.verdict import ended_early
+from vibroimpact.run_cost import count_simulated
 
 VALUES, NOISE = 200, 1.0e-2
 AXES = np.linalg.qr(np.random.default_rng(9).standard_normal((VALUES, 6)))[0].T
@@ -37,6 +40,7 @@ SCALES = (
     "tube_translation",
     "cubic",
 )
+STEPS = 10**6  # of a run
 SPENT = Effort(compared_s=10.0, rounds=8, width=3, pairs=2)
 
 
@@ -56,6 +60,7 @@ class Made(Search):
     """A Search whose runs are looked up."""
 
     def _changes(self, candidate, unit, first_seed):
+        count_simulated(1, STEPS)
         mean = sum(changed(part.name, own) for part, own in candidate.parts(unit))
         signs = np.random.default_rng(int(1.0e6 * unit[0])).choice([-1.0, 1.0], VALUES)
         return mean + np.sqrt(NOISE) * np.outer([1.0, -1.0], signs)
@@ -106,6 +111,21 @@ def test_wider_look_is_at_what_did_nothing_so_far(searched):
 def test_what_changes_nothing_that_is_missing_is_not_run(searched):
     race(searched, SPENT)
     assert searched.trials[FRICTION].refined == 0
+
+
+def test_nothing_is_run_beyond_what_is_to_be_spent(searched):
+    ran = searched.ran
+    searched.most = ran + STEPS
+    assert not searched.over and ended_early(searched) == []
+    race(searched, SPENT)
+    assert searched.over and ran < searched.ran <= ran + 2 * SPENT.width * STEPS
+    known = searched.ran
+    similar_too(searched, STIFFNESS)
+    descend(searched, STIFFNESS)
+    searched.run([(f"{STIFFNESS}+{FRICTION}", np.array([[0.5, 0.5]]))])
+    assert searched.ran == known and leaders(searched, 1) == [STIFFNESS]
+    (row,) = ended_early(searched)
+    assert f"after {known / 1.0e6:.0f} million time steps" in row["message"]
 
 
 def test_each_of_two_effects_is_run_alone(searched):

@@ -91,10 +91,6 @@ class SpectraComparison:
         vector = psd**EXPONENT
         return vector / self.length, EXPONENT * vector / psd * slope / self.length
 
-    def coarse_cost(self, observed: Observed) -> "CoarseCost":
-        """Return the cost of stiffnesses on the bins themselves, without the window's leakage."""
-        return CoarseCost(self, observed)
-
     def fit(
         self,
         search: SupportSearch,

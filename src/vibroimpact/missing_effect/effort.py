@@ -2,22 +2,26 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class Effort:
     """compared_s: of every record that is compared; rounds: of the race, at most; width:
     explanations in a round; pairs: second effects that are tried beside each leading one, and
-    explanations that are looked at more widely where nothing explains.
+    explanations that are looked at more widely where nothing explains; steps: time steps of all
+    simulated records of the search, beyond which nothing more is run.
     """
 
     compared_s: float
     rounds: int
     width: int
     pairs: int
+    steps: float = np.inf
 
 
 EFFORTS = {
-    "quick": Effort(10.0, 1, 3, 0),
-    "standard": Effort(16.0, 4, 3, 6),
+    "quick": Effort(10.0, 1, 3, 0, 1.0e9),
+    "standard": Effort(16.0, 4, 3, 6, 2.5e9),
     "thorough": Effort(30.0, 8, 6, 12),
 }

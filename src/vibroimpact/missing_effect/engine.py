@@ -142,7 +142,7 @@ class Engine:
             if bench.reads_lowest:
                 records = records[records != bench.signals.lowest]
             null = null_of(bench, records, 0, self.threads)
-        return Search(bench, null, prepared.scales, threads=self.threads)
+        return Search(bench, null, prepared.scales, threads=self.threads, most=self.spent.steps)
 
     def refine(self, search: Search) -> None:
         """Run what may be the answer until it is known, its other places, what is like it and the

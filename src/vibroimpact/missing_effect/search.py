@@ -10,6 +10,7 @@ from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.linear_stage.candidates import Candidate, Pair, candidate_named
 from vibroimpact.linear_stage.workbench import Workbench
+from vibroimpact.run_cost import SIMULATED
 
 from .effect_directions import EffectDirections, seen, told_of
 from .evidence import SomethingElse, fit
@@ -26,7 +27,8 @@ Row = tuple[str, np.ndarray]  # an explanation's name, units (point, parameter)
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
     Fits {name: Fit}. looked: see learn; None: all that runs change is known. threads: runs at a
-    time.
+    time; most: time steps beyond which nothing more is run; before: those that were
+    counted before the search.
     """
 
     bench: Workbench
@@ -37,6 +39,18 @@ class Search:
     seed: int = 1000
     looked: EffectDirections | None = None
     threads: int = 1
+    most: float = np.inf
+    before: int = field(default_factory=lambda: SIMULATED["steps"])
+
+    @property
+    def ran(self) -> int:
+        """Return how many time steps were run."""
+        return SIMULATED["steps"] - self.before
+
+    @property
+    def over(self) -> bool:
+        """Return whether nothing more is run."""
+        return self.ran >= self.most
 
     def run(self, rows: list[Row]) -> None:
         """Run explanations at units and fit them again."""
@@ -65,12 +79,14 @@ class Search:
         seeds = max(1, LANES // len(self.null.records))
         jobs = []
         for name, units in rows:
-            for unit in np.atleast_2d(units):
-                jobs.append((candidate_named(name), unit, self.seed + seeds * len(jobs)))
+            candidate = candidate_named(name)
+            self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
+            for unit in () if self.over else np.atleast_2d(units):
+                jobs.append((candidate, unit, self.seed + seeds * len(jobs)))
         self.seed += seeds * len(jobs)
         found = side_by_side(lambda job: self._tried(*job), jobs, self.threads)
         for (candidate, unit, _), changes in zip(jobs, found, strict=True):
-            trial = self.trials.setdefault(candidate.name, Trial.empty(candidate, self.null.values))
+            trial = self.trials[candidate.name]
             if isinstance(changes, str):
                 trial.failed.append((unit, changes))
             else:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.discrepancy import discrepancy_map as mapping
 from vibroimpact.discrepancy import power_balance
 from vibroimpact.discrepancy.completed_model import not_offered
@@ -159,6 +160,7 @@ def evidence_rows(
                 closed.after.compared[null.records],
             )
             + left_out(search)
+            + ended_early(search)
         ),
     }
 
@@ -183,16 +185,27 @@ def by_chance(
 def left_out(search: Search) -> list[Values]:
     """Return the rows of checks for explanations that could not be run at all."""
     return [
-        {
-            "check": "left out",
-            "level": "warn",
-            "record": None,
-            "channel": None,
-            "message": f"{name} could not be run and is not among the explanations:"
-            f" {trial.failed[0][1]}",
-        }
+        check_row(
+            "left out",
+            "warn",
+            f"{name} could not be run and is not among the explanations: {trial.failed[0][1]}",
+        )
         for name, trial in search.trials.items()
         if trial.failed and not len(trial.noise)
+    ]
+
+
+def ended_early(search: Search) -> list[Values]:
+    """Return the row of checks for a search that was ended by its Effort, none of another one."""
+    if not search.over:
+        return []
+    return [
+        check_row(
+            "search ended",
+            "warn",
+            f"The search ended after {search.ran / 1.0e6:.0f} million time steps, before all was"
+            " run that may explain more: effort=thorough runs on.",
+        )
     ]
 
 
