@@ -40,7 +40,7 @@ SCALES = (
     "tube_translation",
     "cubic",
 )
-STEPS = 10**6  # of a run
+STEPS = 10**9  # of a run
 SPENT = Effort(compared_s=10.0, rounds=8, width=3, pairs=2)
 
 
@@ -125,7 +125,7 @@ def test_nothing_is_run_beyond_what_is_to_be_spent(searched):
     searched.run([(f"{STIFFNESS}+{FRICTION}", np.array([[0.5, 0.5]]))])
     assert searched.ran == known and leaders(searched, 1) == [STIFFNESS]
     (row,) = ended_early(searched)
-    assert f"after {known / 1.0e6:.0f} million time steps" in row["message"]
+    assert f"after {known / 1.0e9:.0f} thousand million time steps" in row["message"]
 
 
 def test_each_of_two_effects_is_run_alone(searched):

@@ -333,7 +333,7 @@ class Workbench:
         chain = [fault for fault in (self.late, self.measuring, measuring) if fault is not None]
         factor = np.prod([fault.force_gain for fault in chain])
         forces = forces if factor == 1.0 else Forces(self.signals.force / factor, schedule)
-        count_simulated(0, len(runs) * schedule.steps)
+        count_simulated(0, len(runs) * schedule.steps * len(model.omega))
         try:
             responses = simulate_records(model, schedule, forces, runs, self.signals.kinds)
         except IntegrationError:

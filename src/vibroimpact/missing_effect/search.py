@@ -27,7 +27,7 @@ Row = tuple[str, np.ndarray]  # an explanation's name, units (point, parameter)
 class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
     Fits {name: Fit}. looked: see learn; None: all that runs change is known. threads: runs at a
-    time; most: time steps beyond which nothing more is run; before: those that were
+    time; most: time steps of modes beyond which nothing more is run; before: those that were
     counted before the search.
     """
 
@@ -44,7 +44,7 @@ class Search:
 
     @property
     def ran(self) -> int:
-        """Return how many time steps were run."""
+        """Return how many time steps of modes were run."""
         return SIMULATED["steps"] - self.before
 
     @property

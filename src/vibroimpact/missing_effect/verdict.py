@@ -203,8 +203,8 @@ def ended_early(search: Search) -> list[Values]:
         check_row(
             "search ended",
             "warn",
-            f"The search ended after {search.ran / 1.0e6:.0f} million time steps, before all was"
-            " run that may explain more: effort=thorough runs on.",
+            f"The search ended after {search.ran / 1.0e9:.0f} thousand million time steps of"
+            " modes, before all was run that may explain more: effort=thorough runs on.",
         )
     ]
 
