@@ -44,6 +44,23 @@ def test_place_in_words():
     assert places.place_in_words(places.between(1.7175)) == "1.7175 m along the tube"
 
 
+@pytest.mark.parametrize(
+    ("location", "words"),
+    [
+        ("all", ""),
+        ("tube", ""),
+        ("plate_1", " at plate_1"),
+        ("about_tube", " about the tube's axis"),
+        ("along_x", " along x"),
+        ("mode_3", " of mode 3"),
+        ("responses", " of all responses"),
+        (places.between(1.7175), " at 1.7175 m along the tube"),
+    ],
+)
+def test_place_in_a_sentence(location, words):
+    assert places.at_place(location) == words
+
+
 @pytest.mark.parametrize("angle", [-90.0, -9.5, 0.0, 30.0])
 def test_place_tells_a_direction(angle):
     location = places.between(0.8319, angle)

@@ -22,6 +22,18 @@ SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is 
 BETWEEN = re.compile(r"arc_([\d_]+)mm(?:_turned_(m?[\d_]+)deg)?")
 ALONG = "along_tube"  # of an effect whose place on the tube is one of its parameters
 TURNED = "along_tube_turned"  # the same, and its direction across the tube
+MODE = re.compile(r"mode_(\d+)")  # the location of an effect on one mode
+WHOLE_CHAIN = ("responses", "force_and_responses")  # locations of a fault of all channels
+IN_WORDS = {
+    ALONG: "a place along the tube",
+    TURNED: "a place along the tube, in any direction",
+    "tube": "the whole tube",
+    "about_z": "about the z axis",
+    "about_tube": "about the tube's axis",
+    **{f"along_{axis}": f"along {axis}" for axis in "xyz"},
+    "responses": "all responses",
+    "force_and_responses": "the force and all responses",
+}
 TUBES: dict[str, type[UTube] | type[Path]] = {"u_tube": UTube, "path": Path}
 
 
@@ -151,13 +163,21 @@ def place_in_words(location: str) -> str:
     """Return a location as a reader is told it: a place that no point names by where it is."""
     arc_length, angle = arc_length_m(location), turned_deg(location)
     if arc_length is None:
-        words = {
-            ALONG: "a place along the tube",
-            TURNED: "a place along the tube, in any direction",
-        }
-        return words.get(location, location)
+        return IN_WORDS.get(location) or MODE.sub(r"mode \1", location)
     turned = "" if angle is None else f", {angle:.0f} degrees from the force's direction"
     return f"{arc_length:.4f} m along the tube{turned}"
+
+
+def at_place(location: str) -> str:
+    """Return a location as it follows an effect in a sentence, after a space; empty for all of the
+    structure or of its supports.
+    """
+    if location in ("", "all", "tube"):
+        return ""
+    words = place_in_words(location)
+    if words.startswith(("about ", "along ")):
+        return f" {words}"
+    return f" {'of' if MODE.fullmatch(location) or location in WHOLE_CHAIN else 'at'} {words}"
 
 
 def length_m(values: Values) -> float | None:

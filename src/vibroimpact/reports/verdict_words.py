@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from vibroimpact.display_units import display_unit
-from vibroimpact.effects.places import place_in_words
+from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict
 
@@ -81,11 +81,14 @@ def _with_parameters(effect):
         f" {digits(value['low'])} and {digits(value['high'])}"
         for name, value in ((name, for_reading(row)) for name, row in effect.parameters.items())
     )
-    place = f" at {place_in_words(effect.location)}" if effect.location not in ("", "all") else ""
+    place = at_place(effect.location)
     told = f"{effects_in_words([effect.id])}{place}" + (f" ({values})" if values else "")
     if effect.law_fits == "no":
         family = effect.family or effects_in_words([effect.id])
-        return f"{family}{place}, by no law that was tried; the nearest is {told}"
+        return (
+            f"something of the family “{family}”{place}; of its laws {told} comes nearest and"
+            " leaves more than chance does"
+        )
     return told
 
 
