@@ -427,7 +427,12 @@ def test_probabilities_are_bars_and_are_explained():
     page = discrepancy_page("campaign", verdict, [])
     bars = [int(width) for width in re.findall(r'class="bar" style="width: (\d+)px', page)]
     assert bars == [223, 12, 5, 0]  # of 240 pixels, the most probable first
-    for part in ("93 %", "something that is not in the catalogue", "nine in ten", "than chance does"):
+    for part in (
+        "93 %",
+        "something that is not in the catalogue",
+        "nine in ten",
+        "than chance does",
+    ):
         assert part in page, part
     without = discrepancy_page("campaign", made_up_verdict(), [])
     assert "nine in ten" not in without and 'class="bar"' not in without

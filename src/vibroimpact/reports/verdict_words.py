@@ -81,15 +81,14 @@ def _with_parameters(effect):
         f" {digits(value['low'])} and {digits(value['high'])}"
         for name, value in ((name, for_reading(row)) for name, row in effect.parameters.items())
     )
-    place = at_place(effect.location)
-    told = f"{effects_in_words([effect.id])}{place}" + (f" ({values})" if values else "")
+    place, words = at_place(effect.location), effects_in_words([effect.id])
+    told = f" ({values})" if values else ""
     if effect.law_fits == "no":
-        family = effect.family or effects_in_words([effect.id])
         return (
-            f"something of the family “{family}”{place}; of its laws {told} comes nearest and"
-            " leaves more than chance does"
+            f"something of the family “{effect.family or words}”{place}: of its laws"
+            f" {words}{told} comes nearest and leaves more than chance does"
         )
-    return told
+    return f"{words}{place}{told}"
 
 
 def withdrawn_sentence(verdict: Verdict) -> str:
