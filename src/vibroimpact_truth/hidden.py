@@ -316,10 +316,12 @@ def wrong_section(rig, diameter=1.0, wall=1.0):
 
 
 def wrong_length(rig, factor=1.03):
-    """Length of a straight beam, or of both legs, times a factor that the model does not know."""
+    """Length of a straight beam, or of both legs, times a factor that the model does not know. The
+    drive stays at the same share of it, as channels do.
+    """
     tube = rig.tube
-    name = "leg" if hasattr(tube, "leg") else "length"
-    rig.tube = tube.with_changes(**{name: factor * getattr(tube, name)})
+    names = ("leg",) if hasattr(tube, "leg") else ("length", "drive")
+    rig.tube = tube.with_changes(**{name: factor * getattr(tube, name) for name in names})
 
 
 EFFECTS = {

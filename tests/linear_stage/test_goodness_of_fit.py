@@ -133,16 +133,17 @@ def test_cause_that_takes_about_as_much_is_told_too(monkeypatch, left_there, tol
 
 
 @pytest.mark.parametrize(
-    ("name", "left_there", "wanted"),
+    ("name", "left_there", "chance", "wanted"),
     [
-        ("fluid_added_mass_damping@tube+sensor_gain@force", 115.0, True),
-        ("fluid_added_mass_damping@tube+sensor_gain@force", 130.0, False),
-        ("fluid_added_mass_damping@tube", 115.0, False),
+        ("fluid_added_mass_damping@tube+sensor_gain@force", 115.0, 0.3, True),
+        ("fluid_added_mass_damping@tube+sensor_gain@force", 130.0, 0.3, False),
+        ("fluid_added_mass_damping@tube", 115.0, 0.3, False),
+        ("fluid_added_mass_damping@tube", 115.0, 1.0e-9, True),
     ],
 )
-def test_one_cause_is_preferred_to_two_effects(monkeypatch, name, left_there, wanted):
+def test_one_cause_is_preferred_to_two(monkeypatch, name, left_there, chance, wanted):
     before = SimpleNamespace(of_structure=[SimpleNamespace(chi_square=left_there)])
-    after = SimpleNamespace(chi_square=124.0)
+    after = SimpleNamespace(chi_square=124.0, p=lambda: chance)
     monkeypatch.setattr(lowest_record, "misfits", lambda *_: (before, after))
     bench = SimpleNamespace(linear_stage=True)
     assert lowest_record.structure_says_as_much(bench, None, {"name": name}) == wanted

@@ -220,12 +220,15 @@ def _does_not(misfit, bases, record, adopted=None):
     share = _taken(first, base)
     if mends:
         where = f"first look at {_listed(alike, base)}, which mends it{beside}"
-    elif share > 0.5:
+        if beside:  # one cause may take most of what these two do
+            where += "".join(
+                f"; or, without that, at {text}" for text in _of_structure(bases[0], HALF)
+            )
+    elif share > HALF:
         where = f"first look at {_listed([first], base)}, which takes {share:.0%} of it"
-        for mend in base.of_structure:
-            own = _taken(mend, base)
-            if own > ABOUT_AS_MUCH * share and mend.kind not in (first.kind, "frequencies"):
-                where += f", or at {text_of(mend, base)}, {own:.0%}"
+        where += "".join(
+            f", or at {text}" for text in _of_structure(base, ABOUT_AS_MUCH * share, first.kind)
+        )
     else:
         where = (
             "no length, section, single mode or single channel mends half of it: first look at the"
@@ -243,6 +246,18 @@ def _does_not(misfit, bases, record, adopted=None):
     )
 
 
+def _of_structure(misfit, least, known=""):
+    """Return [text] of the lengths and sections, but for a kind that is known, that take more than
+    a share `least` of the chi-square of a LinearMisfit.
+    """
+    return [
+        f"{text_of(mend, misfit)}, {_taken(mend, misfit):.0%}"
+        for mend in misfit.of_structure
+        if _taken(mend, misfit) > least and mend.kind not in (known, "frequencies")
+    ]
+
+
+HALF = 0.5
 ABOUT_AS_MUCH = 0.9  # of the share that the best takes, where neither mends all
 
 

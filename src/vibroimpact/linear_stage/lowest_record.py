@@ -244,14 +244,17 @@ def structure_says_as_much(
     bench: Workbench, fresh: Callable[[], Workbench], adopted: dict[str, Any]
 ) -> bool:
     """Return whether another length or section, one cause, leaves no more of the lowest record than
-    two effects that were adopted. Arguments as in misfits.
+    two effects that were adopted, or than one that leaves more than chance. Arguments as in
+    misfits.
 
     A fluid beside a gain of the force shifts all modes and scales all responses as another section
     does.
     """
-    if "+" not in adopted["name"] or not bench.linear_stage:
+    if not bench.linear_stage:
         return False
     before, after = misfits(bench, fresh, adopted)
+    if "+" not in adopted["name"] and after.p() > priors.SIGNIFICANT:
+        return False
     return min(mend.chi_square for mend in before.of_structure) <= after.chi_square
 
 
