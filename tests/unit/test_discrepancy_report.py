@@ -449,6 +449,13 @@ def test_a_model_that_makes_others_worse_is_told_not_offered():
     assert "makes records worse" in page  # its row among those ruled out
 
 
+@pytest.mark.parametrize(
+    ("chance", "words"), [(0.2, "within the scatter of its seeds"), (1.0e-9, "two right models")]
+)
+def test_nothing_missing_is_said_with_its_chance(chance, words):
+    assert words in verdict_sentence(made_up_verdict("none", p_global_before=chance))
+
+
 def test_cost_of_all_stages_is_on_the_page():
     stages = {"null": {"cpu_seconds": 10.0, "simulations": 72}}
     cost = {"cpu_seconds": 10.0, "simulations": 72, "by_stage": stages}

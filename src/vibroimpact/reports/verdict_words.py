@@ -38,10 +38,7 @@ def verdict_sentence(verdict: Verdict) -> str:
     other = next((row.message for row in verdict.checks if row.check == "linear model"), "")
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
-        "none": (
-            "No effect is missing: the model explains the campaign within the scatter of its seeds"
-            f" (p-value of all differences: {probability_text(verdict.p_global_before)})."
-        ),
+        "none": _nothing_missing(verdict.p_global_before),
         "named": f"The model lacks {named}.{shrinks}{others}",
         "partly_explained": (
             f"The model lacks {named}, and something else that is not in the catalogue: the"
@@ -64,6 +61,23 @@ def verdict_sentence(verdict: Verdict) -> str:
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
     return sentences[verdict.verdict]
+
+
+def _nothing_missing(chance):
+    """Return the sentence of the verdict `none`; chance: p-value of all differences."""
+    told = f"(p-value of all differences: {probability_text(chance)})"
+    if chance is None or chance > BEYOND_CHANCE:
+        return (
+            "No effect is missing: the model explains the campaign within the scatter of its seeds"
+            f" {told}."
+        )
+    return (
+        "No effect is found: the differences are beyond the scatter of seeds"
+        f" {told}, and no larger than those between two right models of one structure."
+    )
+
+
+BEYOND_CHANCE = 0.01
 
 
 def sets_in_words(sets: Sequence[Sequence[str]]) -> str:
