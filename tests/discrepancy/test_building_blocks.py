@@ -97,6 +97,9 @@ def test_closed_fraction_is_that_of_the_excess():
     assert excess(5.0, 3.0) == pytest.approx(4.0)
     assert closed_fraction(5.0, np.hypot(3.0, 1.0), 3.0) == pytest.approx(0.75)
     assert closed_fraction(3.1, 3.0, 3.0) is None
+    # a model whose own runs differ by as much says nothing of what is added
+    assert closed_fraction(2.23, 2.25, 1.52, 2.13) is None
+    assert closed_fraction(5.0, np.hypot(3.0, 1.0), 3.0, 4.0) == pytest.approx(1.0 - 1.0 / 3.0)
 
 
 def test_floor_of_independent_seeds_is_root_two_of_their_scatter():

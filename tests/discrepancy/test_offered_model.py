@@ -36,4 +36,5 @@ def test_file_says_which_records_a_model_makes_worse():
 def test_what_is_left_within_chance_is_no_growth():
     assert makes_worse(split(8.9, 10.5)) and not makes_worse(split(8.9, 8.8))
     assert not makes_worse(split(1.25, 1.3)) and makes_worse(split(1.25, 2.0))
+    assert not makes_worse(split(2.23, 2.25, 1.52))  # beyond the floor, and no more than before
     assert not makes_worse({"before_dB": None, "after_dB": None, "floor_dB": None})

@@ -35,25 +35,30 @@ def excess(distance: float, floor: float) -> float:
     return float(np.sqrt(max(0.0, distance**2 - floor**2)))
 
 
-def closed_fraction(before: float, after: float, floor: float) -> float | None:
-    """Return 1 - excess after / excess before; None where the excess before is negligible.
+def closed_fraction(
+    before: float, after: float, floor: float, floor_before: float | None = None
+) -> float | None:
+    """Return 1 - excess after / excess before; None where the excess before is negligible: then the
+    records tell nothing of what is added.
 
-    before, after: distances in dB. floor: dB.
+    before, after: distances in dB. floor, floor_before: dB, of the model after and before, the same
+    where None.
     """
-    least = priors.NO_EXCESS * floor
-    first = excess(before, floor)
-    return None if first <= least else 1.0 - excess(after, floor) / first
+    given = floor if floor_before is None else floor_before
+    first = excess(before, given)
+    return None if first <= priors.NO_EXCESS * given else 1.0 - excess(after, floor) / first
 
 
 def makes_worse(row: dict[str, Any]) -> bool:
-    """Return whether the misfit with the completed model is larger than before and beyond chance.
+    """Return whether the misfit with the completed model is larger than before, and than its floor,
+    by more than chance.
 
     row: {before_dB, after_dB, floor_dB}.
     """
     if row["after_dB"] is None:
         return False
-    remaining = excess(row["after_dB"], row["floor_dB"])
-    return row["after_dB"] > row["before_dB"] and remaining > priors.NO_EXCESS * row["floor_dB"]
+    known = max(row["before_dB"], row["floor_dB"])
+    return excess(row["after_dB"], known) > priors.NO_EXCESS * row["floor_dB"]
 
 
 def floor_of(power: np.ndarray, chosen: np.ndarray) -> float:
@@ -75,30 +80,27 @@ def misfit_of(
     chosen: np.ndarray,
     before: np.ndarray,
     after: np.ndarray,
-    completed: np.ndarray,
 ) -> dict[str, float | None]:
     """Return {before_dB, after_dB, floor_dB, closed_fraction} on some records.
 
-    chosen (record, channel, band) bool, before, after (record, feature): cells and means over seeds
-    of all records. completed (record, seed, feature): of the completed model. The mean of several
-    seeds scatters less than one seed: the distance from measurement to mean is corrected to that of
-    two single runs.
+    chosen (record, channel, band) bool: cells of all records; before, after (record, seed,
+    feature): runs of the model as given and of the completed one. floor_dB is that of the completed
+    one; what the model as given is off by counts beyond its own floor.
+
+    The mean of several seeds scatters less than one seed: the distance from measurement to mean is
+    corrected to that of two single runs.
     """
-    layout = bench.layout
+    layout, inside = bench.layout, chosen[records]
     measured = layout.power(bench.measured_features)[records]
-    inside = chosen[records]
-    seeds = completed.shape[1]
-    floor = floor_of(layout.power(completed)[records], inside)
-    own = floor**2 / 2.0 * (1.0 - 1.0 / seeds)
-    before_dB, after_dB = (
-        float(
-            np.hypot(level_distance(measured - layout.power(mean)[records], inside), np.sqrt(own))
-        )
-        for mean in (before, after)
-    )
+    away, floors = [], []
+    for runs in (before, after):
+        power, seeds = layout.power(runs)[records], runs.shape[1]
+        floors.append(floor_of(power, inside))
+        own = floors[-1] * np.sqrt((1.0 - 1.0 / seeds) / 2.0)
+        away.append(float(np.hypot(level_distance(measured - power.mean(axis=1), inside), own)))
     return {
-        "before_dB": before_dB,
-        "after_dB": after_dB,
-        "floor_dB": floor,
-        "closed_fraction": closed_fraction(before_dB, after_dB, floor),
+        "before_dB": away[0],
+        "after_dB": away[1],
+        "floor_dB": floors[1],
+        "closed_fraction": closed_fraction(away[0], away[1], floors[1], floors[0]),
     }

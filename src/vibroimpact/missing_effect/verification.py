@@ -75,8 +75,7 @@ def misfits(whole: Workbench, before: Verified, after: Verified) -> dict[str, An
                 whole,
                 records,
                 cells,
-                before.features.mean(axis=1),
-                after.features.mean(axis=1),
+                before.features,
                 after.features,
             )
             if len(records)
@@ -166,10 +165,10 @@ def telling_record(closed: Closing) -> str | None:
     missing is looked for with that record, and verified on the rest.
     """
     whole, features = closed.benches[0], closed.before.features
-    cells, mean = counted(whole) & _repeat(whole, closed.before), features.mean(axis=1)
+    cells = counted(whole) & _repeat(whole, closed.before)
     most, name = 1.0, None
     for record in whole.signals.holdout():
-        row = misfit.misfit_of(whole, np.array([record]), cells, mean, mean, features)
+        row = misfit.misfit_of(whole, np.array([record]), cells, features, features)
         before, floor = float(row["before_dB"] or 0.0), float(row["floor_dB"] or 0.0)
         share = misfit.excess(before, floor) / max(floor, LEAST_DB)
         if share > most:
