@@ -59,6 +59,18 @@ def test_unseen_modes_scatter_as_their_priors():
     assert common[0, 1] > 0.9  # one cause
 
 
+@pytest.mark.parametrize("seems", [0.1, 2.0])
+def test_untold_damping_is_off_by_what_it_seems(seems):
+    bench = bench_with(told=True)
+    bench.modes_told = False  # the response is nonlinear, as that to a drag is at any load
+    bench.measured_fit.log_damping = np.array([-seems, seems])
+    known = min(seems, -np.log(priors.UNSEEN_DAMPING))
+    wanted = np.hypot([known, known, np.log(priors.UNSEEN_DAMPING)], priors.DAMPING_SD)
+    damping = np.log(scattered(bench)["damping"])
+    assert damping.std(axis=0) == pytest.approx(wanted, rel=0.05)
+    assert np.corrcoef(damping.T)[0, 2] > 0.5  # one cause
+
+
 def test_seen_modes_are_where_the_lowest_record_saw_them():
     shift, scatter = 0.004, 4.0e-4
     rows = scattered(bench_with(told=True, scatter=scatter, shift=shift))

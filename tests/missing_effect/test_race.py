@@ -41,6 +41,7 @@ SCALES = (
     "cubic",
 )
 STEPS = 10**9  # of a run
+PLATES = {"supports": [{"name": "left"}, {"name": "right"}]}
 SPENT = Effort(compared_s=10.0, rounds=8, width=3, pairs=2)
 
 
@@ -78,7 +79,7 @@ def searched():
 
 def test_law_that_did_nothing_at_first_is_found(searched):
     assert leaders(searched, 1) == [STIFFNESS]  # Hertz's law is as good as rigid at 0.3 and 0.75
-    similar_too(searched, STIFFNESS)
+    similar_too(searched, PLATES, STIFFNESS)
     race(searched, SPENT)
     race(searched, SPENT, laws=laws_of(searched, STIFFNESS))
     assert leaders(searched, 1) == [HERTZ]
@@ -86,11 +87,19 @@ def test_law_that_did_nothing_at_first_is_found(searched):
     assert searched.fits[HERTZ].unit[0] == pytest.approx(0.05, abs=0.03)
 
 
+def test_what_is_like_a_law_at_one_support_is_run_there(searched):
+    there = "contact_stiffness@left"
+    searched.screen([searched.first(there, 2)])
+    assert similar_too(searched, PLATES, there)
+    assert len(searched.trials["hertz@left"].noise) == len(first_points(candidate_named(HERTZ)))
+    assert "hertz@right" not in searched.trials and "dry_friction@left" not in searched.trials
+
+
 def test_first_runs_are_told_from_those_of_the_race(searched):
     race(searched, SPENT)
     trial = searched.trials[STIFFNESS]
     assert trial.refined > 0 and trial.screened == 2
-    similar_too(searched, HERTZ)  # the stiffness is like it, and was run already
+    similar_too(searched, PLATES, HERTZ)  # the stiffness is like it, and was run already
     assert searched.trials[STIFFNESS].screened == 2
     assert trial.unit[: trial.screened] == pytest.approx(
         first_points(candidate_named(STIFFNESS))[:2]
@@ -120,7 +129,7 @@ def test_nothing_is_run_beyond_what_is_to_be_spent(searched):
     race(searched, SPENT)
     assert searched.over and ran < searched.ran <= ran + 2 * SPENT.width * STEPS
     known = searched.ran
-    similar_too(searched, STIFFNESS)
+    similar_too(searched, PLATES, STIFFNESS)
     descend(searched, STIFFNESS)
     searched.run([(f"{STIFFNESS}+{FRICTION}", np.array([[0.5, 0.5]]))])
     assert searched.ran == known and leaders(searched, 1) == [STIFFNESS]

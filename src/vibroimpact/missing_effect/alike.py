@@ -64,14 +64,16 @@ def laws_of(search: Search, name: str) -> list[str]:
     ]
 
 
-def similar_too(search: Search, name: str) -> bool:
+def similar_too(search: Search, values: Values, name: str) -> bool:
     """Run what has a signature like a leading explanation's at as many first points as may be,
-    return whether there is any: at two, a law may be as good as rigid, or do nothing.
+    return whether there is any: at two, a law may be as good as rigid, or do nothing. Where it
+    leads at one support, what was run at all of them is run there.
     """
     leading = candidate_named(name)
     if isinstance(leading, Pair):
         return False
-    found = [
+    found = _similar_there(search, values, leading)
+    found += [
         other
         for other, trial in search.trials.items()
         if not trial.refined
@@ -82,6 +84,25 @@ def similar_too(search: Search, name: str) -> bool:
     for other in found:
         search.fit(other)
     return bool(found)
+
+
+def _similar_there(search, values, leading):
+    """Return the names of what was run at all supports, is like what leads at one of them, and was
+    not run there.
+    """
+    others = {trial.candidate for trial in search.trials.values() if _at_all(trial.candidate)}
+    there = [
+        replace(other, location=leading.location).name
+        for other in sorted(others, key=lambda other: other.name)
+        if _similar(other.effect, leading.effect)
+        and leading.location != other.location
+        and leading.location in other.effect.locations(values)
+    ]
+    return [name for name in there if name not in search.trials]
+
+
+def _at_all(candidate):
+    return not isinstance(candidate, Pair) and candidate.location == "all"
 
 
 def elsewhere_too(search: Search, values: Values, name: str) -> bool:

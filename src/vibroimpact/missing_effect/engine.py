@@ -151,10 +151,14 @@ class Engine:
         race.race(search, self.spent)
         search.look()
         leading = race.leaders(search, LEADING)
-        new = [alike.similar_too(search, name) for name in leading]
-        new += [alike.elsewhere_too(search, search.bench.values, name) for name in leading[:1]]
+        values = search.bench.values
+        new = [alike.similar_too(search, values, name) for name in leading]
+        new += [alike.elsewhere_too(search, values, name) for name in leading[:1]]
         if any(new):
             race.race(search, self.spent)
+        for name in race.leaders(search, 1):
+            if alike.similar_too(search, values, name):
+                race.race(search, self.spent)
         for name in race.leaders(search, 1):
             if alike.at_its_place(search, name):
                 race.race(search, self.spent)

@@ -17,12 +17,14 @@ def nuisance_draws(bench: Workbench, count: int, seed: int) -> list[linear.Nuisa
     their posterior, of the others from their prior.
 
     Modes that are not seen have one common factor of damping beside their own, since what they
-    dissipate has one cause.
+    dissipate has one cause. Modes that are seen and do not tell it, as the response is nonlinear,
+    have it too: their damping is off by no more than it seems to be.
     """
     random = np.random.default_rng(seed)
     channels, modes = len(bench.signals.names), bench.bare.modes
     seen, mean, root = _posterior(bench)
     unseen = np.setdiff1d(np.flatnonzero(bench.bare.omega > 0.0), seen)
+    common = common_damping(bench)[unseen]
     out = []
     for _ in range(count):
         told = mean + root @ random.standard_normal(len(mean))
@@ -30,13 +32,22 @@ def nuisance_draws(bench: Workbench, count: int, seed: int) -> list[linear.Nuisa
         frequency[seen] = priors.FREQUENCY_SD * told[: len(seen)]
         damping[seen] = priors.DAMPING_SD * told[len(seen) : 2 * len(seen)]
         frequency[unseen] = priors.FREQUENCY_SD * random.standard_normal(len(unseen))
-        damping[unseen] = np.log(
-            priors.UNSEEN_DAMPING
-        ) * random.standard_normal() + priors.DAMPING_SD * random.standard_normal(len(unseen))
+        damping[unseen] = common * random.standard_normal() + priors.DAMPING_SD * (
+            random.standard_normal(len(unseen))
+        )
         gain = 1.0 + priors.GAIN_SD * told[2 * len(seen) :]
         out.append(
             linear.Nuisance(np.arange(modes), np.exp(frequency), np.exp(damping), gain[:channels])
         )
+    return out
+
+
+def common_damping(bench: Workbench) -> np.ndarray:
+    """Return (mode,): one standard deviation of the logarithm of the common factor of damping."""
+    out = np.full(bench.bare.modes, np.log(priors.UNSEEN_DAMPING))
+    if bench.linear_stage and not bench.modes_told:
+        seems = float(np.sqrt(np.mean(bench.measured_fit.log_damping**2)))
+        out[bench.measured_fit.modes] = np.log(max(priors.UNSEEN_DAMPING, np.exp(-seems)))
     return out
 
 
