@@ -141,7 +141,7 @@ def _drive_rows(planes):
     angle = rig.drive_angle
     along = axis @ force * axis
     # y towards (-tz, 0, tx), the outer side of a bend
-    turned = np.cos(angle) * (force - along) - np.sin(angle) * np.cross(axis, force)
+    turned = np.cos(angle) * (force - along) + np.sin(angle) * np.cross(axis, force)
     return planes.rows("drive", along + turned)
 
 

@@ -89,6 +89,15 @@ def test_an_effect_of_nothing_changes_nothing(effect, neutral):
     np.testing.assert_allclose(same, bare, rtol=0.0, atol=1e-6 * np.abs(bare).max())
 
 
+def test_a_force_is_turned_from_y_to_the_outside_of_the_bend():
+    beam = Plan(**SHORT).beam
+    tx, tz = beam.tangent(beam.places["drive"])
+    outside = (-float(tz), 0.0, float(tx))
+    straight = run(duration=0.25, drive_direction=outside)[:, :300]
+    turned = run(effects=(("force_misalignment", {"angle": 0.5 * np.pi}),), duration=0.25)[:, :300]
+    np.testing.assert_allclose(turned, straight, rtol=0.0, atol=1e-6 * np.abs(straight).max())
+
+
 @pytest.fixture(scope="module")
 def scene():
     """The scene of a short campaign on the stand-in tube."""
