@@ -67,11 +67,13 @@ def test_a_tube_along_x_moves_as_one_along_z():
 
 
 def test_a_stationary_record_begins_in_motion():
+    """Below contact: impacts scatter more than the beginning differs from the rest."""
+    linear = {"duration": 1.0, "levels": ((0.02, 1.0, "fit"),)}
     rest, moving = (
-        run(beam(), start_up=start, duration=1.0)[0][0][2] for start in ("rest", "stationary")
+        run(beam(), start_up=start, **linear)[0][0][2] for start in ("rest", "stationary")
     )
-    assert np.abs(rest[:20]).max() < 0.2 * np.abs(rest).max()
-    assert np.std(moving[:500]) > 0.5 * np.std(moving[500:])
+    assert np.std(rest[:100]) < 0.3 * np.std(rest[500:])
+    assert np.std(moving[:100]) > 0.7 * np.std(moving[500:])
 
 
 def test_frequencies_drift_with_the_time_of_the_campaign():
