@@ -22,7 +22,7 @@ SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is 
 BETWEEN = re.compile(r"arc_([\d_]+)mm(?:_turned_(m?[\d_]+)deg)?")
 ALONG = "along_tube"  # of an effect whose place on the tube is one of its parameters
 TURNED = "along_tube_turned"  # the same, and its direction across the tube
-MODE = re.compile(r"mode_(\d+)")  # the location of an effect on one mode
+MODE = re.compile(r"^mode_(\d+)$")  # the location of an effect on one mode
 WHOLE_CHAIN = ("responses", "force_and_responses")  # locations of a fault of all channels
 IN_WORDS = {
     ALONG: "a place along the tube",

@@ -28,7 +28,8 @@ class Search:
     """A Workbench of what is compared, its Null, and all Trials so far {name: Trial} with their
     Fits {name: Fit}. looked: see learn; None: all that runs change is known. threads: runs at a
     time; most: time steps of modes beyond which nothing more is run; before: those that were
-    counted before the search.
+    counted before the search; ended: those that were run when something was not run for it, 0
+    where all was.
     """
 
     bench: Workbench
@@ -41,6 +42,7 @@ class Search:
     threads: int = 1
     most: float = np.inf
     before: int = field(default_factory=lambda: SIMULATED["steps"])
+    ended: int = 0
 
     @property
     def ran(self) -> int:
@@ -81,7 +83,10 @@ class Search:
         for name, units in rows:
             candidate = candidate_named(name)
             self.trials.setdefault(name, Trial.empty(candidate, self.null.values))
-            for unit in () if self.over else np.atleast_2d(units):
+            if self.over:
+                self.ended = self.ended or self.ran
+                continue
+            for unit in np.atleast_2d(units):
                 jobs.append((candidate, unit, self.seed + seeds * len(jobs)))
         self.seed += seeds * len(jobs)
         found = side_by_side(lambda job: self._tried(*job), jobs, self.threads)

@@ -197,13 +197,13 @@ def left_out(search: Search) -> list[Values]:
 
 def ended_early(search: Search) -> list[Values]:
     """Return the row of checks for a search that was ended by its Effort, none of another one."""
-    if not search.over:
+    if not search.ended:
         return []
     return [
         check_row(
             "search ended",
             "warn",
-            f"The search ended after {search.ran / 1.0e9:.0f} thousand million time steps of"
+            f"The search ended after {search.ended / 1.0e9:.0f} thousand million time steps of"
             " modes, before all was run that may explain more: effort=thorough runs on.",
         )
     ]

@@ -73,7 +73,8 @@ def _nothing_missing(chance):
         )
     return (
         "No effect is found: the differences are beyond the scatter of seeds"
-        f" {told}, and no larger than those between two right models of one structure."
+        f" {told}, and no larger than those between two right models of one structure, which may"
+        " differ in what no record tells, such as damping."
     )
 
 
