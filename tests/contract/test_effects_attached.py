@@ -79,6 +79,7 @@ def test_an_effect_changes_the_attached_model(compared, name):
     "location",
     EFFECTS["clearance"].locations(
         {
+            "structure": {"kind": "u_tube"},
             "points": {"shaker": (0, 0, 0), "apex": (1, 0, 0), "left_leg": (2, 0, 0)},
             "excitation": {"point": "shaker"},
         }

@@ -100,7 +100,7 @@ def test_millimetres_are_seen_on_the_tube(campaign):
     ("file", "part"),
     [
         ("turbulence.yaml", "excitation.kind = 'turbulence' has no point"),
-        ("examples/mass_between_stops.yaml", "structure.kind = 'chain' can not be compared"),
+        ("examples/mass_between_stops.yaml", "structure.kind = 'chain' does not say where"),
     ],
 )
 def test_models_without_tube_or_point_force_are_refused(campaign, tmp_path, file, part):

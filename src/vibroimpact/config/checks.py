@@ -329,6 +329,7 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
 )
 POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
     names.point_supports,
+    names.places_of_points,
     turbulence_checks.needs_a_tube,
 )
 CHECKS: tuple[Callable[..., Problems], ...] = (

@@ -182,6 +182,18 @@ def point_supports(structure: Structure, supports: Sequence[Support]) -> Problem
             )
 
 
+def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> Problems:
+    """Yield a problem unless places are those of points that a structure, which is no tube, has."""
+    names = names_of_points(structure, points)
+    for name, place in points.items():
+        if name not in names:
+            yield (
+                f"points.{name}",
+                list(place),
+                f"is the place of no named point of the structure: known are {', '.join(names)}",
+            )
+
+
 def chain_names(structure: Structure) -> Problems:
     """Yield a problem unless masses have names, and springs name them."""
     if structure.kind != "chain":

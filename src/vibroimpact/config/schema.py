@@ -347,7 +347,8 @@ class Config(Section):
     points: dict[Name, Position] = Field(
         {},
         description="Names for positions on a tube, each within 5 mm of the centreline. Other"
-        " structures bring their own points.",
+        " structures bring their own points: of these, where they are, which a comparison with"
+        " measurements needs.",
         examples=[{"apex": [0.0, 0.0, 1.0]}],
     )
     excitation: Excitation = Field(description="The force.")

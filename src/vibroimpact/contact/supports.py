@@ -1,6 +1,6 @@
 """The contact points of the supports: places, directions and shares of the support's stiffness."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,15 +93,22 @@ def place_contact_points(centreline: Centreline, supports: Sequence[ConfigPart])
     )
 
 
-def contacts_at_points(supports: Sequence[ConfigPart]) -> ContactPoints:
+def contacts_at_points(
+    supports: Sequence[ConfigPart], points: Mapping[str, Sequence[float]] | None = None
+) -> ContactPoints:
     """Return the ContactPoints of supports at named points of a structure that is no tube.
 
-    Each support is one contact point that acts along x and y. Positions are zero.
+    Each support is one contact point that acts along x and y. points: {name: (3,)} m. Positions are
+    zero unless the place of every support is among them.
     """
+    points = points or {}
+    known = all(support.point in points for support in supports)
     stiffness = np.array([np.ravel(support.stiffness_N_per_m)[0] for support in supports])
     return ContactPoints(
         arc_length=np.full(len(supports), np.nan),
-        position=np.zeros((len(supports), 3)),
+        position=np.array(
+            [points[support.point] if known else np.zeros(3) for support in supports]
+        ).reshape(-1, 3),
         directions=np.tile(np.eye(3)[:2], (len(supports), 1, 1)),
         weight=np.ones(len(supports)),
         support=np.arange(len(supports)),

@@ -5,15 +5,13 @@ from .effect import Effect, Parameter, Values
 
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a pair of flat stops at a point, across the tube along the
-    force.
+    """Return the configuration with a pair of flat stops at a point along the force; of a tube,
+    across it.
     """
     along = places.across_deg(values, location)
     support = {
         "name": places.STOP,
-        "at_m": list(values["points"][location]),
-        "height_m": 0.002,
-        "points": 1,
+        **places.support_at(values, location),
         "stiffness_N_per_m": parameters["stiffness"],
         "gap_m": parameters["half_gap"],
         "profile": {"kind": "planes", "normals_deg": [along, along - 180.0]},
@@ -53,5 +51,5 @@ EFFECT = Effect(
     below_contact=True,
     broken=("T1", "T2"),
     aliases=("cubic_stiffness",),
-    locations=places.masses_and_springs,
+    locations=places.stops,
 )

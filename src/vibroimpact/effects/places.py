@@ -80,6 +80,17 @@ def masses_and_springs(values: Values) -> list[str]:
     return names
 
 
+def stops(values: Values) -> list[str]:
+    """Return the named points at which a stop may be: of a structure that is no tube none where
+    the force acts along z, across which supports at named points act.
+    """
+    if values["structure"]["kind"] not in TUBES:
+        direction = unit_vector(values["excitation"]["direction"])
+        if np.linalg.norm(direction[:2]) < ALONG_IT:
+            return []
+    return masses_and_springs(values)
+
+
 def with_supports(values: Values, location: str, change: Callable[[Values], Values]) -> Values:
     """Return the configuration with change(support) -> {key: value} merged into the supports of a
     location.
@@ -223,10 +234,20 @@ def across(values: Values, point: str) -> Sequence[float]:
     return [float(x) for x in _carried(values, point)]
 
 
+def support_at(values: Values, point: str) -> Values:
+    """Return the keys of a support of one contact point at a named point."""
+    if values["structure"]["kind"] not in TUBES:
+        return {"point": point}
+    return {"at_m": list(values["points"][point]), "height_m": 0.002, "points": 1}
+
+
 def across_deg(values: Values, point: str) -> float:
-    """Return the angle in degrees of that direction in a tube's section at a point: see supports
-    for the axes, which turn with the tube.
+    """Return the angle in degrees of that direction between the two axes of a support at a point:
+    those of a tube turn with it, those of another structure are x and y.
     """
+    if values["structure"]["kind"] not in TUBES:
+        first, second, _ = values["excitation"]["direction"]
+        return float(np.rad2deg(np.arctan2(second, first)))
     line = _centreline(values)
     axes = transverse_directions(line.direction(line.locate(values["points"][point], point)))
     first, second = axes @ _carried(values, point)

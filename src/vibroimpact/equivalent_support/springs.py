@@ -84,7 +84,8 @@ def _require_positions(model: ModalModel) -> None:
     if not np.any(model.contact_position):
         raise EquivalentError(
             "the supports of this structure have no positions in space (a chain, matrices or"
-            " measured modes): put k and c at their named points by hand"
+            " measured modes): give the places of their points in `points`, or put k and c there by"
+            " hand"
         )
 
 

@@ -354,8 +354,8 @@ def _direction(mend, _):
 def _place(mend, misfit):
     return (
         f"the place of {mend.which} (it moves as the model does at"
-        f" {(np.round(misfit.place(mend), 3) + 0.0).tolist()} m, {1000.0 * abs(mend.amount):.0f} mm"
-        " along the tube from where it is stated)"
+        f" {(np.round(misfit.place(mend), 3) + 0.0).tolist()} m, {1000.0 * misfit.off_m(mend):.0f}"
+        " mm from where it is stated)"
     )
 
 

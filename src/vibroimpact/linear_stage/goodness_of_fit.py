@@ -3,8 +3,9 @@ a factor common to all frequencies, one mode, a length or section, or one channe
 or place.
 
 A change in which the compared values are linear is a direction with a free amount in the
-likelihood, which lowers chi-square (generalised least squares). A channel is tried all along the
-tube. Effects of the catalogue are not tried here: what they explain is adopted before.
+likelihood, which lowers chi-square (generalised least squares). A channel is tried at all places
+that the structure has. Effects of the catalogue are not tried here: what they explain is adopted
+before.
 """
 
 from __future__ import annotations
@@ -15,26 +16,24 @@ from itertools import starmap
 from typing import Any
 
 import numpy as np
-from scipy import interpolate, linalg, stats
+from scipy import linalg, stats
 
 from vibroimpact.campaign.file import CampaignError
+from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.reading import ConfigError, check_config
-from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.observation.strain import gauges_of
 from vibroimpact.reduction.modal_model import ModalModel
 
 from . import nuisance as linear
 from . import priors
+from .channel_places import TubePlaces, channel_places
 from .effect_fit import REACH, coarse, descended, moved
 from .linearised import linearised, matched, same_modes
 from .mode_identification import fit_modes, left, modelled_lines
 from .other_lengths import Moved, parts, scaled
 from .workbench import Workbench
 
-ALONG = 97  # places along the tube at which shapes are computed; between them splines
-TRIED = 241  # places along the tube that a channel is tried at
-NEARBY_M, NEARBY = 0.02, 41  # about the best of them, and how many places there
 LENGTH_REACH = 0.2  # of a length: largest change that is tried
 SUSPECTS = 2  # channels, those that disagree most, are tried at other places
 # of the largest singular value of the motion of all modes there: below it the tube moves in one
@@ -50,7 +49,7 @@ class Mend:
     which: name of the channel or the part, index of the mode among those fitted, None for all.
     amount: in the order of kinds, ln of the factor of frequency; factors of mass and stiffness per
     metre; factor of the length; ln of the factors of frequency and damping; gain over the model's;
-    direction (3,); m along the tube; differences of participations.
+    direction (3,); its place, see channel_places; differences of participations.
     chi_square: with it. freed: number of values that it fits.
     left: the largest residual over noise of a driven channel, None where it is unchanged.
     """
@@ -136,7 +135,10 @@ class LinearMisfit:
         """Return the Mends by another structure: a factor of all frequencies, another section,
         other lengths.
         """
-        lengths = starmap(self._length, parts(self.bench.config.structure).items())
+        structure = self.bench.config.structure
+        if structure.kind not in TUBES:
+            return [self._frequencies()]
+        lengths = starmap(self._length, parts(structure).items())
         return [self._frequencies(), self._section(), *filter(None, lengths)]
 
     @cached_property
@@ -231,7 +233,7 @@ class LinearMisfit:
         moves in one direction there.
         """
         modes = self.bench.measured_fit.modes
-        moving = self._moving(self.stated(channel))[:, modes]
+        moving = self._sites.shapes(self.stated(channel))[:, modes]
         three = self._shapes(channel, moving * linear.driven(self.bench.bare.drive_shapes[modes]))
         size = linalg.svdvals(self._whitened(three))
         if size[1] <= ONE_WAY * size[0]:
@@ -249,25 +251,25 @@ class LinearMisfit:
         """Return the Mend of a channel at another place along the tube, with the modes fitted again
         for that place; None where none can be fitted.
         """
-        arcs = np.linspace(0.0, self._line.length, TRIED)
-        far = _farness(self.bench, channel, self._moving(arcs))
-        there = self._read_at(channel, arcs[np.argmin(far)])
+        tried = self._sites.tried
+        far = _farness(self.bench, channel, self._sites.shapes(tried))
+        there = self._read_at(channel, tried[np.argmin(far)])
         if there is None:
             return None
-        arcs = there.stated(channel) + np.linspace(-NEARBY_M, NEARBY_M, NEARBY)
-        arcs = arcs[(arcs >= 0.0) & (arcs <= self._line.length)]
-        chi_square = [there.moved_to(channel, arc) for arc in arcs]
+        near = self._sites.about(there.stated(channel))
+        chi_square = [there.moved_to(channel, place) for place in near]
         best = int(np.argmin(chi_square))
-        moved = float(arcs[best] - self.stated(channel))
-        return Mend("place", self._name(channel), moved, chi_square[best], 1, there.left)
+        return Mend(
+            "place", self._name(channel), float(near[best]), chi_square[best], 1, there.left
+        )
 
-    def moved_to(self, channel: int, arc: float) -> float:
-        """Return the chi-square with a channel at an arc length in m, with the same modal fit."""
+    def moved_to(self, channel: int, place: float) -> float:
+        """Return the chi-square with a channel at a place, with the same modal fit."""
         modes, chain = self.bench.measured_fit.modes, self.bench.measuring
         gain = 1.0 if chain is None else chain.gain[channel] / chain.force_gain
         direction = self.bench.bare.sensor_directions[channel]
         drive = linear.driven(self.bench.bare.drive_shapes[modes])
-        shape = direction @ self._moving(arc)[:, modes] * drive
+        shape = direction @ self._sites.shapes(place)[:, modes] * drive
         rows = self.simulated.participation.copy()
         rows[channel] = gain * shape
         return self._chi_square(replace(self.simulated, participation=rows))
@@ -333,12 +335,12 @@ class LinearMisfit:
         modes = matched(model, self.measured.log_frequency, self.measured.participation)
         return linear.gained(linear.reading_of_model(model, modes), self.bench.measuring)
 
-    def _read_at(self, channel, arc):
-        """Return the LinearMisfit with a channel at an arc length in m and the modes fitted
-        again, None where none can be fitted.
+    def _read_at(self, channel, place):
+        """Return the LinearMisfit with a channel at a place and the modes fitted again, None where
+        none can be fitted.
         """
         points = self.bench.campaign["channel_point"].astype(float).copy()
-        points[channel] = self._line.position(arc)
+        points[channel] = self._sites.position(place)
         bench = self.bench.again(self.bench.campaign.assign(channel_point=points))
         bench.followed = True  # the other channels are unchanged: the modes are near the model's
         if bench.measured_fit is None:
@@ -347,39 +349,25 @@ class LinearMisfit:
 
     def place(self, mend: Mend) -> np.ndarray:
         """Return (3,) m: the place to which a Mend moves its channel."""
+        return self._sites.position(mend.amount)
+
+    def off_m(self, mend: Mend) -> float:
+        """Return how far in m that is from where the channel is stated to be, along a tube."""
         channel = self.bench.signals.names.index(mend.which)
-        return self._line.position(self.stated(channel) + mend.amount)
+        if isinstance(self._sites, TubePlaces):
+            return float(abs(mend.amount - self.stated(channel)))
+        return float(np.linalg.norm(self.place(mend) - self.bench.bare.sensor_positions[channel]))
 
     def _name(self, channel):
         return self.bench.signals.names[channel]
 
-    @cached_property
-    def _line(self):
-        return build_centreline(self.bench.config.structure)
-
     def stated(self, channel: int) -> float:
-        """Return the arc length in m at which a channel is stated to be."""
-        name = self._name(channel)
-        return self._line.locate(self.bench.bare.sensor_positions[channel], name)
+        """Return the place at which a channel is stated to be, see channel_places."""
+        return self._sites.at(self.bench.bare.sensor_positions[channel], self._name(channel))
 
     @cached_property
-    def _moving(self):
-        """Return the spline over arc length in m of displacements (direction, mode) along x, y, z
-        of all modes.
-        """
-        campaign, arcs = self.bench.campaign, np.linspace(0.0, self._line.length, ALONG)
-        points = np.repeat([self._line.position(arc) for arc in arcs], 3, axis=0)
-        there = campaign.drop_dims("channel").assign(
-            channel_point=(("channel", "xyz"), points),
-            channel_direction=(("channel", "xyz"), np.tile(np.eye(3), (ALONG, 1))),
-            channel_name=("channel", [f"along_{number}" for number in range(len(points))]),
-            channel_kind=("channel", ["displacement"] * len(points)),
-        )
-        model = linearised(attach(check_config(self.bench.values, "model"), there))
-        # the same sign of each mode shape in both models
-        sign = np.sign(np.sum(model.drive_shapes * self.bench.bare.drive_shapes, axis=1))
-        shapes = (model.sensor_shapes * np.where(sign == 0.0, 1.0, sign)[:, None]).T
-        return interpolate.CubicSpline(arcs, shapes.reshape(ALONG, 3, -1))
+    def _sites(self):
+        return channel_places(self.bench)
 
 
 def _farness(bench, channel, shapes):

@@ -29,6 +29,7 @@ from vibroimpact.observation.comparable import (
     comparison_problems,
     contact_force_rows,
     left_out,
+    still_rows,
     strain_rows,
 )
 from vibroimpact.observation.decimation import slower
@@ -146,7 +147,7 @@ def prepare(config: ConfigPart, campaign_path: str | Path, draw: int = 0) -> Pre
     """
     whole, checks = check_file(campaign_path)
     if whole is not None and not refused(checks):
-        checks += channel_rows(whole)
+        checks += [*channel_rows(whole), *still_rows(config, whole)]
         checks += [
             check_row("model", "refuse", f"{problem}.")
             for problem in comparison_problems(config, whole)

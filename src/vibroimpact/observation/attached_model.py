@@ -10,6 +10,7 @@ import xarray as xr
 
 from vibroimpact.campaign.file import CampaignError, support_ratios
 from vibroimpact.campaign.force_kinds import base_channels
+from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.schema import Sensors
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
@@ -17,6 +18,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
 from .moving_base import driven_by_base, further_drive_shapes
+from .named_places import point_at
 from .sensed_motion import moving, of_modes
 from .strain import STRAIN, gauged_model
 
@@ -27,11 +29,11 @@ def attach(config: ConfigPart, campaign: xr.Dataset) -> ModalModel:
     """Return the ModalModel of `config` with the campaign's channels as sensors and its forces as
     drives, without shape line and stresses.
 
-    config: a checked Config or StageSettings of a tube. The sensors are in the order of the
-    channels: displacements, positive along channel_direction; for a strain gauge the strain of the
+    config: a checked Config or StageSettings. The sensors are in the order of the channels:
+    displacements, positive along channel_direction; for a strain gauge on a tube the strain of the
     outer fibre; for a contact force zero. With a campaign on a moving base, the drives are the
     accelerations of the base. Raises CampaignError when a channel or force is more than 5 mm off
-    the structure or a direction is no vector.
+    the structure, where it is no tube off its named points, or a direction is no vector.
     """
     forces = ~base_channels(campaign)
     places, directions, stored_names = (
@@ -85,9 +87,12 @@ def displacement_shapes(
 ) -> tuple[ModalModel, np.ndarray]:
     """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
 
-    normals: {index of a place: outward normal (3,)} of strain gauges there; their shapes are the
-    last of the model's sensors. Raises ValueError for a place more than 5 mm off the structure.
+    normals: {index of a place: outward normal (3,)} of strain gauges there on a tube; their shapes
+    are the last of the model's sensors. Raises ValueError for a place more than 5 mm off the
+    structure.
     """
+    if config.structure.kind not in TUBES:
+        return _shapes_at_points(config, places)
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
     sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
     model = build_model(
@@ -99,12 +104,28 @@ def displacement_shapes(
     return model, moved.reshape(model.modes, len(places), 3)
 
 
+def _shapes_at_points(config, places):
+    """Return what displacement_shapes does of a structure that is no tube: at its named points."""
+    names = [
+        point_at(config.points, place, f"point place_{number}")
+        for number, place in enumerate(places)
+    ]
+    named = tuple(dict.fromkeys(names))
+    record = config.record.model_copy(update={"sensors": config_sensors(named)})
+    model = build_model(config.model_copy(update={"record": record}), motion_only=True)
+    moved = model.sensor_shapes.reshape(model.modes, len(named), 3)
+    return model, moved[:, [named.index(name) for name in names]]
+
+
 def with_channel_points(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
-    """Return the configuration with a named point at every channel that measures a motion.
+    """Return the configuration of a tube with a named point at every channel that measures a
+    motion; other structures have their channels at the points that they have.
 
     A part at the sensor, or the sensor itself, may be missing in the model there. No point is added
     within SAME_POINT_M of another, for a strain or for a contact force.
     """
+    if config.structure.kind not in TUBES:
+        return config
     points, taken = dict(config.points), list(config.points.values())
     names, places = campaign["channel_name"].values, campaign["channel_point"].values
     for channel in np.flatnonzero(moving(campaign["channel_kind"].values)):

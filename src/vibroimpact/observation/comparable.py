@@ -1,11 +1,14 @@
 """Which channels of a campaign are compared with a model, and why a comparison is not possible.
 
-The model simulates motions of a tube under forces in N or on a moving base, strains of its outer
-fibre, and the forces of its supports on it. Other channels are left out. A campaign with too little
+The model simulates motions under forces in N or on a moving base, strains of the outer fibre of a
+tube, and the forces of supports. Other channels are left out. A campaign with too little
 left is refused. Each comes with a sentence that says why.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -15,13 +18,15 @@ from vibroimpact.campaign.file import CampaignError, force_units, support_ratios
 from vibroimpact.campaign.force_kinds import BASE, FORCE, base_channels
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.geometry.centreline import Centreline, build_centreline
+from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.geometry.directions import unit_vector
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.structure.point_structure import build_point_structure
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.units import UnitError, si_factor
 
+from .named_places import LEAST_COSINE, no_motion, point_at
 from .sensed_motion import CONTACT_FORCE, SENSED, across, support_at
 from .sensor_chain import NO_CHANNELS
 from .signals import Signals
@@ -29,7 +34,6 @@ from .strain import STRAIN
 
 READ = ", ".join(SENSED).replace("_", " ")
 LEFT_OUT = "channels"  # name of the check
-ACROSS = 0.1  # least |cosine| between a contact force and a direction in which its support acts
 # Largest |cosine| between the outward normal at a gauge and the tangent of the tube. The chord of a
 # bend deviates from its tangent by less.
 LEANS = 0.2
@@ -93,6 +97,8 @@ def contact_force_rows(model: ModalModel, signals: Signals) -> list[dict]:
 def strain_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
     """Return a row of checks for each strain that is left out of the comparison with a tube."""
     rows = []
+    if config.structure.kind not in TUBES:
+        return rows  # see still_rows
     for channel in np.flatnonzero(campaign["channel_kind"].values == STRAIN):
         normal, point = (
             campaign[f"channel_{key}"].values[channel].astype(float)
@@ -102,6 +108,33 @@ def strain_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
         if why:
             name = str(campaign["channel_name"].values[channel])
             rows.append(_left_out(name, f"{name} is a strain {why}"))
+    return rows
+
+
+def still_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
+    """Return a row of checks for each channel of which a structure of named points gives nothing: a
+    strain, and a motion along which its point has no degree of freedom.
+    """
+    if config.structure.kind in TUBES:
+        return []
+    rows, structure = [], build_point_structure(config)
+    for channel in np.flatnonzero(compared_channels(campaign)):
+        name, kind, place, direction = (
+            campaign[f"channel_{key}"].values[channel]
+            for key in ("name", "kind", "point", "direction")
+        )
+        if kind == STRAIN:
+            rows.append(
+                _left_out(
+                    str(name),
+                    f"{name} is a strain, which a structure of named points does not tell: it is"
+                    " left out",
+                )
+            )
+        elif kind != CONTACT_FORCE and not _off(partial(point_at, config.points), place, ""):
+            still = no_motion(structure, config.points, place, direction)
+            if still:
+                rows.append(_left_out(str(name), f"{name} measures {still}: it is left out"))
     return rows
 
 
@@ -137,7 +170,7 @@ def _not_a_support(model, channel):
             f"at no support of the model ({', '.join(model.support_names) or 'it has none'}): it is"
             " left out; give as channel_point the middle of its support"
         )
-    if np.abs(across(model, support) @ model.sensor_directions[channel]).max() < ACROSS:
+    if np.abs(across(model, support) @ model.sensor_directions[channel]).max() < LEAST_COSINE:
         return (
             f"along the tube, in which direction {model.support_names[support]} has none in the"
             " model: it is left out"
@@ -160,11 +193,6 @@ def model_problems(config: ConfigPart, on_base: bool = False) -> list[str]:
     on_base: whether the campaign measured the motion of the base instead of a force.
     """
     problems = []
-    if config.structure.kind not in TUBES:
-        problems.append(
-            f"structure.kind = '{config.structure.kind}' can not be compared with a campaign: give"
-            f" a model of kind {' or '.join(TUBES)}; {IDENTIFIED}"
-        )
     force = config.excitation
     if on_base:
         if force.kind == "base_motion" and force.obstacles == "fixed":
@@ -234,8 +262,16 @@ def comparison_problems(config: ConfigPart, campaign: xr.Dataset) -> list[str]:
     on_base = bool(base_channels(campaign).any())
     problems = [*model_problems(config, on_base), *campaign_problems(campaign)]
     if config.structure.kind in TUBES:
-        problems += [*_gap_problems(config, campaign), *_place_problems(config, campaign)]
-    return problems
+        problems += _gap_problems(config, campaign)
+    elif not config.points:
+        return [
+            *problems,
+            f"structure.kind = '{config.structure.kind}' does not say where its named points are:"
+            f" give `points`, {{name: [x, y, z]}} in m; {IDENTIFIED}",
+        ]
+    else:
+        problems += _push_problems(config, campaign)
+    return [*problems, *_place_problems(config, campaign)]
 
 
 def _mixed_problems(campaign, bases):
@@ -281,8 +317,11 @@ def _gap_problems(config, campaign):
 
 
 def _place_problems(config, campaign):
-    """Yield a sentence for every channel and force that is not on the tube."""
-    line = build_centreline(config.structure)
+    """Yield a sentence for every channel and force that is not on the structure."""
+    if config.structure.kind in TUBES:
+        locate, on = build_centreline(config.structure).locate, "on the tube"
+    else:
+        locate, on = partial(point_at, config.points), "at a named point"
     kept = {
         "channel": compared_channels(campaign),
         "force_channel": ~base_channels(campaign),
@@ -292,18 +331,38 @@ def _place_problems(config, campaign):
             point = campaign[f"{what}_point"].values[channel].astype(float)
             if not np.isfinite(point).all():
                 continue
-            off = _off(line, point, f"{what}_point[{channel}]")
-            if off and not _off(line, 1.0e-3 * point, ""):
-                off += "; a thousandth of it is on the tube: is it in millimetres? Write metres"
+            off = _off(locate, point, f"{what}_point[{channel}]")
+            if off and not _off(locate, 1.0e-3 * point, ""):
+                off += f"; a thousandth of it is {on}: is it in millimetres? Write metres"
             if off:
                 name = campaign[f"{what}_name"].values[channel]
                 yield f"{what.replace('_', ' ')} {name}: {off}"
 
 
-def _off(line: Centreline, point: np.ndarray, place: str) -> str | None:
-    """Return a sentence where a point (3,) in m is not on the tube, None where it is."""
+def _push_problems(config, campaign):
+    """Yield a sentence for every force that pushes a structure of named points where it does not
+    move.
+    """
+    structure = build_point_structure(config)
+    for channel in np.flatnonzero(~base_channels(campaign)):
+        if _nowhere(campaign, "force_channel", channel):
+            continue
+        name, place, direction = (
+            campaign[f"force_channel_{key}"].values[channel]
+            for key in ("name", "point", "direction")
+        )
+        if not _off(partial(point_at, config.points), place, ""):
+            still = no_motion(structure, config.points, place, direction)
+            if still:
+                yield f"force channel {name} acts {still}: give its degree of freedom a name"
+
+
+def _off(locate: Callable, point: np.ndarray, place: str) -> str | None:
+    """Return a sentence where a point (3,) in m is not on the structure, None where it is; locate:
+    raises ValueError there, see Centreline.locate and point_at.
+    """
     try:
-        line.locate(point, place)
+        locate(point, place)
     except ValueError as error:
         return str(error)
     return None

@@ -225,7 +225,8 @@ def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:
     """Return the axis (3,) about which the force is turned; z where it is not."""
     if not getattr(config.excitation, "turn_deg", 0.0):
         return (0.0, 0.0, 1.0)
-    return turn_axis(config, config.points[config.excitation.point])
+    nowhere = (0.0, 0.0, 0.0)  # of no need for the axis of a structure that is no tube
+    return turn_axis(config, config.points.get(config.excitation.point, nowhere))
 
 
 def _point_rows(structure: Any, config: ConfigPart) -> Callable[[str], np.ndarray]:
@@ -357,7 +358,7 @@ def _sensor_fields(
         wanted = []
     else:
         wanted = [(name, axis) for name, axes in structure.directions.items() for axis in axes]
-    positions = [np.zeros(3) for _ in wanted]
+    positions = [np.array(config.points.get(name, (0.0, 0.0, 0.0))) for name, _ in wanted]
     if tube:
         places = [named_arc_length(structure, config, name) for name, _ in wanted]
         positions = [structure.centreline.position(place) for place in places]

@@ -130,7 +130,7 @@ def build_point_structure(config: ConfigPart) -> PointStructure:
                 )
     return kind(
         **parts,
-        contact=contacts_at_points(config.supports),
+        contact=contacts_at_points(config.supports, config.points),
         contact_points=[(each.point, each.other_point) for each in config.supports],
     )
 

@@ -89,6 +89,13 @@ def places_of(config, data):
         points = {
             name: tube.position(tube.locate(place, name)) for name, place in config.points.items()
         }
+    elif config is not None:
+        points = {name: np.array(place) for name, place in config.points.items()}
+        supports = {
+            support.name: points[support.point]
+            for support in config.supports
+            if support.point in points
+        }
     found: dict = {}
     directions: dict = {}
     for role in ("channel", "force_channel"):
@@ -110,6 +117,8 @@ def place_figure(config, data, effects):
         "The structure, seen on the plane of its largest extents, to scale: supports (grey bars),"
         " channels (blue) and forces (black) with their directions in this plane"
     )
+    if config is not None and config.structure.kind not in TUBES:
+        caption += ", and the named points of the model (small grey dots)"
     if effects:
         caption += ", in orange where the effect acts. What acts everywhere marks all of it"
     title = "Where it acts" if effects else "The structure as it was measured"
@@ -145,7 +154,20 @@ def place_figure(config, data, effects):
 
 
 def _structure(sheet, axes, places, view, columns):
-    """Draw the tube and its supports."""
+    """Draw the tube, or the named points of another structure, and the supports."""
+    if places.line is None and places.points:
+        named = np.array([*places.points.values()])
+        sheet.line(
+            axes,
+            (columns[0], named[:, view[0]]),
+            (columns[1], named[:, view[1]]),
+            "named points",
+            color=GREY,
+            marker=".",
+            linestyle="none",
+            zorder=1,
+            label="named point",
+        )
     if places.line is not None:
         sheet.line(
             axes,
@@ -158,8 +180,10 @@ def _structure(sheet, axes, places, view, columns):
             zorder=1,
         )
     for number, (name, place) in enumerate(places.supports.items()):
-        along = _tangent(places.line, place)[list(view)]
-        angle = np.degrees(np.arctan2(along[1], along[0])) + 90.0
+        angle = 0.0
+        if places.line is not None:
+            along = _tangent(places.line, place)[list(view)]
+            angle = np.degrees(np.arctan2(along[1], along[0])) + 90.0
         sheet.line(
             axes,
             (columns[0], place[[view[0]]]),
