@@ -1,10 +1,15 @@
 """The shaker's rod holds the structure across the force."""
 
+import numpy as np
+
+from vibroimpact.geometry.directions import unit_vector
+
 from . import places
 from .effect import Effect, Parameter, Values
 
+# cosine between the rod and the force: below it the rod holds a motion that the force hardly drives
+ACROSS = 0.1
 DIRECTIONS = {"along_x": (1.0, 0.0, 0.0), "along_y": (0.0, 1.0, 0.0), "along_z": (0.0, 0.0, 1.0)}
-ALONG = 1.0 - 1.0e-6  # cosine
 
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
@@ -18,6 +23,23 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     return places.with_element(
         values, "lateral_stinger", values["excitation"]["point"], DIRECTIONS[location], **laws
     )
+
+
+def locations(values: Values) -> list[str]:
+    """Return the axes along which a rod may hold the structure: of a tube the two of x, y and z
+    that are least along its start, where it is held: hardly any of it moves along the third.
+    """
+    along = places.start_direction(values)
+    if along is None:
+        return list(DIRECTIONS)
+    out = int(np.argmax(np.abs(along)))
+    return [name for number, name in enumerate(DIRECTIONS) if number != out]
+
+
+def across_force(values: Values, location: str) -> bool:
+    """Return whether a rod along a location is across the force."""
+    force = unit_vector(values["excitation"]["direction"])
+    return bool(abs(force @ np.array(DIRECTIONS[location])) < ACROSS)
 
 
 EFFECT = Effect(
@@ -51,5 +73,5 @@ EFFECT = Effect(
     linear=True,
     broken=("T1",),
     needs=("force",),
-    locations=lambda values: list(DIRECTIONS),
+    locations=locations,
 )

@@ -234,6 +234,23 @@ def across(values: Values, point: str) -> Sequence[float]:
     return [float(x) for x in _carried(values, point)]
 
 
+def axes_across(values: Values, place: Sequence[float]) -> np.ndarray:
+    """Return (2, 3): the two directions across a tube at a place (3,) in m; x and y of another
+    structure, along which its supports act.
+    """
+    if values["structure"]["kind"] not in TUBES:
+        return np.eye(3)[:2]
+    line = _centreline(values)
+    return transverse_directions(line.direction(line.locate(place, "a place")))
+
+
+def start_direction(values: Values) -> np.ndarray | None:
+    """Return the direction (3,) of a tube at its start, None of another structure."""
+    if values["structure"]["kind"] not in TUBES:
+        return None
+    return _centreline(values).direction(0.0)
+
+
 def support_at(values: Values, point: str) -> Values:
     """Return the keys of a support of one contact point at a named point."""
     if values["structure"]["kind"] not in TUBES:

@@ -5,36 +5,28 @@ from .effect import Effect, Parameter, Values
 
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a constant force along x and y at the middle of a support, or
-    of each of them.
+    """Return the configuration with a constant force at the middle of a support, or of each of
+    them, along its two transverse directions.
     """
-    chosen = [
-        support
-        for support in values["supports"]
-        if support["at_m"] is not None and places.sits_at(support, location)
-    ]
-    loads = [
-        {"point": f"at_{support['name']}", "direction": direction, "force_N": parameters[name]}
+    chosen = [support for support in values["supports"] if places.sits_at(support, location)]
+    points = {
+        f"at_{support['name']}": support["at_m"]
         for support in chosen
-        for name, direction in (("force_x", [1.0, 0.0, 0.0]), ("force_y", [0.0, 1.0, 0.0]))
+        if support["at_m"] is not None
+    }
+    loads = [
+        {
+            "point": support["point"] or f"at_{support['name']}",
+            "direction": [float(x) for x in direction],
+            "force_N": parameters[name],
+        }
+        for support in chosen
+        for name, direction in zip(
+            ("force_x", "force_y"), places.axes_across(values, support["at_m"]), strict=True
+        )
     ]
     excitation = values["excitation"] | {"constant": [*values["excitation"]["constant"], *loads]}
-    return values | {
-        "excitation": excitation,
-        "points": (
-            values["points"] | {f"at_{support['name']}": support["at_m"] for support in chosen}
-        ),
-    }
-
-
-def locations(values: Values) -> list[str]:
-    """Return all supports together, then one by one."""
-    names = [
-        support["name"]
-        for support in values["supports"]
-        if support["at_m"] is not None and support["name"] != places.STOP
-    ]
-    return ["all", *names] if len(names) > 1 else names
+    return values | {"excitation": excitation, "points": values["points"] | points}
 
 
 EFFECT = Effect(
@@ -53,7 +45,7 @@ EFFECT = Effect(
             per="gap_force",
             log=False,
             gain_power=1.0,
-            meaning="force along x",
+            meaning="force along the first transverse direction",
         ),
         Parameter(
             "force_y",
@@ -64,11 +56,11 @@ EFFECT = Effect(
             per="gap_force",
             log=False,
             gain_power=1.0,
-            meaning="force along y",
+            meaning="force along the second transverse direction",
         ),
     ),
     apply=apply,
-    locations=locations,
+    locations=places.supports,
     broken=("T2", "T3", "T4"),
     aliases=("support_offset",),
 )

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
+from vibroimpact.effects import lateral_stinger
 from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Effect, Parameter, Values
 from vibroimpact.effects.places import ALONG, TURNED
@@ -426,8 +427,6 @@ def linear_candidates(
             locations = places(names) if effect.measured else effect.locations(values)
             if effect.id == "mode_frequency_error":
                 locations = [f"mode_{mode + 1}" for mode in modes]
-            if effect.id == "lateral_stinger":
-                locations = [location for location in locations if location != "along_z"]
             found += [Candidate(effect.id, location) for location in locations]
     return found
 
@@ -455,7 +454,11 @@ def local_candidates(
                 on_tube = on_structure.length_m(values) is not None
                 locations = [ALONG] if on_tube else spread(locations)
             found += [Candidate(effect.id, location) for location in locations]
-    return [candidate for candidate in found if modes is None or not _identified(candidate, modes)]
+    return [
+        candidate
+        for candidate in found
+        if modes is None or not _identified(candidate, modes, values)
+    ]
 
 
 def spread(locations: Sequence[str], count: int = PLACES) -> list[str]:
@@ -473,13 +476,15 @@ def spread(locations: Sequence[str], count: int = PLACES) -> list[str]:
 UNSEEN_MODES = 6
 
 
-def _identified(candidate, modes):
+def _identified(candidate, modes, values):
     """Return whether a lowest record that shows modes (mode,) can identify a candidate: a linear
-    effect that does not act across the measured motion.
+    effect that does not act across the motion that the force drives.
     """
     if candidate.effect_id == "mode_frequency_error":
         return candidate.mode in modes
-    return candidate.effect.linear and candidate != Candidate("lateral_stinger", "along_x")
+    rod = candidate.effect_id == lateral_stinger.EFFECT.id
+    across = rod and lateral_stinger.across_force(values, candidate.location)
+    return candidate.effect.linear and not across
 
 
 def not_testable(held: Collection[str]) -> list[str]:

@@ -96,7 +96,7 @@ def contact_force_rows(model: ModalModel, signals: Signals) -> list[dict]:
 
 def strain_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
     """Return a row of checks for each strain that is left out of the comparison with a tube."""
-    rows = []
+    rows: list[dict] = []
     if config.structure.kind not in TUBES:
         return rows  # see still_rows
     for channel in np.flatnonzero(campaign["channel_kind"].values == STRAIN):
