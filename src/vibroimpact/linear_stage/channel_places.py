@@ -44,6 +44,10 @@ class TubePlaces:
         """Return (3,) m."""
         return self._line.position(place)
 
+    def apart_m(self, one: float, other: float) -> float:
+        """Return the distance in m of two places along the tube."""
+        return abs(one - other)
+
 
 class PointPlaces:
     """The named points of the structure of a Workbench, as TubePlaces."""
@@ -69,6 +73,10 @@ class PointPlaces:
     def position(self, place: float) -> np.ndarray:
         """Return (3,) m."""
         return np.array(self._points[self._names[int(place)]])
+
+    def apart_m(self, one: float, other: float) -> float:
+        """Return the distance in m of two places."""
+        return float(np.linalg.norm(self.position(one) - self.position(other)))
 
 
 def channel_places(bench: Workbench) -> TubePlaces | PointPlaces:

@@ -27,7 +27,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from . import nuisance as linear
 from . import priors
-from .channel_places import TubePlaces, channel_places
+from .channel_places import channel_places
 from .effect_fit import REACH, coarse, descended, moved
 from .linearised import linearised, matched, same_modes
 from .mode_identification import fit_modes, left, modelled_lines
@@ -354,9 +354,7 @@ class LinearMisfit:
     def off_m(self, mend: Mend) -> float:
         """Return how far in m that is from where the channel is stated to be, along a tube."""
         channel = self.bench.signals.names.index(mend.which)
-        if isinstance(self._sites, TubePlaces):
-            return float(abs(mend.amount - self.stated(channel)))
-        return float(np.linalg.norm(self.place(mend) - self.bench.bare.sensor_positions[channel]))
+        return self._sites.apart_m(mend.amount, self.stated(channel))
 
     def _name(self, channel):
         return self.bench.signals.names[channel]
