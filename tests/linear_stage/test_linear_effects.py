@@ -24,7 +24,7 @@ from vibroimpact.linear_stage.effect_fit import LinearChanges
 from vibroimpact.linear_stage.linear_analysis import adopt, prepare, workbench
 from vibroimpact.linear_stage.lowest_record import suffices, told_apart
 from vibroimpact.linear_stage.nearest_model import translated
-from vibroimpact.linear_stage.nonlinear_substitutes import gain_of_spring
+from vibroimpact.linear_stage.spring_in_record import SpringInRecord
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
@@ -266,7 +266,8 @@ def test_nonlinear_substitutes_sit_where_a_spring_would(study_config, tmp_path):
     bare = Workbench(study_config, bench.campaign, SECONDS)
     bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
     there, elsewhere = (
-        gain_of_spring(bare, LinearChanges(bare), place, 6600.0) for place in ("shaker", "lower_y")
+        SpringInRecord(bare, LinearChanges(bare), place, 6600.0).along_force().gain
+        for place in ("shaker", "lower_y")
     )
     assert (
         there == pytest.approx(prepared.adopted["gain"], abs=3.0) and elsewhere < 0.5 * there

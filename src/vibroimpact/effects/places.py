@@ -251,6 +251,14 @@ def start_direction(values: Values) -> np.ndarray | None:
     return _centreline(values).direction(0.0)
 
 
+def direction_at(values: Values, point: str) -> np.ndarray | None:
+    """Return the direction (3,) of a tube at a named point, None of another structure."""
+    if values["structure"]["kind"] not in TUBES:
+        return None
+    line = _centreline(values)
+    return line.direction(line.locate(values["points"][point], point))
+
+
 def support_at(values: Values, point: str) -> Values:
     """Return the keys of a support of one contact point at a named point."""
     if values["structure"]["kind"] not in TUBES:

@@ -234,9 +234,7 @@ class Candidate:
         if self.effect.measured:
             return values
         assert self.effect.apply is not None, "an effect of the model changes its configuration"
-        if not self.along:
-            return self.effect.apply(values, parameters, self.location)
-        location = _place(parameters)
+        location = _place(parameters) if self.along else self.location
         return self.effect.apply(on_structure.with_place(values, location), parameters, location)
 
     def measuring(self, parameters: dict[str, float], names: Sequence[str]) -> Measuring | None:
@@ -410,7 +408,7 @@ def other_places(candidate: CandidateOrPair, values: Values) -> list[CandidateOr
     locations = candidate.effect.locations(values)
     return (
         [replace(candidate, location=place) for place in locations if place != candidate.location]
-        if candidate.effect_id in AT_A_POINT and not candidate.along
+        if candidate.effect_id in AT_A_POINT and candidate.location in locations
         else []
     )
 

@@ -47,10 +47,11 @@ from .effect_table import held, nearest_linear
 from .lowest_record import read_lowest
 from .modal_fit import ModalFit
 from .nearest_model import translated
-from .nonlinear_substitutes import in_place
+from .nonlinear_substitutes import LEAST_SHARE, in_place
 from .nuisance import neutral, plausible
 from .prepared import Prepared
 from .scales import scales
+from .spring_in_record import across_the_force
 from .workbench import Workbench, corrected_nuisance
 
 
@@ -216,7 +217,11 @@ def prepare(config: ConfigPart, campaign_path: str | Path, draw: int = 0) -> Pre
     shown = out.fit["modes"] if out.fit else bench.measured_fit.modes if out.linear_stage else None
     candidates = local_candidates(bench.given, held(campaign), telling_modes(out, shown))
     out.still_linear = bool(bench.linear_stage)
+    across = across_too(bench, fresh, out)
     out.in_place = taken_for_linear(bench, fresh, out, candidates)
+    candidates += across
+    if out.adopted is not None:
+        out.in_place += [candidate.name for candidate in across]
     out.screened = [candidate.name for candidate in candidates if out.beside_or_in_place(candidate)]
     # contact may be the consequence of a linear effect: the best of them are simulated where they
     # fit best
@@ -256,6 +261,21 @@ def motion_of_strains(signals: Signals, structure: ConfigPart) -> float:
         return 0.0
     strain = float(np.nanstd(signals.response[signals.load.argmax()][gauges]))
     return strain * speed_per_strain(structure) / (2.0 * np.pi * signals.band_Hz[0])
+
+
+def across_too(
+    bench: Workbench, fresh: Callable[[], Workbench], prepared: Prepared
+) -> list[Candidate]:
+    """Return the Candidates that act across the force where the lowest record shows a spring that
+    does, see spring_in_record.across_the_force; arguments as in taken_for_linear.
+    """
+    unexplained = prepared.adopted is not None or prepared.nonlinear_low
+    if not (prepared.linear_stage and unexplained) or prepared.other_structure:
+        return []
+    bare = fresh()
+    bare.measured_fit = translated(bench.measured_fit, bench.bare, bare.bare)
+    gain = LEAST_SHARE * prepared.adopted["gain"] if prepared.adopted is not None else 0.0
+    return across_the_force(bare, gain, prepared.scales["tube_translation"])
 
 
 def taken_for_linear(

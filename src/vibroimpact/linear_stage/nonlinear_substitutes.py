@@ -8,27 +8,17 @@ point explain, no effect there explains: such an effect is not simulated instead
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
-from scipy import optimize
 
-from vibroimpact.config.reading import check_config
 from vibroimpact.effects import places
-from vibroimpact.observation.attached_model import attach
 
-from . import nuisance as linear
 from .candidates import Candidate
 from .effect_fit import LinearChanges
-from .linearised import linearised
+from .spring_in_record import SpringInRecord
 from .workbench import Workbench
 
 LEAST_SHARE = 0.5  # of the gain of what was adopted: at the right place it is all of it
-# of the tube's own stiffness: below it a spring is searched linearly, above it in its logarithm
-SMALL = 0.01
-# arsinh of the stiffness, ln of the damping, in units of the small one's
-GRID = (np.linspace(-5.0, 9.0, 15), (-9.0, -5.0, -2.0))
-SEARCHED = 80  # evaluations at most, from the best point of the grid
 
 
 def in_place(
@@ -53,7 +43,9 @@ def in_place(
         return [candidate.name for candidate in acting]
     changes = LinearChanges(bench)
     enough = [
-        name for name in at if gain_of_spring(bench, changes, name, stiffness) > LEAST_SHARE * gain
+        name
+        for name in at
+        if SpringInRecord(bench, changes, name, stiffness).along_force().gain > LEAST_SHARE * gain
     ]
     kept = []
     for candidate in acting:
@@ -71,49 +63,3 @@ def in_place(
 def _nearest(own, at, name):
     """Return the one of the points `own` that is nearest to a point; at: {name: (3,) m}."""
     return min(own, key=lambda place: np.linalg.norm(at[place] - at[name]))
-
-
-def gain_of_spring(bench: Workbench, changes: LinearChanges, place: str, stiffness: float) -> float:
-    """Return the gain in log likelihood of the lowest record by the best spring, of positive or
-    negative stiffness, and dashpot between a named point and the ground.
-
-    changes: LinearChanges of the Workbench; stiffness: scale in N/m.
-    """
-    element = places.with_element(
-        changes.values,
-        "equivalent",
-        place,
-        places.across(changes.values, place),
-        stiffness_N_per_m=1.0,
-    )
-    model = attach(check_config(element, "variant of the model"), bench.campaign)
-    damping = SMALL * stiffness / model.omega[model.omega > 0.0][0]
-    start = linear.reading_of_model(bench.bare, changes.modes)
-    bare = linear.likelihood(bench.measured_reading, start)[0]
-
-    def loss(unit):
-        laws = replace(
-            model.local_laws,
-            stiffness=_last(model.local_laws.stiffness, SMALL * stiffness * np.sinh(unit[0])),
-            damping=_last(model.local_laws.damping, damping * np.exp(unit[1])),
-        )
-        changed = linearised(replace(model, local_laws=laws))
-        if np.sum(changed.omega > 0.0) < np.sum(model.omega > 0.0):
-            return np.inf  # the negative stiffness makes the structure unstable
-        reading = changes.reading_of(changed)
-        return bare - linear.likelihood(bench.measured_reading, reading, start)[0]
-
-    best = min(((first, second) for first in GRID[0] for second in GRID[1]), key=loss)
-    return -float(
-        optimize.minimize(
-            loss,
-            best,
-            method="Nelder-Mead",
-            options={"xatol": 0.01, "fatol": 0.3, "maxfev": SEARCHED},
-        ).fun
-    )
-
-
-def _last(values, value):
-    """Return values (n,) with the last one replaced."""
-    return np.append(values[:-1], value)

@@ -33,10 +33,9 @@ SIZES = (1.0, 30.0)
 # hidden: 0.2 and 0.4, together 0.3.
 ALIKE = 0.3
 
-# Standard deviation of the logarithm of clearances that are right, in records that hardly touch:
-# two right codes, and a drawing and a support, differ by as much in how near a tube comes.
+# Standard deviation of the logarithm of clearances that are right, in records at the onset of
+# contact: two right codes, and a drawing and a support, differ by as much in how near a tube comes.
 CLEARANCE_SD = 0.03
-HARDLY_DB = 0.05  # by which contact changes such a record at most, in the median
 
 # Runs.
 NULL_DRAWS = 12  # of nuisances

@@ -1,5 +1,6 @@
 """What records look like where nothing is missing: the bare model with its nuisances drawn."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from vibroimpact.linear_stage.workbench import Workbench
 from vibroimpact.observation.features import FeatureLayout, compressed
 
 from . import constants
+from .constants import CLEARANCE_SD
 from .nuisances import clearance_draws, nuisance_draws
 from .side_by_side import side_by_side
 
@@ -127,9 +129,6 @@ class Null:
         return float(stats.chi2.sf(rest @ rest, self.values))
 
 
-OUT_OF_REACH = 1.0e3  # times the clearances: no tube touches
-
-
 def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) -> Null:
     """Return the Null of records of a Workbench; threads: runs at a time.
 
@@ -137,8 +136,9 @@ def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) 
     drawn nuisances change on average is in the covariance: left in the mean, it is in the change
     of every explanation and in none of the measurement's.
 
-    Whether a record that hardly touches does so depends on clearances to a few percent: they are
-    drawn in those alone. Where contact is strong a small scale is one of many effects alike.
+    At the onset of contact a few percent of clearance decide whether a tube touches: clearances are
+    drawn in the records that they change by more than chance, and in those alone. Where contact is
+    strong a small scale is one of many effects alike.
     """
     draws = nuisance_draws(bench, constants.NULL_DRAWS, seed)
     seeds = max(1, LANES // len(records))
@@ -155,30 +155,41 @@ def null_of(bench: Workbench, records: np.ndarray, seed: int, threads: int = 1) 
 
     jobs = [(number, records, 1.0) for number in range(len(benches))]
     rows = side_by_side(features, jobs, threads)
-    near = hardly_touching(rows[0], features((0, records, OUT_OF_REACH)))
+    null = _of_rows(bench, records, rows, first)
+    ends = [(0, records, float(np.exp(end))) for end in (-CLEARANCE_SD, CLEARANCE_SD)]
+    near = at_onset(null, rows[0], side_by_side(features, ends, threads))
     if len(near):
         scales = enumerate(clearance_draws(len(draws), seed), start=first)
         jobs = [(number, records[near], scale) for number, scale in scales]
         for row, found in zip(rows[first:], side_by_side(features, jobs, threads), strict=True):
             row[near] = found
-    central, drawn = (
-        of_survivors(np.concatenate(part, axis=1)) for part in (rows[:first], rows[first:])
-    )
-    null = _of_runs(bench, records, central, drawn)
+        null = _of_rows(bench, records, rows, first)
     return replace(null, measured=null.change(bench.measured_features[records]))
 
 
-def hardly_touching(features: np.ndarray, untouched: np.ndarray) -> np.ndarray:
-    """Return the numbers of the records whose features (record, run, feature) contact hardly
-    changes; untouched: those of the same runs without any.
+def at_onset(null: Null, features: np.ndarray, scaled: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the numbers of the records whose features (record, run, feature) one standard
+    deviation of the clearances changes by more than chance; scaled: those of the same runs with
+    clearances a standard deviation smaller, and larger.
     """
-    changed = np.median(np.abs(features - untouched), axis=(1, 2))
-    return np.flatnonzero(changed < constants.HARDLY_DB)
+    at, *changed = (null.change(of_survivors(rows).mean(axis=1)) for rows in (features, *scaled))
+    changes = np.array(changed) - at
+    size = np.mean(changes.reshape(len(scaled), len(null.records), -1) ** 2, axis=-1)
+    by_chance = 2.0 / features.shape[1]  # of what two means of so many runs differ by
+    return np.flatnonzero(size.max(axis=0) > 1.0 + by_chance)
 
 
 def scatter(rows: np.ndarray) -> np.ndarray:
     """Return the covariance (feature, feature) of deviations (run, feature) from the mean."""
     return shrunk(rows, len(rows))
+
+
+def _of_rows(bench, records, rows, first):
+    """Return the Null of features [(record, run, feature)], with nuisances drawn from the first."""
+    central, drawn = (
+        of_survivors(np.concatenate(part, axis=1)) for part in (rows[:first], rows[first:])
+    )
+    return _of_runs(bench, records, central, drawn)
 
 
 def _of_runs(bench, records, central, drawn):
