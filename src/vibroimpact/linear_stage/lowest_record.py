@@ -64,7 +64,11 @@ def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared)
     out.residual = fit.residual.tolist()
     out.nonlinear_low = bool(fit.residual[driven].max() > priors.LINEAR_RESIDUAL)
     identified = read_driven(bench, fresh, out, begun)
-    bench = read_all(bench, fresh, out, tables, begun) if identified is None else identified
+    effect_leads = False
+    if identified is None:
+        bench, effect_leads = read_all(bench, fresh, out, tables, begun)
+    else:
+        bench = identified
     out.other_structure = out.adopted is not None and structure_says_as_much(
         bench, fresh, out.adopted
     )
@@ -73,7 +77,7 @@ def read_lowest(bench: Workbench, fresh: Callable[[], Workbench], out: Prepared)
     ):
         bench, out.adopted, out.nonlinear_low = fresh(), None, True
         bench.measured_fit = fit
-    if out.adopted is None:
+    if out.adopted is None and not effect_leads:
         out.other_structure = out.other_structure or is_of_another_structure(bench)
     if out.other_structure:
         out.nonlinear_low = False
@@ -156,9 +160,11 @@ def read_all(
     out: Prepared,
     tables: dict[str, LinearTable],
     begun: Begun,
-) -> Workbench:
-    """Return the Workbench with the linear effects identified from all modes that the lowest record
-    shows; Prepared out is changed.
+) -> tuple[Workbench, bool]:
+    """Return (Workbench with the linear effects identified from all modes that the lowest record
+    shows, whether one that is not adopted explains it, and better than another structure does);
+    Prepared out is changed. Beside contact at that load an effect explains a record and does not
+    leave it linear.
     """
     driven, fit = driven_channels(bench), bench.measured_fit
     out.linear = linear_rows(bench, out.scales, tables, begun)
@@ -181,10 +187,16 @@ def read_all(
         if leaves:
             leaves.sort(key=lambda one: (not adopted_explains(one[2], fresh, one[1]), one[0]))
             _, out.adopted, bench = leaves[0]
+    effect_leads = False
     if out.nonlinear_low:
+        effect_leads = (
+            out.adopted is not None
+            and adopted_explains(bench, fresh, out.adopted)
+            and not structure_says_as_much(bench, fresh, out.adopted)
+        )
         out.adopted, bench = None, fresh()
         bench.measured_fit = fit
-    return bench
+    return bench, effect_leads
 
 
 def adopted_explains(
