@@ -51,7 +51,7 @@ from .nonlinear_substitutes import LEAST_SHARE, in_place
 from .nuisance import neutral, plausible
 from .prepared import Prepared
 from .scales import scales
-from .spring_in_record import across_the_force
+from .springs_across import across_the_force
 from .workbench import Workbench, corrected_nuisance
 
 
@@ -267,7 +267,7 @@ def across_too(
     bench: Workbench, fresh: Callable[[], Workbench], prepared: Prepared
 ) -> list[Candidate]:
     """Return the Candidates that act across the force where the lowest record shows a spring that
-    does, see spring_in_record.across_the_force; arguments as in taken_for_linear.
+    does, see springs_across.across_the_force; arguments as in taken_for_linear.
     """
     unexplained = prepared.adopted is not None or prepared.nonlinear_low
     if not (prepared.linear_stage and unexplained) or prepared.other_structure:
