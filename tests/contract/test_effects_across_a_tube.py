@@ -69,6 +69,17 @@ def test_rod_holds_a_u_tube_across_its_legs():
     assert EFFECTS["lateral_stinger"].locations(values) == ["along_x", "along_y"]
 
 
+def test_rod_holds_a_tube_along_an_oblique_force():
+    """No global axis is along it, and a spring along one moves the tube across the force too."""
+    values = {"elements": [], **values_of("x", (0.0, 0.6, 0.8))}
+    rod = EFFECTS["lateral_stinger"]
+    assert rod.locations(values) == ["along_force", "along_y", "along_z"]
+    found = rod.apply(values, {"stiffness": 1000.0, "damping": 2.0}, "along_force")
+    (element,) = found["elements"][-1:]
+    assert element["direction"] == pytest.approx([0.0, 0.6, 0.8])
+    assert not across_force(values, "along_force")
+
+
 @pytest.mark.parametrize(
     ("force", "location", "wanted"),
     [

@@ -3,6 +3,7 @@ waveform.
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -283,7 +284,11 @@ def test_two_modes_side_by_side_tell_their_sum(rig):
     omega = bench.bare.omega.copy()
     pair = fit.modes[:2]
     omega[pair[1]] = omega[pair[0]] * 1.0005
-    model = replace(bench.bare, omega=np.sort(omega), damping=np.full(len(omega), 1.0))
+    model = SimpleNamespace(
+        omega=np.sort(omega),
+        damping=np.full(len(omega), 1.0),
+        sensor_shapes=np.full((len(omega), 1), 0.7),
+    )
     modes = np.flatnonzero(np.isin(model.omega, omega[pair]))
     record = bench.linear_record
     drive = np.ones((2, 1))
@@ -295,6 +300,26 @@ def test_two_modes_side_by_side_tell_their_sum(rig):
     own = found.joint_covariance[4:, 4:]
     total, difference = (np.array(row) @ own @ np.array(row) for row in ([1, 1], [1, -1]))
     assert difference > 100.0 * total > 0.0
+
+
+def test_two_planes_at_one_frequency_are_told_apart(rig):
+    """The bending planes of a round tube: the model's frequencies are equal, those of the tube are
+    0.6 % apart, and force and sensors are skew to both.
+    """
+    bench, fit = rig
+    omega = np.full(2, bench.bare.omega[fit.modes[0]])
+    shapes = np.array([[1.0, -0.6, 0.8], [0.5, 0.7, -0.9]])
+    model = SimpleNamespace(omega=omega, damping=np.full(2, 4.0), sensor_shapes=shapes)
+    record, drive = bench.linear_record, np.array([[0.8], [0.6]])
+    apart, turned = np.array([0.004, -0.002]), np.array([1.3, 0.5])
+    basis = record.responses(omega * np.exp(apart), model.damping, drive, "acceleration")
+    measured = (shapes.T * turned) @ basis
+    weights = np.full(measured.shape, 100.0 / np.abs(measured).max())
+    kinds = ["acceleration"] * 3
+    lines = ModalLines(record, measured, weights, model, np.arange(2), drive, kinds)
+    found = lines.fit(np.ones((3, 2), bool), np.ones(3), np.zeros(3), np.zeros(2))
+    np.testing.assert_allclose(found.log_frequency, apart, atol=2e-4)
+    np.testing.assert_allclose(found.participation, shapes.T * turned, rtol=0.05)
 
 
 @pytest.mark.parametrize("from_rest", [True, False])

@@ -9,44 +9,53 @@ from .effect import Effect, Parameter, Values
 
 # cosine between the rod and the force: below it the rod holds a motion that the force hardly drives
 ACROSS = 0.1
-DIRECTIONS = {"along_x": (1.0, 0.0, 0.0), "along_y": (0.0, 1.0, 0.0), "along_z": (0.0, 0.0, 1.0)}
+ALONG = 0.995  # cosine between a force and a global axis: from it on the force is along the axis
+AXES = {"along_x": (1.0, 0.0, 0.0), "along_y": (0.0, 1.0, 0.0), "along_z": (0.0, 0.0, 1.0)}
+ALONG_FORCE = "along_force"
 
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a spring and a damper at the drive point, along a global
-    axis.
+    """Return the configuration with a spring and a damper at the drive point, along a global axis
+    or the force.
     """
     laws = {
         "stiffness_N_per_m": parameters["stiffness"],
         "damping_N_s_per_m": parameters["damping"],
     }
     return places.with_element(
-        values, "lateral_stinger", values["excitation"]["point"], DIRECTIONS[location], **laws
+        values, "lateral_stinger", values["excitation"]["point"], _held(values, location), **laws
     )
 
 
+def _held(values, location):
+    """Return the direction (3,) that a rod holds."""
+    return values["excitation"]["direction"] if location == ALONG_FORCE else AXES[location]
+
+
 def locations(values: Values) -> list[str]:
-    """Return the axes along which a rod may hold the structure: of a tube the two of x, y and z
-    that are least along its start, where it is held: hardly any of it moves along the third.
+    """Return the directions along which a rod may hold the structure: that of a force that is along
+    no axis, and x, y and z; of a tube the two of these that are least along its start, where it is
+    held: hardly any of it moves along the third.
     """
-    along = places.start_direction(values)
-    if along is None:
-        return list(DIRECTIONS)
-    out = int(np.argmax(np.abs(along)))
-    return [name for number, name in enumerate(DIRECTIONS) if number != out]
+    force = values["excitation"].get("direction")  # none of what acts along a whole tube
+    oblique = force is not None and np.abs(unit_vector(force)).max() < ALONG
+    names = [ALONG_FORCE] if oblique else []
+    start = places.start_direction(values)
+    out = None if start is None else int(np.argmax(np.abs(start)))
+    return names + [name for number, name in enumerate(AXES) if number != out]
 
 
 def across_force(values: Values, location: str) -> bool:
     """Return whether a rod along a location is across the force."""
     force = unit_vector(values["excitation"]["direction"])
-    return bool(abs(force @ np.array(DIRECTIONS[location])) < ACROSS)
+    return bool(abs(force @ unit_vector(_held(values, location))) < ACROSS)
 
 
 EFFECT = Effect(
     id="lateral_stinger",
     family="spring",
     explanation="the rod of the shaker holds the structure sideways or along the force",
-    law="force = stiffness u + damping du/dt at the drive point, along a global axis",
+    law="force = stiffness u + damping du/dt at the drive point, along an axis or the force",
     source="spring and damper",
     parameters=(
         Parameter(

@@ -30,6 +30,7 @@ IN_WORDS = {
     "tube": "the whole tube",
     "about_z": "about the z axis",
     "about_tube": "about the tube's axis",
+    "along_force": "along the force",
     **{f"along_{axis}": f"along {axis}" for axis in "xyz"},
     "responses": "all responses",
     "force_and_responses": "the force and all responses",

@@ -23,6 +23,9 @@ IDLE = 1.0e-9  # of the largest slope: a logarithm of less is not fitted
 STEP_LIMIT = 0.02  # of ln frequency in one iteration
 # of the largest mode in a channel: a mode that differs from the others by less is not separated
 SINGULAR = 1.0e-9
+# One standard deviation of a participation about the model's, in those of its channel: of two modes
+# at one frequency the lines tell the sum alone
+PARTICIPATION_SD = 3.0
 SETTLED = 1.0e-6  # of the residual: a step that promises to reduce it by less is not taken
 # of the frequency, to either side, in steps of half the bandwidth: where the start is searched
 SEARCH = 0.02
@@ -95,6 +98,9 @@ class ModalLines:
     measured, weights: (channel, line). modes (fitted,): indices of the model's modes that are
     fitted. drive (fitted, force_channel). kinds (channel,): of motion or strain.
 
+    Participations are known a priori to be near the model's: each is one line more, beside the
+    lines of the record.
+
     From a channel with an error of its gain the motion of the base is subtracted with the same
     error. So besides the modes each channel may contain any amount of it (LinearRecord.base).
     """
@@ -122,6 +128,9 @@ class ModalLines:
             model.damping[modes] / (2.0 * model.omega[modes]),
             len(modes),
         )
+        self.expected = self._expected(model.sensor_shapes[modes].T)
+        self.spread = PARTICIPATION_SD * np.abs(self.expected).max(axis=1, keepdims=True)
+        self.spread = np.maximum(self.spread, 1.0e-300)
 
     def fit(
         self,
@@ -193,6 +202,16 @@ class ModalLines:
         )
         return other < (1.0 - SETTLED) * one
 
+    def _expected(self, shapes):
+        """Return the model's participations (channel, fitted), as large as the channels respond:
+        the gain of one may be wrong by orders of magnitude.
+        """
+        model = combined(shapes, self._basis(np.zeros(2 * self.count)), self.kinds)
+        size, wanted = (
+            np.linalg.norm(self.weights * lines, axis=1) for lines in (model, self.measured)
+        )
+        return shapes * (wanted / np.maximum(size, 1.0e-300))[:, None]
+
     def _at(self, logs):
         """Return (omega, damping) (fitted,) in rad/s and 1/s."""
         omega = self.omega * np.exp(logs[: self.count])
@@ -203,26 +222,36 @@ class ModalLines:
         return responses_of(self.record, *self._at(logs), self.drive, self.kinds)
 
     def _left(self, shapes, basis):
-        """Return (channel, line): the weighted residual of participations (channel, fitted)."""
-        left = self.measured - combined(shapes, basis, self.kinds)
-        return self.weights * without_base(left, self.record, self.weights)
-
-    def _beside_base(self, rows, channel):
-        """Return weighted rows (row, line) of a channel, and one more of the motion of the base
-        where the channel contains it.
+        """Return (channel, line + fitted): the weighted residual of participations (channel,
+        fitted), and what they differ from the model's.
         """
+        left = self.measured - combined(shapes, basis, self.kinds)
+        lines = self.weights * without_base(left, self.record, self.weights)
+        return np.hstack(
+            [lines, np.where(shapes != 0.0, self.expected - shapes, 0.0) / self.spread]
+        )
+
+    def _rows(self, basis, seen, channel):
+        """Return weighted rows (row, line + fitted) of the participations seen of a channel, each
+        with its own line of what is known of it; and one more of the motion of the base where the
+        channel contains it.
+        """
+        own = np.flatnonzero(seen[channel])
+        rows = self.weights[channel] * basis[self.kinds[channel]][own]
+        rows = np.hstack([rows, np.eye(self.count)[own] / self.spread[channel]])
         base = self.record.base
         if base is None or not base[channel].any():
             return rows
-        return np.concatenate([rows, (self.weights[channel] * base[channel])[None]])
+        moved = np.append(self.weights[channel] * base[channel], np.zeros(self.count))
+        return np.concatenate([rows, moved[None]])
 
     def _participations(self, basis, seen, phases=False):
         """Return (channel, fitted): the participations of the least residual."""
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
-            rows = self.weights[c] * basis[self.kinds[c]][seen[c]]
-            rows = self._beside_base(rows, c)
-            target = self.weights[c] * self.measured[c]
+            rows = self._rows(basis, seen, c)
+            known = np.where(seen[c], self.expected[c], 0.0) / self.spread[c]
+            target = np.append(self.weights[c] * self.measured[c], known)
             found = (
                 linalg.lstsq(rows.T, target)[0]
                 if phases
@@ -232,9 +261,9 @@ class ModalLines:
         return shapes
 
     def _slopes(self, best, seen):
-        """Return (2 channel line, 2 fitted): the derivatives of the weighted fit by each logarithm,
-        without what participations would compensate; and (channel, fitted, 2 fitted): the
-        derivatives of these.
+        """Return (2 channel (line + fitted), 2 fitted): the derivatives of the weighted fit by each
+        logarithm, without what participations would compensate; and (channel, fitted, 2 fitted):
+        the derivatives of these.
 
         The simplification of L. Kaufman (BIT 15, 1975): the derivative of the basis, without its
         projection onto the basis, channel by channel.
@@ -244,14 +273,13 @@ class ModalLines:
             kind: np.concatenate(self.record.changes(*self._at(logs), self.drive, kind))
             for kind in basis
         }
-        slopes = np.zeros((len(shapes), 2 * self.measured.shape[1], 2 * self.count))
+        lines = self.measured.shape[1] + self.count
+        slopes = np.zeros((len(shapes), 2 * lines, 2 * self.count))
         taken = np.zeros((*shapes.shape, 2 * self.count))
         for channel, kind in enumerate(self.kinds):
-            own = _real(
-                (np.tile(shapes[channel], 2)[:, None] * self.weights[channel]) * change[kind]
-            ).T
-            known = self.weights[channel] * basis[kind][seen[channel]]
-            known = self._beside_base(known, channel)
+            moved = (np.tile(shapes[channel], 2)[:, None] * self.weights[channel]) * change[kind]
+            own = _real(np.pad(moved, ((0, 0), (0, self.count)))).T
+            known = self._rows(basis, seen, channel)
             columns = [_real(known)] + [_real(1j * known)] * np.iscomplexobj(shapes)
             span, turn = np.linalg.qr(np.vstack(columns).T)
             inside = span.T @ own
@@ -264,8 +292,9 @@ class ModalLines:
 
     def _result(self, best, slopes, shape_slopes, seen, noise, delay):
         logs, shapes, basis, residual = best
-        covariance = linalg.pinvh(slopes.T @ slopes) * max(1.0, np.mean(np.abs(residual) ** 2))
-        power = np.sqrt(np.sum(np.abs(residual / self.weights) ** 2, axis=-1))
+        left = residual[:, : -self.count]
+        covariance = linalg.pinvh(slopes.T @ slopes) * max(1.0, np.mean(np.abs(left) ** 2))
+        power = np.sqrt(np.sum(np.abs(left / self.weights) ** 2, axis=-1))
         total = np.sqrt(np.sum(np.abs(self.measured) ** 2, axis=-1))
         return ModalFit(
             self.modes,
@@ -274,7 +303,7 @@ class ModalLines:
             logs[self.count :],
             shapes,
             covariance,
-            self._shape_covariance(basis, seen, np.mean(np.abs(residual) ** 2, axis=-1)),
+            self._shape_covariance(basis, seen, np.mean(np.abs(left) ** 2, axis=-1)),
             shape_slopes,
             delay,
             power / np.hypot(noise, RESIDUAL_SHARE * total),
@@ -287,8 +316,7 @@ class ModalLines:
         """
         out = np.zeros((len(seen), self.count, self.count))
         for channel in np.flatnonzero(seen.any(axis=1)):
-            rows = self.weights[channel] * basis[self.kinds[channel]][seen[channel]]
-            rows = _real(self._beside_base(rows, channel))
+            rows = _real(self._rows(basis, seen, channel))
             count = int(seen[channel].sum())
             root = _inverse(np.linalg.qr(rows.T, mode="r"))[:count]
             out[np.ix_([channel], seen[channel], seen[channel])] = (
