@@ -158,14 +158,14 @@ def _judged(benches, before, after):
 
 
 def telling_record(closed: Closing) -> str | None:
-    """Return the name of the held-out record that disagrees most with the model as given, None
-    where none does by more than chance: an excess over the floor as large as the floor.
+    """Return the name of the held-out record that disagrees most with the completed model of a
+    Closing, None where none does by more than chance: an excess over the floor as large as it.
 
     Where the fitted records show nothing, as they may when contact begins in the others, what is
     missing is looked for with that record, and verified on the rest.
     """
-    whole, features = closed.benches[0], closed.before.features
-    cells = counted(whole) & _repeat(whole, closed.before)
+    whole, features = closed.benches[1], closed.after.features
+    cells = counted(whole) & _repeat(whole, closed.after)
     most, name = 1.0, None
     for record in whole.signals.holdout():
         row = misfit.misfit_of(whole, np.array([record]), cells, features, features)
