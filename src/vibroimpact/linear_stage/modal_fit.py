@@ -129,8 +129,11 @@ class ModalLines:
             len(modes),
         )
         self.expected = self._expected(model.sensor_shapes[modes].T)
-        self.spread = PARTICIPATION_SD * np.abs(self.expected).max(axis=1, keepdims=True)
-        self.spread = np.maximum(self.spread, 1.0e-300)
+        largest = np.abs(self.expected).max(axis=1, keepdims=True)
+        # nothing is known of a channel that the model says is still
+        self.known = np.divide(
+            1.0 / PARTICIPATION_SD, largest, out=np.zeros_like(largest), where=largest > 0.0
+        )
 
     def fit(
         self,
@@ -227,9 +230,7 @@ class ModalLines:
         """
         left = self.measured - combined(shapes, basis, self.kinds)
         lines = self.weights * without_base(left, self.record, self.weights)
-        return np.hstack(
-            [lines, np.where(shapes != 0.0, self.expected - shapes, 0.0) / self.spread]
-        )
+        return np.hstack([lines, self.known * np.where(shapes != 0.0, self.expected - shapes, 0.0)])
 
     def _rows(self, basis, seen, channel):
         """Return weighted rows (row, line + fitted) of the participations seen of a channel, each
@@ -238,7 +239,7 @@ class ModalLines:
         """
         own = np.flatnonzero(seen[channel])
         rows = self.weights[channel] * basis[self.kinds[channel]][own]
-        rows = np.hstack([rows, np.eye(self.count)[own] / self.spread[channel]])
+        rows = np.hstack([rows, self.known[channel] * np.eye(self.count)[own]])
         base = self.record.base
         if base is None or not base[channel].any():
             return rows
@@ -250,8 +251,8 @@ class ModalLines:
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
             rows = self._rows(basis, seen, c)
-            known = np.where(seen[c], self.expected[c], 0.0) / self.spread[c]
-            target = np.append(self.weights[c] * self.measured[c], known)
+            near = self.known[c] * np.where(seen[c], self.expected[c], 0.0)
+            target = np.append(self.weights[c] * self.measured[c], near)
             found = (
                 linalg.lstsq(rows.T, target)[0]
                 if phases
