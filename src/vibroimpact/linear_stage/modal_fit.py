@@ -99,7 +99,8 @@ class ModalLines:
     fitted. drive (fitted, force_channel). kinds (channel,): of motion or strain.
 
     Participations are known a priori to be near the model's: each is one line more, beside the
-    lines of the record.
+    lines of the record. expected (channel, fitted): their most probable values; inverse_sd
+    (channel, 1): one over their standard deviation.
 
     From a channel with an error of its gain the motion of the base is subtracted with the same
     error. So besides the modes each channel may contain any amount of it (LinearRecord.base).
@@ -131,7 +132,7 @@ class ModalLines:
         self.expected = self._expected(model.sensor_shapes[modes].T)
         largest = np.abs(self.expected).max(axis=1, keepdims=True)
         # nothing is known of a channel that the model says is still
-        self.known = np.divide(
+        self.inverse_sd = np.divide(
             1.0 / PARTICIPATION_SD, largest, out=np.zeros_like(largest), where=largest > 0.0
         )
 
@@ -230,7 +231,9 @@ class ModalLines:
         """
         left = self.measured - combined(shapes, basis, self.kinds)
         lines = self.weights * without_base(left, self.record, self.weights)
-        return np.hstack([lines, self.known * np.where(shapes != 0.0, self.expected - shapes, 0.0)])
+        return np.hstack(
+            [lines, self.inverse_sd * np.where(shapes != 0.0, self.expected - shapes, 0.0)]
+        )
 
     def _rows(self, basis, seen, channel):
         """Return weighted rows (row, line + fitted) of the participations seen of a channel, each
@@ -239,7 +242,7 @@ class ModalLines:
         """
         own = np.flatnonzero(seen[channel])
         rows = self.weights[channel] * basis[self.kinds[channel]][own]
-        rows = np.hstack([rows, self.known[channel] * np.eye(self.count)[own]])
+        rows = np.hstack([rows, self.inverse_sd[channel] * np.eye(self.count)[own]])
         base = self.record.base
         if base is None or not base[channel].any():
             return rows
@@ -251,7 +254,7 @@ class ModalLines:
         shapes = np.zeros(seen.shape, complex if phases else float)
         for c in np.flatnonzero(seen.any(axis=1)):
             rows = self._rows(basis, seen, c)
-            near = self.known[c] * np.where(seen[c], self.expected[c], 0.0)
+            near = self.inverse_sd[c] * self.expected[c]
             target = np.append(self.weights[c] * self.measured[c], near)
             found = (
                 linalg.lstsq(rows.T, target)[0]
