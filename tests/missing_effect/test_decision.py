@@ -12,6 +12,7 @@ from vibroimpact.missing_effect.decision import (
     partly_decision,
     smallest,
     something_else,
+    withdrawn_decision,
 )
 from vibroimpact.missing_effect.evidence import Fit
 from vibroimpact.missing_effect.verification import Closing
@@ -96,6 +97,21 @@ def test_nothing_and_something_else_name_nothing():
     unknown = decided(nothing=0.01, something_else=0.94, friction=0.05)
     assert (none.verdict, none.ambiguity, none.chosen) == ("none", [], None)
     assert (unknown.verdict, unknown.ambiguity, unknown.chosen) == ("unknown", [], None)
+
+
+def test_nothing_is_missing_where_all_else_is_refuted():
+    chances = {"nothing": 0.42, "something_else": 1.0e-9, "friction": 0.57, "damping": 0.01}
+    found = withdrawn_decision(decided(**chances))
+    assert (found.verdict, found.chosen, found.ambiguity) == ("none", None, [])
+    assert [row[0] for row in found.rows] == [DAMPING]
+    together = found.nothing + found.something_else + sum(row[1] for row in found.rows)
+    assert together == pytest.approx(1.0) and found.nothing == pytest.approx(0.42 / 0.43)
+
+
+def test_what_is_left_of_the_refuted_is_unknown():
+    for nothing, other in ((1.0e-30, 1.0e-20), (0.0, 0.0), (0.1, 0.2)):
+        found = decided(nothing=nothing + 1e-300, something_else=other + 1e-300, friction=0.7)
+        assert withdrawn_decision(found).verdict == "unknown"
 
 
 def test_model_of_another_structure_names_nothing():

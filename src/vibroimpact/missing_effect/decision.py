@@ -37,8 +37,9 @@ class Chosen:
 class Decision:
     """verdict; chosen: the Chosen, None; ambiguity [[id]] with probabilities (set,); nothing,
     something_else: probabilities that nothing is missing, or something else; rows [(name,
-    probability, log probability)] of explanations, the most probable first; linear_ids: what the
-    lowest record told; family_alone: what is chosen stands for its family, whose laws do not fit.
+    probability, share of it beside something else)] of explanations, the most probable first;
+    linear_ids: what the lowest record told; family_alone: what is chosen stands for its family,
+    whose laws do not fit.
     """
 
     verdict: Conclusion
@@ -138,9 +139,23 @@ def of_family(
 
 def withdrawn_decision(decision: Decision) -> Decision:
     """Return the Decision where what was chosen is not offered: it makes records worse, or hardly
-    better.
+    better. That refutes it, and what is left of the probability is shared by the others: `none`
+    where nothing has most of it, else `unknown`, for the others were not verified.
     """
-    return replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
+    assert decision.chosen is not None, "else there is nothing to withdraw"
+    refuted = decision.chosen.candidate.name
+    others = [row for row in decision.rows if row[0] != refuted]
+    whole = decision.nothing + decision.something_else + sum(row[1] for row in others)
+    out = replace(decision, verdict="unknown", chosen=None, ambiguity=[], probabilities=[])
+    if decision.nothing <= 0.5 * whole:
+        return out
+    return replace(
+        out,
+        verdict="none",
+        nothing=decision.nothing / whole,
+        something_else=decision.something_else / whole,
+        rows=[(name, chance / whole, beside) for name, chance, beside in others],
+    )
 
 
 def something_else(decision: Decision) -> Decision:

@@ -84,7 +84,7 @@ def write(
     candidate_files.write(search, decision, folder / "candidates")
     write_text(
         not_offered(withdrawn)
-        if withdrawn is not None and closed.after is closed.before
+        if withdrawn is not None and decision.verdict == "unknown" and closed.after is closed.before
         else updated_model(bench, decision, prepared),
         folder / "model_updated.yaml",
     )
