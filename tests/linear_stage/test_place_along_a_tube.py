@@ -6,7 +6,7 @@ import pytest
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects import places
 from vibroimpact.effects.places import ALONG, TURNED
-from vibroimpact.linear_stage.candidates import Candidate, local_candidates
+from vibroimpact.linear_stage.candidates import AT_A_POINT, Candidate, local_candidates
 from vibroimpact.linear_stage.scales import searched
 from vibroimpact.missing_effect.first_points import first_points
 from vibroimpact.missing_effect.search import neutral_unit
@@ -48,6 +48,17 @@ def test_the_effect_sits_there(values, scales):
     stopped = STOP.variant(values, STOP.physical(np.array([0.5, 0.5, 0.3]), scales))
     assert stopped["supports"][-1]["at_m"] == pytest.approx(changed["points"][location])
     check_config(stopped, "a stop between two points")
+
+
+@pytest.mark.parametrize("effect_id", sorted(AT_A_POINT))
+@pytest.mark.parametrize("location", ["arc_400_0mm", "arc_400_0mm_turned_m9_5deg"])
+def test_an_effect_acts_at_a_place_that_was_found(values, effect_id, location):
+    """Where the lowest record, or another effect, says: no point of the model is there."""
+    candidate = Candidate(effect_id, location)
+    parameters = {row.name: 1.0e-3 for row in candidate.effect.parameters}
+    changed = candidate.variant(values, parameters)
+    assert places.arc_lengths(changed, [location]) == pytest.approx([0.4], abs=1.0e-6)
+    check_config(changed, effect_id)
 
 
 def test_it_is_tried_all_along_and_is_nothing_anywhere(values, scales):
