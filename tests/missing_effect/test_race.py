@@ -23,13 +23,14 @@ from vibroimpact.missing_effect.race import leaders, look_wider, race
 from vibroimpact.missing_effect.screening import led
 from vibroimpact.missing_effect.search import Search
 from vibroimpact.missing_effect.two_effects import exchanged_too, parts_alone
-from vibroimpact.missing_effect.verdict import ended_early
+from vibroimpact.missing_effect.verdict import ended_early, left_out
 from vibroimpact.run_cost import count_simulated
 
 VALUES, NOISE = 200, 1.0e-2
 AXES = np.linalg.qr(np.random.default_rng(9).standard_normal((VALUES, 6)))[0].T
 STOP_THERE = "clearance@span_1"
 STIFFNESS, HERTZ, FRICTION = "contact_stiffness@all", "hertz@all", "dry_friction@all"
+MASS = "added_mass@apex"
 SCALES = (
     "one",
     "searched_from",
@@ -214,11 +215,15 @@ def test_a_leading_spring_is_turned_about_a_tube(searched):
 
 
 class Seeded(Search):
-    """A Search whose runs say with which seed they were run; those of friction fail."""
+    """A Search whose runs say with which seed they were run; those of friction fail, those of mass
+    by an error of the program.
+    """
 
     def _changes(self, candidate, unit, first_seed):
         if candidate.name == FRICTION:
             raise IntegrationError("thrown off")
+        if candidate.name == MASS:
+            return {}["apex"]
         return np.full((2, VALUES), first_seed) + unit[0]
 
 
@@ -233,6 +238,16 @@ def test_runs_side_by_side_are_those_in_a_row(threads):
     np.testing.assert_allclose(search.trials[HERTZ].change[:, 0], first[4:] + units[:2, 0])
     assert [sentence for _, sentence in search.trials[FRICTION].failed] == ["thrown off"]
     assert search.seed == 1000 + 6 * seeds and search.trials[HERTZ].screened == 2
+
+
+def test_an_error_of_the_program_costs_its_explanation(capsys):
+    search = Seeded(None, white_null(np.ones(VALUES)), {})
+    search.screen([(MASS, np.array([[0.1]])), (STIFFNESS, np.array([[0.1], [0.2]]))])
+    search.fit(MASS)
+    assert MASS not in search.fits and len(search.trials[STIFFNESS].noise) == 2
+    (row,) = left_out(search)
+    assert MASS in row["message"] and "KeyError: 'apex'" in row["message"]
+    assert "Traceback" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("beside, wanted", [(0.0, True), (45.0, False)])

@@ -1,5 +1,6 @@
 """The search: what was run of every explanation, and what its runs say."""
 
+import traceback
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,6 +20,8 @@ from .null import Null
 from .parameters import estimate
 from .side_by_side import side_by_side
 from .trials import AnyEmulator, Emulator, PairEmulator, Trial
+
+IN_PROGRAM = "an error of the program, to be reported, with its traceback in the log"
 
 Row = tuple[str, np.ndarray]  # an explanation's name, units (point, parameter)
 
@@ -103,6 +106,9 @@ class Search:
             return self._changes(candidate, unit, first_seed)
         except (IntegrationError, ConfigError) as error:
             return str(error)
+        except Exception as error:  # ours: it costs this explanation, not the verdict
+            traceback.print_exc()  # to the log
+            return f"{IN_PROGRAM}: {type(error).__name__}: {error}"
 
     def fit(self, name: str) -> None:
         """Fit an explanation again, if it has runs."""
