@@ -12,7 +12,7 @@ from scipy.fft import prev_fast_len
 from vibroimpact.campaign.file import CampaignError, Channel, Level, campaign_dataset
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear_stage import nuisance as linear
-from vibroimpact.linear_stage.modal_fit import ModalLines
+from vibroimpact.linear_stage.modal_lines import ModalLines
 from vibroimpact.linear_stage.mode_identification import fit_modes, left
 from vibroimpact.linear_stage.workbench import Workbench, corrected_nuisance
 from vibroimpact.observation.attached_model import attach, with_channel_points

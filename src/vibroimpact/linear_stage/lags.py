@@ -8,7 +8,8 @@ from scipy.signal import CZT
 from vibroimpact.observation.sensed_motion import orders
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .modal_fit import ModalFit, ModalLines
+from .modal_fit import ModalFit
+from .modal_lines import ModalLines
 
 LONGEST_LAG_S = 0.02
 HEARD, FEWEST = 3.0, 50  # times the noise of a line, for so many lines at least

@@ -15,7 +15,7 @@ from vibroimpact.observation.linear_record import LinearRecord
 from vibroimpact.observation.sensed_motion import kind_groups
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .modal_fit import combined
+from .channel_responses import combined
 
 SPACING = 2.0e-3  # of ln frequency between the resonances that are tried
 BESIDE = 6  # of these steps: nearer resonances are the same mode

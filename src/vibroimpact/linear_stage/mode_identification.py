@@ -16,16 +16,11 @@ from vibroimpact.observation.sensed_motion import differentiated, kind_groups, o
 from vibroimpact.observation.strain import STRAIN, as_displacements, gauges_of
 from vibroimpact.reduction.modal_model import ModalModel
 
+from .channel_responses import combined, responses_of, without_base
 from .lags import driven_modes, from_phases, lags
 from .matching_pursuit import assigned, pursued
-from .modal_fit import (
-    LARGEST_LOG_DAMPING,
-    ModalFit,
-    ModalLines,
-    combined,
-    responses_of,
-    without_base,
-)
+from .modal_fit import ModalFit
+from .modal_lines import LARGEST_LOG_DAMPING, ModalLines
 
 # of the response at a line, besides the noise: keeps the weights of strong lines finite
 MODEL_ERROR = 3.0e-3

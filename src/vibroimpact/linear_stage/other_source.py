@@ -14,7 +14,7 @@ import numpy as np
 from scipy import stats
 
 from . import priors
-from .modal_fit import RESIDUAL_SHARE
+from .modal_lines import RESIDUAL_SHARE
 from .mode_identification import unexplained_lines
 from .workbench import Workbench
 
