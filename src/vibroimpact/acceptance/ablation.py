@@ -1,0 +1,156 @@
+"""What each rule of the search is worth: campaigns of a draw, judged with all rules and without
+each that acts in them. `python -m vibroimpact.acceptance.ablation --help`
+"""
+
+from __future__ import annotations
+
+import json
+from argparse import ArgumentParser
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import ModuleType
+from typing import Any
+
+from vibroimpact.linear_stage import modal_lines
+from vibroimpact.missing_effect import alike, decision, engine, race
+from vibroimpact.records import write_table
+from vibroimpact_truth.table import files_of, make_number
+
+from .campaign_rows import Row
+from .judging import judged
+from .sealed_run import run_sealed
+from .shards import draw_of
+
+SHOWN = (
+    "hidden",
+    "verdict",
+    "named",
+    "in_set",
+    "one_right",
+    "closed",
+    "after_over_floor",
+    "cpu_seconds",
+)
+ALL = ""  # in place of a rule's name: with all of them
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A function or a constant of a module; without: the value in its place where the rule is left
+    out, of a function what it returns where there is nothing to do. A step returns nothing, and
+    acts whenever it is called.
+    """
+
+    name: str
+    module: ModuleType
+    attribute: str
+    without: Any = None
+    step: bool = False
+
+    @property
+    def own(self) -> Any:
+        """Return what stands in the module."""
+        return getattr(self.module, self.attribute)
+
+    @contextmanager
+    def replaced(self, other: Any) -> Iterator[None]:
+        """Put something else in its place in a `with` block."""
+        own = self.own
+        setattr(self.module, self.attribute, other)
+        try:
+            yield
+        finally:
+            setattr(self.module, self.attribute, own)
+
+    @contextmanager
+    def left_out(self) -> Iterator[None]:
+        """Leave the rule out in a `with` block."""
+        with self.replaced((lambda *_, **__: self.without) if callable(self.own) else self.without):
+            yield
+
+    @contextmanager
+    def watched(self, acted: set[str]) -> Iterator[None]:
+        """Add the name of the rule to `acted` where it does something in a `with` block."""
+        own = self.own
+        if not callable(own):
+            acted.add(self.name)
+            yield
+            return
+
+        def told(*given: Any, **named: Any) -> Any:
+            result = own(*given, **named)
+            if self.step or result != self.without:
+                acted.add(self.name)
+            return result
+
+        with self.replaced(told):
+            yield
+
+
+RULES = (
+    Rule("participations near the model's", modal_lines, "PARTICIPATION_SD", 1.0e9),
+    Rule("a held-out record that disagrees is fitted", engine, "telling_record"),
+    Rule("the end where nothing is near", engine, "nothing_near", False),
+    Rule("a wider look", race, "look_wider", step=True),
+    Rule("the likes of what leads", alike, "similar_too", False),
+    Rule("other places", alike, "elsewhere_too", False),
+    Rule("other effects at its place", alike, "at_its_place", False),
+    Rule("other directions", alike, "turned_too", False),
+    Rule("other laws of its family", alike, "laws_of", []),
+    Rule("Gauss-Newton from what leads", engine, "descend", step=True),
+    Rule("exchanged parts of pairs", engine, "exchanged_too", False),
+    Rule("parts of a pair alone", engine, "parts_alone", step=True),
+    Rule("the family alone", decision, "of_family"),
+)
+
+
+def rows_of(draw: str, number: int, rules: Sequence[Rule], judge: Callable) -> list[Row]:
+    """Return the rows of one campaign of a draw: with all rules, then without each that acted.
+
+    judge(campaign, model, verdict): run_sealed, or what does the same; paths.
+    """
+    pool, seed = draw_of(draw)
+    with TemporaryDirectory() as work:
+        make_number({"pool": pool, "seed": seed}, number, work)
+        files, verdict = files_of(work, number), Path(work, "verdict.json")
+
+        def row(name):
+            judge(files["campaign"], files["model"], verdict)
+            found, truth = (
+                json.loads(path.read_text(encoding="utf-8")) for path in (verdict, files["truth"])
+            )
+            known = judged(found, truth)
+            return {"draw": draw, "campaign": number, "without": name} | {
+                key: known[key] for key in SHOWN
+            }
+
+        acted: set[str] = set()
+        with ExitStack() as stack:
+            for rule in rules:
+                stack.enter_context(rule.watched(acted))
+            rows = [row(ALL)]
+        for rule in rules:
+            if rule.name in acted:
+                with rule.left_out():
+                    rows.append(row(rule.name))
+    return rows
+
+
+def main() -> None:
+    """Write the table of campaigns of a draw, after each campaign what is known so far."""
+    parser = ArgumentParser(description=__doc__)
+    parser.add_argument("draw", help="name of the draw, as acceptance_<seed>")
+    parser.add_argument("numbers", type=int, nargs="+", help="of its campaigns")
+    parser.add_argument("--table", required=True, help="the CSV that is written")
+    options = parser.parse_args()
+    rows: list[Row] = []
+    for number in options.numbers:
+        rows += rows_of(options.draw, number, RULES, run_sealed)
+        write_table(rows, options.table)
+
+
+if __name__ == "__main__":
+    main()
