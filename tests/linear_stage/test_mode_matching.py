@@ -50,3 +50,11 @@ def test_close_modes_are_each_where_they_were_seen(study_model):
     pair = replace(study_model, omega=np.concatenate([[200.0, 200.0], study_model.omega[2:]]))
     nuisance = linear.Nuisance(np.array([0, 1]), np.array([1.003, 0.999]), np.ones(2), np.ones(1))
     assert linear.corrected(pair, nuisance).omega[:2] == pytest.approx([200.6, 199.8])
+
+
+@pytest.mark.parametrize("factor", np.linspace(2.0, 12.0, 23))
+def test_a_mode_fitted_far_above_the_next_is_a_model(study_model, factor):
+    """As of a record that a force nobody measured drives."""
+    found = linear.neutral([1, 3], 1)
+    moved = linear.corrected(study_model, replace(found, frequency=np.array([factor, 1.0])))
+    assert moved.omega[1] == pytest.approx(factor * study_model.omega[1])

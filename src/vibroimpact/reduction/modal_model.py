@@ -45,6 +45,7 @@ NAMES = {
 
 
 NEAR = 0.05  # of a frequency: what a measured structure may differ by from its model
+ROUNDING = 1.0e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +235,8 @@ class ModalModel:
         for name in (field.name for field in fields(self) if field.name in AXES):
             if not np.isfinite(getattr(self, name)).all():
                 yield f"{name} holds values that are not finite"
-        if (np.diff(self.omega) < -NEAR * self.omega[:-1]).any() or (self.omega < 0.0).any():
+        least = (1.0 - NEAR - ROUNDING) * self.omega[:-1]
+        if (self.omega[1:] < least).any() or (self.omega < 0.0).any():
             yield "omega must be ascending and not negative"
         if (self.damping < 0.0).any():
             yield "damping must not be negative"
