@@ -11,14 +11,24 @@ VALUES, NOISE = 200, 1.0e-2
 AXES = np.linalg.qr(np.random.default_rng(4).standard_normal((VALUES, 3)))[0].T
 SPRING = "cubic_stiffness@along_tube"  # two parameters
 ANSWER = np.array([0.62, 0.44])
+STOP = "clearance@along_tube"  # three
 SCALES = dict.fromkeys(
-    ("one", "searched_from", "searched_length", "cubic", "contact_stiffness"), 1.0
+    (
+        "one",
+        "searched_from",
+        "searched_length",
+        "cubic",
+        "contact_stiffness",
+        "displacement",
+        "tube_translation",
+    ),
+    1.0,
 )
 
 
 def bent(unit):
     """Return (value,): a change along a valley that is bent, its size by the first parameter."""
-    size, place = unit
+    size, place = unit[:2]
     return 90.0 * size * AXES[0] + 60.0 * (place - size**2) * AXES[1] + 20.0 * place**2 * AXES[2]
 
 
@@ -65,6 +75,14 @@ def test_a_neighbour_that_cannot_be_run_ends_it(valley):
     trial = valley.trials[SPRING]
     assert len(trial.failed) == 1
     assert len(trial.noise) == 2
+
+
+def test_it_ends_where_the_search_does(valley):
+    """With fewer runs than an explanation has parameters."""
+    valley.run([(STOP, np.array([[0.3, 0.8, 0.5], [0.4, 0.8, 0.5]]))])
+    valley.most = 0.0
+    descend(valley, STOP)
+    assert valley.over and len(valley.trials[STOP].noise) == 2
 
 
 def test_an_answer_out_of_the_searched_range_is_met_at_its_edge(valley):

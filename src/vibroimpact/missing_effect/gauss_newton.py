@@ -26,9 +26,10 @@ def descend(search: Search, name: str) -> None:
         if before <= search.null.values:
             return
         steps = np.where(unit < 0.5, difference, -difference)
+        known = len(trial.noise)
         search.run([(name, unit + np.diag(steps))])
-        if not np.allclose(trial.unit[-unit.size :], unit + np.diag(steps)):
-            return  # one of them could not be run
+        if len(trial.noise) < known + unit.size:
+            return  # one of them could not be run, or the search is over
         slope = (trial.change[-unit.size :] - change).T / steps
         for _ in range(SHORTER):
             low, high = np.maximum(-farthest, -unit), np.minimum(farthest, 1.0 - unit)
