@@ -1,7 +1,7 @@
 """What is said of the probabilities: named, ambiguous, partly explained, unknown, or none."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -38,8 +38,9 @@ class Decision:
     """verdict; chosen: the Chosen, None; ambiguity [[id]] with probabilities (set,); nothing,
     something_else: probabilities that nothing is missing, or something else; rows [(name,
     probability, share of it beside something else)] of explanations, the most probable first;
-    linear_ids: what the lowest record told; family_alone: what is chosen stands for its family,
-    whose laws do not fit.
+    linear_ids: what the lowest record told; linear_alone [(ids, probability)]: it and what that
+    record cannot tell from it, with nothing beside them; family_alone: what is chosen stands for
+    its family, whose laws do not fit.
     """
 
     verdict: Conclusion
@@ -50,6 +51,7 @@ class Decision:
     something_else: float
     rows: list
     linear_ids: tuple = ()
+    linear_alone: Sets = field(default_factory=list)
     family_alone: bool = False
 
 
@@ -108,6 +110,7 @@ def decide(
         other,
         rows,
         linear[0][0] if linear else (),
+        [(ids, nothing * share) for ids, share in linear],
         family_alone,
     )
 

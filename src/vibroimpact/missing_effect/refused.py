@@ -10,7 +10,8 @@ from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.verdict.content import Misfit, MisfitBySplit, not_testable
 from vibroimpact.verdict.file import write_verdict
 
-from .rows import COLUMNS, contract_checks
+from .ranking import COLUMNS
+from .rows import contract_checks
 
 
 def write_refused(folder: Path, prepared: Prepared, provenance: Values, cost: Values) -> None:

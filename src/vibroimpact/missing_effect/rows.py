@@ -1,4 +1,4 @@
-"""Rows of verdict.json and ranking.csv: checks, places, effects with their parameters."""
+"""Rows of verdict.json: checks, places, effects with their parameters."""
 
 from typing import Any
 
@@ -11,14 +11,6 @@ from vibroimpact.linear_stage.scales import clearance
 
 from .decision import Decision
 
-COLUMNS = (
-    "ids",
-    "location",
-    "fit_score",
-    "closed_fraction",
-    "tested",
-    "probability",
-)
 SHOWN = 8  # linear effects
 BOUND = 0.02  # of a searched range: an estimate nearer to its end is at a bound
 

@@ -27,7 +27,8 @@ from vibroimpact.verdict.file import write_verdict
 from . import candidate_files
 from .decision import Decision, partly_decision, withdrawn_decision
 from .null import Null
-from .rows import COLUMNS, SHOWN, bounds, contract_checks, effects_of, where
+from .ranking import COLUMNS, ranking_rows
+from .rows import SHOWN, bounds, contract_checks, effects_of
 from .search import Search
 from .updated_model import updated_model
 from .verification import Closing, without_chosen
@@ -207,33 +208,6 @@ def ended_early(search: Search) -> list[Values]:
             " modes, before all was run that may explain more: effort=thorough runs on.",
         )
     ]
-
-
-def ranking_rows(
-    search: Search, prepared: Prepared, decision: Decision, closed: Closing
-) -> list[Values]:
-    """Return the rows of ranking.csv, the most probable first. closed_fraction is that of the
-    misfit on the records that took no part, known of what completes the model alone.
-    """
-    prefix = [] if prepared.adopted is None else list(decision.linear_ids)
-    split = "holdout" if len(search.bench.signals.holdout()) else "fit"
-    chosen = None if decision.chosen is None else decision.chosen.candidate.name
-    rows = []
-    for name, chance, _ in decision.rows:
-        trial, found = search.trials[name], search.fits[name]
-        candidate, share = trial.candidate, closed.misfit[split]["closed_fraction"]
-        rows.append(
-            {
-                "ids": "+".join([*([] if candidate.alone else prefix), *candidate.ids]),
-                "location": where(name),
-                # none where it brings the model no nearer
-                "fit_score": found.log_evidence if np.isfinite(found.log_evidence) else None,
-                "closed_fraction": share if name == chosen else None,
-                "tested": trial.refined > 0,
-                "probability": chance,
-            }
-        )
-    return rows
 
 
 def cost_rows(stages: dict[str, float], simulated: dict[str, int]) -> dict[str, Any]:
