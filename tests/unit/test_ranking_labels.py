@@ -37,3 +37,11 @@ def rows(*pairs):
 def test_bars_of_the_same_effect_are_labelled_by_place(pairs, labels):
     (sheet,) = ranking_figure(rows(*pairs))
     assert [text.get_text() for text in sheet.axes["main"].get_yticklabels()] == labels
+
+
+def test_what_the_lowest_record_told_alone_has_no_bar():
+    told = [row | {"fit_score": 0.0} for row in rows(("lateral_stinger", "along_y"))]
+    told += [row | {"fit_score": None, "tested": False} for row in rows(("root_stiffness", ""))]
+    (sheet,) = ranking_figure(told)
+    (note,) = sheet.axes["main"].texts
+    assert note.get_text() == "the lowest record alone tells the lateral stinger"

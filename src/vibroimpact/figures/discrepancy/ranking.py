@@ -50,13 +50,16 @@ def ranking_figure(ranking, named=()):
         size=(9.0, 1.5 + 0.3 * max(len(rows), 4)),
     )
     axes = sheet.axes["main"]
-    if not rows:
-        sheet.note(axes, "no explanation was run", "fit_score", "place_in_list")
+    score = np.array([_value(row["fit_score"]) for row in rows])
+    if not np.nan_to_num(score).any():
+        told = [_label(row, []) for row in rows if _value(row["fit_score"]) == 0.0]
+        note = "no explanation brings the model nearer" if rows else "no explanation was run"
+        note = f"the lowest record alone tells the {told[0]}" if told else note
+        sheet.note(axes, note, "fit_score", "place_in_list")
         axes.set_yticks([])
         return [sheet]
     names = ["+".join(sorted(str(row["ids"]).split("+"))) for row in rows]
     wanted = "+".join(sorted(named))
-    score = np.array([_value(row["fit_score"]) for row in rows])
     places = np.arange(len(rows))
     colours = [
         ORANGE if name == wanted else BLUE if _true(row.get("tested", True)) else SKY
