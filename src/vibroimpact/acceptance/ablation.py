@@ -107,8 +107,8 @@ RULES = (
 )
 
 
-def rows_of(draw: str, number: int, rules: Sequence[Rule], judge: Callable) -> list[Row]:
-    """Return the rows of one campaign of a draw: with all rules, then without each that acted.
+def rows_of(draw: str, number: int, rules: Sequence[Rule], judge: Callable) -> Iterator[Row]:
+    """Yield the rows of one campaign of a draw: with all rules, then without each that acted.
 
     judge(campaign, model, verdict): run_sealed, or what does the same; paths.
     """
@@ -131,16 +131,17 @@ def rows_of(draw: str, number: int, rules: Sequence[Rule], judge: Callable) -> l
         with ExitStack() as stack:
             for rule in rules:
                 stack.enter_context(rule.watched(acted))
-            rows = [row(ALL)]
+            everything = row(ALL)
+        yield everything
         for rule in rules:
             if rule.name in acted:
                 with rule.left_out():
-                    rows.append(row(rule.name))
-    return rows
+                    without = row(rule.name)
+                yield without
 
 
 def main() -> None:
-    """Write the table of campaigns of a draw, after each campaign what is known so far."""
+    """Write the table of campaigns of a draw, after each row what is known so far."""
     parser = ArgumentParser(description=__doc__)
     parser.add_argument("draw", help="name of the draw, as acceptance_<seed>")
     parser.add_argument("numbers", type=int, nargs="+", help="of its campaigns")
@@ -148,8 +149,9 @@ def main() -> None:
     options = parser.parse_args()
     rows: list[Row] = []
     for number in options.numbers:
-        rows += rows_of(options.draw, number, RULES, run_sealed)
-        write_table(rows, options.table)
+        for row in rows_of(options.draw, number, RULES, run_sealed):
+            rows.append(row)
+            write_table(rows, options.table)
 
 
 if __name__ == "__main__":
