@@ -1,5 +1,5 @@
-"""What each rule of the search is worth: campaigns of a draw, judged with all rules and without
-each that acts in them. `python -m vibroimpact.acceptance.ablation --help`
+"""What each rule of the search is worth: campaigns in which it is known what is hidden, judged with
+all rules and without each that acts in them. `python -m vibroimpact.acceptance.ablation --help`
 """
 
 from __future__ import annotations
@@ -17,12 +17,10 @@ from typing import Any
 from vibroimpact.linear_stage import modal_lines
 from vibroimpact.missing_effect import alike, decision, engine, race
 from vibroimpact.records import write_table
-from vibroimpact_truth.table import files_of, make_number
 
 from .campaign_rows import Row
 from .judging import judged
 from .sealed_run import run_sealed
-from .shards import draw_of
 
 SHOWN = (
     "hidden",
@@ -107,25 +105,24 @@ RULES = (
 )
 
 
-def rows_of(draw: str, number: int, rules: Sequence[Rule], judge: Callable) -> Iterator[Row]:
-    """Yield the rows of one campaign of a draw: with all rules, then without each that acted.
+def rows_of(
+    folder: str | Path, number: int, rules: Sequence[Rule], judge: Callable = run_sealed
+) -> Iterator[Row]:
+    """Yield the rows of one campaign: with all rules, then without each that acted.
 
-    judge(campaign, model, verdict): run_sealed, or what does the same; paths.
+    folder: of campaigns, as `python -m vibroimpact_truth make` makes it; judge(campaign, model,
+    verdict): what writes a verdict of a campaign's file and its model's, paths.
     """
-    pool, seed = draw_of(draw)
+    name = f"campaign_{number:04d}"
+    campaign, model = (Path(folder, name + end) for end in (".nc", ".yaml"))
+    truth = json.loads(Path(folder, "truth", f"{name}.json").read_text(encoding="utf-8"))
     with TemporaryDirectory() as work:
-        make_number({"pool": pool, "seed": seed}, number, work)
-        files, verdict = files_of(work, number), Path(work, "verdict.json")
+        verdict = Path(work, "verdict.json")
 
-        def row(name):
-            judge(files["campaign"], files["model"], verdict)
-            found, truth = (
-                json.loads(path.read_text(encoding="utf-8")) for path in (verdict, files["truth"])
-            )
-            known = judged(found, truth)
-            return {"draw": draw, "campaign": number, "without": name} | {
-                key: known[key] for key in SHOWN
-            }
+        def row(without):
+            judge(campaign, model, verdict)
+            known = judged(json.loads(verdict.read_text(encoding="utf-8")), truth)
+            return {"campaign": name, "without": without} | {key: known[key] for key in SHOWN}
 
         acted: set[str] = set()
         with ExitStack() as stack:
@@ -141,15 +138,15 @@ def rows_of(draw: str, number: int, rules: Sequence[Rule], judge: Callable) -> I
 
 
 def main() -> None:
-    """Write the table of campaigns of a draw, after each row what is known so far."""
+    """Write the table of campaigns, after each row what is known so far."""
     parser = ArgumentParser(description=__doc__)
-    parser.add_argument("draw", help="name of the draw, as acceptance_<seed>")
+    parser.add_argument("folder", help="of campaigns: python -m vibroimpact_truth make")
     parser.add_argument("numbers", type=int, nargs="+", help="of its campaigns")
     parser.add_argument("--table", required=True, help="the CSV that is written")
     options = parser.parse_args()
     rows: list[Row] = []
     for number in options.numbers:
-        for row in rows_of(options.draw, number, RULES, run_sealed):
+        for row in rows_of(options.folder, number, RULES):
             rows.append(row)
             write_table(rows, options.table)
 
