@@ -30,10 +30,11 @@ def ranking_rows(
     prefix = [] if prepared.adopted is None else list(decision.linear_ids)
     split = "holdout" if len(search.bench.signals.holdout()) else "fit"
     chosen = None if decision.chosen is None else decision.chosen.candidate.name
-    rows = []
+    share = closed.misfit[split]["closed_fraction"]
+    rows = linear_rows(prepared, decision, share)
     for name, chance, _ in decision.rows:
         trial, found = search.trials[name], search.fits[name]
-        candidate, share = trial.candidate, closed.misfit[split]["closed_fraction"]
+        candidate = trial.candidate
         rows.append(
             {
                 "ids": "+".join([*([] if candidate.alone else prefix), *candidate.ids]),
@@ -45,7 +46,6 @@ def ranking_rows(
                 "probability": chance,
             }
         )
-    rows += linear_rows(prepared, decision, closed.misfit[split]["closed_fraction"])
     return sorted(rows, key=lambda row: -row["probability"])
 
 

@@ -45,7 +45,7 @@ NAMES = {
 
 
 NEAR = 0.05  # of a frequency: what a measured structure may differ by from its model
-ROUNDING = 1.0e-9
+ROUNDING = 1.0e-9  # of a frequency: a mode that is put NEAR below another is valid
 
 
 @dataclass(frozen=True, eq=False)
