@@ -74,14 +74,14 @@ def test_agrees_with_the_textbook_scheme(study_model, impacting, lane, scheme, m
     _, force, gap, offset = impacting
     seen = []
 
-    class Watched(integrate._Run):
+    class Watched(integrate.Run):
         def account(self, recorded):
             super().account(recorded)
             seen.append(
                 (self.done, self.state.row_displacement.copy(), self.state.row_force.copy())
             )
 
-    monkeypatch.setattr(integrate, "_Run", Watched)
+    monkeypatch.setattr(integrate, "Run", Watched)
     monkeypatch.setattr(integrate, "CHUNK_TICKS", 100)
     monkeypatch.setattr(
         layout, "FIXED_POINT_TOLERANCE", 1e-13

@@ -141,7 +141,15 @@ def integrate_batch(
     """
     require_stable_step(model, schedule.steps_per_second, schedule.scheme)
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
-    return _Run(model, schedule, gap, imperfection, drive, contraction, initial).finish(receive)
+    return Run(
+        ModalLayout(model, schedule.scheme),
+        schedule,
+        gap,
+        imperfection,
+        drive,
+        contraction,
+        initial,
+    ).finish(receive)
 
 
 def rest_state(
@@ -197,7 +205,15 @@ def settled(
     def no_force(first: int, count: int) -> np.ndarray:
         return np.zeros((count, channels, np.size(gap)))
 
-    run = _Run(damped, schedule, gap, imperfection, no_force, contraction, start)
+    run = Run(
+        ModalLayout(damped, schedule.scheme),
+        schedule,
+        gap,
+        imperfection,
+        no_force,
+        contraction,
+        start,
+    )
     time = REST_DECAY / (REST_DAMPING * lowest)
     for ticks in _chunks(round(time * schedule.steps_per_second / RATIO), run.chunk):
         run.advance(ticks, 0, recorded=False)
@@ -212,12 +228,12 @@ def to_lanes(values: np.ndarray, padding: float) -> np.ndarray:
     return out
 
 
-class _Run:
+class Run:
     """A batch in progress: the kernel's arrays and the sums carried from chunk to chunk."""
 
     def __init__(
         self,
-        model: ModalModel,
+        layout: ModalLayout,
         schedule: Schedule,
         gap: np.ndarray,
         imperfection: np.ndarray,
@@ -225,25 +241,17 @@ class _Run:
         contraction: float,
         initial: np.ndarray | None = None,
     ):
-        self.model, self.schedule, self.drive = model, schedule, drive
+        self.model, self.schedule, self.drive = layout.model, schedule, drive
         self.cases, self.contraction = np.size(gap), contraction
         self.dt = 1.0 / schedule.steps_per_second
-        self.layout = layout = ModalLayout(model, schedule.scheme)
+        self.layout = layout
         self.modal = layout.modal(self.dt)
         lane_gap = to_lanes(gap, 1.0)
         self.contact = layout.contact(lane_gap, to_lanes(imperfection, 0.0), contraction)
         self.laws = layout.laws(lane_gap)
         self.state, self.tally, self.work = layout.state(), layout.tally(), layout.work()
-        start_state(
-            layout,
-            self.modal,
-            self.contact,
-            self.laws,
-            self.state,
-            self.work,
-            self.forces(0, 1)[0],
-            start_amplitudes(model, initial),
-        )
+        self.hold = layout.hold(self.modal)
+        self.begin(initial)
         # The second filter stage needs this many ticks before the first of a chunk.
         self.history = schedule.filter.second.size - schedule.filter.step
         self.chunk = CHUNK_TICKS - CHUNK_TICKS % schedule.filter.step
@@ -259,6 +267,19 @@ class _Run:
         self.energies: list[np.ndarray] = []
         self.times: list[float] = []
         self.take_energies()
+
+    def begin(self, initial: np.ndarray | None) -> None:
+        """Put the state at the start into the kernel's arrays; initial: see integrate_batch."""
+        start_state(
+            self.layout,
+            self.modal,
+            self.contact,
+            self.laws,
+            self.state,
+            self.work,
+            self.forces(0, 1)[0],
+            start_amplitudes(self.model, initial),
+        )
 
     def finish(self, receive: Receive | None = None) -> BatchResult:
         """Start-up, filling of the filter, record."""
@@ -350,6 +371,7 @@ class _Run:
                 self.modal,
                 self.contact,
                 self.laws,
+                self.hold,
                 self.state,
                 self.tally,
                 output,

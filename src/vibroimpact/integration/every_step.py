@@ -80,7 +80,16 @@ def integrate_every_step(
     trace = layout.trace(ticks * RATIO)
     output = layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
     done = march(
-        modal, contact, laws, state, tally, output, trace, work, np.ascontiguousarray(force[1:])
+        modal,
+        contact,
+        laws,
+        layout.hold(modal),
+        state,
+        tally,
+        output,
+        trace,
+        work,
+        np.ascontiguousarray(force[1:]),
     )
     if done < ticks * RATIO:
         moved = np.abs(state.row_displacement[:, :cases])

@@ -10,7 +10,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from .kernels.decimation import CHANNEL_BLOCK, RATIO, SLOTS
 from .kernels.lanes import LANES
 from .kernels.panels import PANEL
-from .kernels.tables import QUIET, Contact, Laws, Modal, Output, State, Tally, Trace, Work
+from .kernels.tables import QUIET, Contact, Hold, Laws, Modal, Output, State, Tally, Trace, Work
 from .modal_step import StepCoefficients, step_coefficients
 
 FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
@@ -241,6 +241,12 @@ class ModalLayout:
         """Room for a number of steps of every row, none for 0."""
         rows, _ = self._rows_and_supports()
         return Trace(_aligned((rows, steps, LANES)), _aligned((rows, steps, LANES)), int(steps))
+
+    def hold(self, modal: Modal) -> Hold:
+        """The kernel's Hold: no sensor is held."""
+        none = np.zeros(0, np.int64)
+        empty = [np.zeros((0, LANES)) for _ in range(4)]
+        return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, LANES)), *empty)
 
     def state(self) -> State:
         """A structure at rest."""

@@ -114,7 +114,9 @@ def steady_series(
     for period in range(periods_before + 1):
         trace = layout.trace(drive.steps if period == periods_before else 0)
         state.counter[STEPS_DONE] = 0  # the trace starts at step 0
-        done = march(modal, contact, laws, state, tally, output, trace, work, force)
+        done = march(
+            modal, contact, laws, layout.hold(modal), state, tally, output, trace, work, force
+        )
         if done < drive.steps:
             raise IntegrationError(
                 f"the steady response diverged in period {period}: the element's law has no bounded"

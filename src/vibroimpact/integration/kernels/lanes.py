@@ -162,7 +162,11 @@ def spread_value(builder, scalar):
 
 
 def spread_element(context, builder, array_type, array, index):
-    """Code that puts one element of a flat array of numbers in every lane."""
+    """Code for one coefficient as a vector: an element of a flat array in every lane, or, of an
+    array (coefficient, lane), its own value in each lane.
+    """
+    if array_type.ndim == 2:
+        return load_value(context, builder, array_type, array, index)
     return spread_value(builder, builder.load(_address(context, builder, array_type, array, index)))
 
 
@@ -192,7 +196,7 @@ def spread(typing_context, scalar):
 
 @intrinsic
 def spread_from(typing_context, array, i):
-    """Element i >= 0 of a flat array of numbers in every lane.
+    """Coefficient i >= 0 of an array: a flat one in every lane, or (coefficient, lane).
 
     Faster than spread(array[i]), which tests whether i counts from the end.
     """

@@ -29,6 +29,7 @@ from .contact_iteration import apply_compliance, solve_contact
 from .decimation import RATIO, filter_forces, filter_modes, finish_output
 from .force_laws import all_forces
 from .lanes import LANES, clear, fma, load, spread_from, store
+from .holding import hold_sensors
 from .panels import (
     PANEL,
     load_panel,
@@ -173,12 +174,12 @@ def initial_forces(modal, contact, laws, state, work):
 
 
 @entry_point
-def march(modal, contact, laws, state, tally, output, trace, work, drive):
+def march(modal, contact, laws, hold, state, tally, output, trace, work, drive):
     """Integrate whole ticks of RATIO steps; the number of steps done, fewer where the run diverged.
 
-    drive (step, force_channel, lane) N: the force at the end of every step. Fills output.values
-    (one column per tick: the filter output centred BEHIND ticks before), adds to ``tally`` and
-    advances ``state`` in place.
+    drive (step, force_channel, lane) N: the force at the end of every step; see Hold for what the
+    channels of held sensors bring, and are given. Fills output.values (one column per tick: the
+    filter output centred BEHIND ticks before), adds to ``tally`` and advances ``state`` in place.
     """
     mode = flush_subnormals()
     forces = drive.shape[1]
@@ -188,6 +189,8 @@ def march(modal, contact, laws, state, tally, output, trace, work, drive):
         tick = state.counter[STEPS_DONE] // RATIO
         for phase in range(RATIO):
             n = at_tick * RATIO + phase
+            if hold.channel.size > 0:
+                hold_sensors(modal, hold, state, work, drive, n * forces)
             apply_drive(modal, drive, n, forces, work)
             in_contact = solve_contact(modal, contact, laws, special, state, tally, work)
             since = state.counter[STEPS_WITHOUT_FORCE]

@@ -21,6 +21,9 @@ class Modal(NamedTuple):
     The rows of a group are its contact directions, then its local elements, then its force
     channels. ``shapes`` holds for each group a (row, mode of the group) matrix, flat, from
     ``shape_start``; ``row_compliance`` in the same way a (row, row) matrix.
+
+    Where each lane has a model of its own, shapes, row_compliance, the coefficients of the modes
+    and Output.shapes have a last axis of lanes.
     """
 
     dt: float  # s
@@ -180,6 +183,23 @@ class Output(NamedTuple):
     values: np.ndarray  # (displacement or force channel, column, lane) m or N
     columns: int  # columns of values
     column: int  # the one that the first tick of this call is written to
+
+
+class Hold(NamedTuple):
+    """Dampers between sensors and measured motion; no sensors: the structure is free.
+
+    Each sensor is a force channel. The drive of that channel is the measured displacement, and a
+    step puts the force of the damper in its place.
+    """
+
+    channel: np.ndarray  # (sensor,) force channel
+    row_start: np.ndarray  # (sensor + 1,) first of the sensor's rows in `row`
+    row: np.ndarray  # (entry,) a row of each group that moves the sensor
+    gain: np.ndarray  # (sensor, sensor, lane) N s/m, dampers as the implicit step takes them
+    measured: np.ndarray  # (sensor, lane) m, at the end of the last step
+    difference: np.ndarray  # (sensor, lane) m, measured less model, one step earlier
+    memory: np.ndarray  # (sensor, lane) m/s, what row_velocity keeps of the last step
+    rate: np.ndarray  # (sensor, lane) m/s, work space
 
 
 class Trace(NamedTuple):

@@ -1,0 +1,323 @@
+"""Runs whose sensors are held to a measured motion by dampers, a model of its own in every lane.
+
+    q'' + D q' + W q = b F + C^T f(Cq, Cq') + sum_s S_s^T u_s,      u_s = c_s (v_s - S_s q')
+
+v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. Where model
+and structure agree, the dampers carry noise; the holding force u_s is what the model lacks.
+
+Source: a passive, collocated observer: D.G. Luenberger, IEEE Trans. Autom. Control 16 (1971)
+596-602; M. Demetriou, Math. Control Signals Syst. (natural observers of second-order systems).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .batch import Run, Schedule, start_amplitudes, start_state, to_lanes
+from .contact_convergence import IntegrationError, checked_contraction
+from .kernel_layout import MODE_COEFFICIENTS, ModalLayout
+from .kernels.lanes import LANES
+from .kernels.tables import Contact, Hold, Laws, Modal, Output, State
+from .preload import seated
+
+OWN_COEFFICIENTS = ("shapes", "row_compliance", *MODE_COEFFICIENTS)  # of Modal, by lane
+OWN_OBSTACLES = ("stiffness", "gap", "offset_1", "offset_2")  # of Contact
+HELD_TURN = 2.0  # rad of a mode in a step: above, its velocity is not known from displacements
+
+
+@dataclass(frozen=True, eq=False)
+class HeldLane:
+    """One run: a model under a measured force, its sensors held to the measured motion.
+
+    model: its sensors are those of the motion, in the same order.
+    gap: nominal gap, m.
+    force (step, force_channel): N, from one step before the start on.
+    motion (step, sensor): measured displacement in m, at the same times.
+    strength (sensor,): of the dampers, N s/m; 0 leaves a sensor free.
+    """
+
+    model: ModalModel
+    gap: float
+    force: np.ndarray
+    motion: np.ndarray
+    strength: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class HeldRecords:
+    """Records of runs, at the sampling frequency of their Schedule.
+
+    force (run, sensor, sample): holding force, N.
+    support_force (run, 2 support, sample): resultants of each support on the structure, N.
+    motion (run, sensor, sample): displacement of the model, m.
+    tally: {name: (.., run)}, see kernels.tables.Tally; steps: steps that it counts.
+    """
+
+    force: np.ndarray
+    support_force: np.ndarray
+    motion: np.ndarray
+    tally: dict[str, np.ndarray]
+    steps: int
+
+
+def hold(runs: Sequence[HeldLane], schedule: Schedule) -> HeldRecords:
+    """Return the HeldRecords of any number of runs.
+
+    The result of a run does not depend on the others. A run that diverges, or whose contact is too
+    stiff for the step, is NaN. All runs have the same numbers of sensors, forces and supports.
+    """
+    sensors = runs[0].motion.shape[1]
+    supports = len(runs[0].model.support_names)
+    out = HeldRecords(
+        np.full((len(runs), sensors, schedule.samples), np.nan, np.float32),
+        np.full((len(runs), 2 * supports, schedule.samples), np.nan, np.float32),
+        np.full((len(runs), sensors, schedule.samples), np.nan, np.float32),
+        {},
+        schedule.samples * round(schedule.steps_per_second / schedule.sampling_frequency),
+    )
+    prepared = _Prepared(schedule)
+    batches: dict[tuple, list[int]] = {}
+    for number, run in enumerate(runs):
+        try:
+            batches.setdefault(prepared.signature(run.model), []).append(number)
+        except IntegrationError:
+            continue  # too stiff for the step
+    for numbers in batches.values():
+        # lanes of one model side by side, so that a batch of one model takes the shorter way
+        numbers.sort(key=lambda number: (id(runs[number].model), number))
+        for first in range(0, len(numbers), LANES):
+            _integrate(runs, numbers[first : first + LANES], prepared, out)
+    return out
+
+
+def _integrate(runs, numbers, prepared, out):
+    """Integrate the runs of numbers side by side and put their records into `out`."""
+    kept = list(numbers)
+    while kept:
+        try:
+            result = HeldRun([runs[number] for number in kept], prepared).finish()
+        except IntegrationError as error:
+            if error.case is None:
+                return
+            del kept[error.case]
+            continue
+        sensors = out.force.shape[1]
+        supports = out.support_force.shape[1]
+        forces = runs[kept[0]].force.shape[1]
+        own = slice(supports + forces, supports + forces + sensors)
+        out.force[kept] = result.force[:, own]
+        out.support_force[kept] = result.force[:, :supports]
+        out.motion[kept] = result.displacement[:, :sensors]
+        for name, values in result.tally.items():
+            shape = (*values.shape[:-1], len(runs))
+            whole = out.tally.setdefault(name, np.full(shape, np.nan))
+            if whole.shape[:-1] == values.shape[:-1]:  # rows of contact laws differ between models
+                whole[..., kept] = values
+        return
+
+
+class _Prepared:
+    """Layouts of models for one schedule, each made once."""
+
+    def __init__(self, schedule: Schedule):
+        self.schedule = schedule
+        self.layout = lru_cache(maxsize=None)(self._layout)
+        self.contraction = lru_cache(maxsize=None)(self._contraction)
+        self.rest = lru_cache(maxsize=None)(self._rest)
+
+    def _layout(self, model):
+        """Return the ModalLayout of a model whose sensors are force channels too."""
+        slow = model.omega < HELD_TURN * self.schedule.steps_per_second
+        held = model.sensor_shapes * slow[:, None]
+        driven = replace(model, drive_shapes=np.hstack([model.drive_shapes, held]))
+        return ModalLayout(driven, self.schedule.scheme)
+
+    def _contraction(self, model):
+        return checked_contraction(model, self.schedule.steps_per_second, self.schedule.scheme)
+
+    def _rest(self, model, gap):
+        """Return (offset (contact_point, 2), modal amplitudes (mode,) at rest or None)."""
+        offset, rest = seated(
+            model, self.schedule, np.array([gap]), np.zeros((*model.centre_offset.shape, 1))
+        )
+        return offset[..., 0], None if rest is None else rest[:, 0]
+
+    def signature(self, model):
+        """Return what models have in common that can be integrated side by side.
+
+        Raises IntegrationError where the contact is too stiff for the step.
+        """
+        self.contraction(model)
+        layout = self.layout(model)
+        modal = layout.modal(1.0 / self.schedule.steps_per_second)
+        laws = layout.laws(np.ones(LANES))
+        output = layout.output(self.schedule.filter.phase_weights(), 1, 1.0)
+        tables = (
+            *(modal.mode_start, modal.row_start, modal.force_row_start, modal.row_force_channel),
+            *layout.contact_rows().T,
+            *(laws.contact_point, laws.flat, laws.normal_1, laws.normal_2, laws.lobes),
+            *(laws.element_row, laws.partner_row),
+            *(output.channel_start, output.channel, model.contact_laws.plain),
+        )
+        return tuple((table.shape, table.tobytes()) for table in map(np.ascontiguousarray, tables))
+
+
+class _LaneLayout:
+    """The tables of a batch in which each lane has a ModalLayout of its own."""
+
+    def __init__(self, lanes: list[ModalLayout], strength: np.ndarray, sensors: int):
+        self.lanes, self.strength, self.sensors = lanes, strength, sensors
+        self.first = lanes[0]
+        self.model, self.drive_shapes = self.first.model, self.first.drive_shapes
+        self.alike = all(lane is self.first for lane in lanes)
+        for name in ("state", "tally", "work", "trace", "contact_rows", "element_rows"):
+            setattr(self, name, getattr(self.first, name))
+
+    def modal(self, dt: float) -> Modal:
+        """The kernel's Modal, by lane where the models differ."""
+        return self._stacked([lane.modal(dt) for lane in self.lanes], OWN_COEFFICIENTS)
+
+    def contact(self, gap: np.ndarray, imperfection: np.ndarray, contraction: float) -> Contact:
+        """The kernel's Contact, see ModalLayout.contact."""
+        tables = [lane.contact(gap, imperfection, contraction) for lane in self.lanes]
+        return _own_lanes(tables, OWN_OBSTACLES)
+
+    def laws(self, gap: np.ndarray) -> Laws:
+        """The kernel's Laws, see ModalLayout.laws."""
+        tables = [lane.laws(gap) for lane in self.lanes]
+        return _own_lanes(
+            tables,
+            [
+                name
+                for name, array in tables[0]._asdict().items()
+                if array.ndim == 2 and array.shape[1] == LANES and not name.startswith("normal")
+            ],
+        )
+
+    def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
+        """The kernel's Output, by lane where the models differ."""
+        tables = [lane.output(weights, columns, steps_per_second) for lane in self.lanes[:1]]
+        if not self.alike:
+            tables += [lane.output(weights, 1, steps_per_second) for lane in self.lanes[1:]]
+        return self._stacked(tables, ("shapes",))
+
+    def hold(self, modal: Modal) -> Hold:
+        """The kernel's Hold: the last force channels are sensors."""
+        total = self.model.drive_shapes.shape[1]
+        channels = np.arange(total - self.sensors, total)
+        rows = [np.flatnonzero(modal.row_force_channel == channel) for channel in channels]
+        return Hold(
+            channel=channels.astype(np.int64),
+            row_start=np.cumsum([0, *map(len, rows)]).astype(np.int64),
+            row=np.concatenate([*rows, np.zeros(0, np.int64)]).astype(np.int64),
+            gain=np.stack([self._gain(modal, rows, lane) for lane in range(LANES)], axis=-1),
+            measured=np.zeros((self.sensors, LANES)),
+            difference=np.zeros((self.sensors, LANES)),
+            memory=np.zeros((self.sensors, LANES)),
+            rate=np.zeros((self.sensors, LANES)),
+        )
+
+    def _gain(self, modal, rows, lane):
+        """Return (sensor, sensor) N s/m: the dampers as the implicit step takes them."""
+        compliance = np.zeros((self.sensors, self.sensors))
+        own = self.lanes[lane].modal(modal.dt) if not self.alike else modal
+        for g in range(modal.row_start.size - 1):
+            row0, row1 = modal.row_start[g], modal.row_start[g + 1]
+            start, count = modal.compliance_start[g], row1 - row0
+            block = own.row_compliance[start : start + count**2].reshape(count, count)
+            for a, first in enumerate(rows):
+                for b, second in enumerate(rows):
+                    for r in first[(first >= row0) & (first < row1)] - row0:
+                        for s in second[(second >= row0) & (second < row1)] - row0:
+                            compliance[a, b] += block[r, s]
+        c = self.strength[:, lane]
+        return np.linalg.solve(
+            np.eye(self.sensors) + modal.velocity_weights[0] * c[:, None] * compliance, np.diag(c)
+        )
+
+    def _stacked(self, tables, names):
+        """Return the first table, the arrays of names with an axis of lanes where models differ."""
+        if self.alike:
+            return tables[0]
+        return tables[0]._replace(
+            **{
+                name: np.ascontiguousarray(np.stack([getattr(t, name) for t in tables], axis=-1))
+                for name in names
+            }
+        )
+
+
+def _own_lanes(tables, names):
+    """Return the first table, in each lane of the arrays of names that of the lane's own table."""
+    return tables[0]._replace(
+        **{
+            name: np.ascontiguousarray(
+                np.stack([getattr(t, name)[..., lane] for lane, t in enumerate(tables)], axis=-1)
+            )
+            for name in names
+        }
+    )
+
+
+class HeldRun(Run):
+    """Up to LANES HeldLanes in progress."""
+
+    def __init__(self, runs: Sequence[HeldLane], prepared: _Prepared):
+        schedule, self.runs = prepared.schedule, runs
+        lanes = [*runs, *[runs[0]] * (LANES - len(runs))]
+        self.places = [prepared.rest(run.model, run.gap) for run in lanes]
+        self.layouts = [prepared.layout(run.model) for run in lanes]
+        layout = _LaneLayout(
+            self.layouts,
+            np.stack([run.strength for run in lanes], axis=-1),
+            runs[0].motion.shape[1],
+        )
+        super().__init__(
+            layout,
+            schedule,
+            np.array([run.gap for run in runs]),
+            np.stack([offset for offset, _ in self.places[: len(runs)]], axis=-1),
+            self._drive,
+            max(prepared.contraction(run.model) for run in runs),
+        )
+
+    def _drive(self, first, count):
+        """Return (step, force channel and sensor, run)."""
+        out = np.zeros((count, self.model.drive_shapes.shape[1], len(self.runs)))
+        for lane, run in enumerate(self.runs):
+            forces = run.force.shape[1]
+            out[:, :forces, lane] = run.force[first : first + count]
+            out[:, forces:, lane] = run.motion[first : first + count]
+        return out
+
+    def begin(self, initial: np.ndarray | None) -> None:
+        """Rest, against the obstacles that press; `initial` counts for nothing."""
+        sensors = self.hold.channel
+        for lane, (_, rest) in enumerate(self.places):
+            if rest is not None:
+                own = self.layouts[lane]
+                state, amplitudes = own.state(), np.outer(rest, np.ones(LANES))
+                still = np.zeros((own.drive_shapes.shape[1], LANES))
+                start_state(
+                    *(own, own.modal(self.dt), self.contact, self.laws, state, own.work(), still),
+                    start_amplitudes(own.model, amplitudes),
+                )
+                for name in State._fields:
+                    if name not in ("counter", "group_active"):
+                        getattr(self.state, name)[..., lane] = getattr(state, name)[..., lane]
+                self.state.group_active[...] |= state.group_active
+        self.hold.measured[...] = to_lanes(self._drive(0, 1)[0], 0.0)[sensors]
+        self.hold.difference[...] = self.hold.measured
+        for sensor in range(len(sensors)):
+            rows = slice(*self.hold.row_start[sensor : sensor + 2])
+            self.hold.difference[sensor] -= self.state.row_displacement[self.hold.row[rows]].sum(0)
+
+    def take_energies(self) -> None:
+        """Energies are not counted: the dampers put any amount in."""
+        self.energies, self.times = [np.zeros((1, LANES))], [0.0]
