@@ -28,6 +28,7 @@ from .preload import seated
 
 OWN_COEFFICIENTS = ("shapes", "row_compliance", *MODE_COEFFICIENTS)  # of Modal, by lane
 OWN_OBSTACLES = ("stiffness", "gap", "offset_1", "offset_2")  # of Contact
+NO_DAMPING = 1e-12  # N s/m: as good as none, and yet a term of the general law
 HELD_TURN = 2.0  # rad of a mode in a step: above, its velocity is not known from displacements
 
 
@@ -40,6 +41,7 @@ class HeldLane:
     force (step, force_channel): N, from one step before the start on.
     motion (step, sensor): measured displacement in m, at the same times.
     strength (sensor,): of the dampers, N s/m; 0 leaves a sensor free.
+    scale (sensor,), force_scale: factors of motion and force.
     """
 
     model: ModalModel
@@ -47,6 +49,8 @@ class HeldLane:
     force: np.ndarray
     motion: np.ndarray
     strength: np.ndarray
+    scale: np.ndarray | float = 1.0
+    force_scale: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +74,8 @@ def hold(runs: Sequence[HeldLane], schedule: Schedule) -> HeldRecords:
     """Return the HeldRecords of any number of runs.
 
     The result of a run does not depend on the others. A run that diverges, or whose contact is too
-    stiff for the step, is NaN. All runs have the same numbers of sensors, forces and supports.
+    stiff for the step, is NaN. All runs have the same numbers of sensors and forces; of a model
+    with more supports than the first one's, the first ones are kept.
     """
     sensors = runs[0].motion.shape[1]
     supports = len(runs[0].model.support_names)
@@ -108,11 +113,11 @@ def _integrate(runs, numbers, prepared, out):
             del kept[error.case]
             continue
         sensors = out.force.shape[1]
-        supports = out.support_force.shape[1]
-        forces = runs[kept[0]].force.shape[1]
-        own = slice(supports + forces, supports + forces + sensors)
-        out.force[kept] = result.force[:, own]
-        out.support_force[kept] = result.force[:, :supports]
+        supports = 2 * len(runs[kept[0]].model.support_names)
+        forces = supports + runs[kept[0]].force.shape[1]
+        shared = min(supports, out.support_force.shape[1])
+        out.force[kept] = result.force[:, forces : forces + sensors]
+        out.support_force[kept, :shared] = result.force[:, :shared]
         out.motion[kept] = result.displacement[:, :sensors]
         for name, values in result.tally.items():
             shape = (*values.shape[:-1], len(runs))
@@ -136,6 +141,10 @@ class _Prepared:
         slow = model.omega < HELD_TURN * self.schedule.steps_per_second
         held = model.sensor_shapes * slow[:, None]
         driven = replace(model, drive_shapes=np.hstack([model.drive_shapes, held]))
+        laws = model.contact_laws
+        if not laws.plain.all():  # all points take the general law: more models side by side
+            laws = laws.with_columns(damping=np.maximum(laws.damping, NO_DAMPING))
+            driven = replace(driven, contact_laws=laws)
         return ModalLayout(driven, self.schedule.scheme)
 
     def _contraction(self, model):
@@ -161,9 +170,10 @@ class _Prepared:
         tables = (
             *(modal.mode_start, modal.row_start, modal.force_row_start, modal.row_force_channel),
             *layout.contact_rows().T,
-            *(laws.contact_point, laws.flat, laws.normal_1, laws.normal_2, laws.lobes),
+            *(laws.contact_point, laws.flat, laws.lobes),
             *(laws.element_row, laws.partner_row),
-            *(output.channel_start, output.channel, model.contact_laws.plain),
+            *(output.channel_start, output.channel),
+            layout.model.contact_laws.plain,
         )
         return tuple((table.shape, table.tobytes()) for table in map(np.ascontiguousarray, tables))
 
@@ -191,14 +201,8 @@ class _LaneLayout:
     def laws(self, gap: np.ndarray) -> Laws:
         """The kernel's Laws, see ModalLayout.laws."""
         tables = [lane.laws(gap) for lane in self.lanes]
-        return _own_lanes(
-            tables,
-            [
-                name
-                for name, array in tables[0]._asdict().items()
-                if array.ndim == 2 and array.shape[1] == LANES and not name.startswith("normal")
-            ],
-        )
+        columns = tables[0]._asdict().items()
+        return _own_lanes(tables, [name for name, column in columns if column.ndim == 2])
 
     def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
         """The kernel's Output, by lane where the models differ."""
@@ -292,8 +296,8 @@ class HeldRun(Run):
         out = np.zeros((count, self.model.drive_shapes.shape[1], len(self.runs)))
         for lane, run in enumerate(self.runs):
             forces = run.force.shape[1]
-            out[:, :forces, lane] = run.force[first : first + count]
-            out[:, forces:, lane] = run.motion[first : first + count]
+            out[:, :forces, lane] = run.force_scale * run.force[first : first + count]
+            out[:, forces:, lane] = run.scale * run.motion[first : first + count]
         return out
 
     def begin(self, initial: np.ndarray | None) -> None:

@@ -222,8 +222,8 @@ class ModalLayout:
         return Laws(
             contact_point=point,
             flat=np.repeat([0, 1], [len(round_points), len(special.land_point)]).astype(np.int64),
-            normal_1=normal[:, 0].copy(),
-            normal_2=normal[:, 1].copy(),
+            normal_1=np.outer(normal[:, 0], np.ones(LANES)),
+            normal_2=np.outer(normal[:, 1], np.ones(LANES)),
             lobes=special.lobes[point].astype(np.int64),
             gap=np.ascontiguousarray(self.gaps(gap)[point]),
             element_row=self.element_rows(),

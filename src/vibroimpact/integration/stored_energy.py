@@ -26,7 +26,7 @@ def _contact_laws(contact: Contact, laws: Laws, state: State) -> np.ndarray:
     angle = np.arctan2(laws.lobe_sine, laws.lobe_cosine)
     wave = np.where(lobes > 0, 1.0 - np.cos(lobes * (np.arctan2(d[1], d[0]) - angle)), 0.0)
     round_depth = np.hypot(*d) - laws.gap - 0.5 * laws.lobe_depth * wave
-    flat_depth = laws.normal_1[:, None] * d[0] + laws.normal_2[:, None] * d[1] - laws.gap
+    flat_depth = laws.normal_1 * d[0] + laws.normal_2 * d[1] - laws.gap
     depth = np.maximum(np.where(laws.flat[:, None] != 0, flat_depth, round_depth), 0.0)
     friction = 0.5 * laws.stick_flexibility * state.friction_force**2
     return (0.5 * laws.stiffness * depth**2 + 0.4 * laws.hertz * depth**2.5 + friction).sum(axis=0)

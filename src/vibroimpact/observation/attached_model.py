@@ -15,7 +15,7 @@ from vibroimpact.config.schema import Sensors
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.reduction.reduced_model import build_model, reduced_basis
 
 from .moving_base import driven_by_base, further_drive_shapes
 from .named_places import point_at
@@ -25,11 +25,11 @@ from .strain import STRAIN, gauged_model
 SAME_POINT_M = 1.0e-3
 
 
-def attach(config: ConfigPart, campaign: xr.Dataset) -> ModalModel:
+def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = None) -> ModalModel:
     """Return the ModalModel of `config` with the campaign's channels as sensors and its forces as
     drives, without shape line and stresses.
 
-    config: a checked Config or StageSettings. The sensors are in the order of the channels:
+    config: a checked Config or StageSettings. basis: see build_model and attached_basis. The sensors are in the order of the channels:
     displacements, positive along channel_direction; for a strain gauge on a tube the strain of the
     outer fibre; for a contact force zero. With a campaign on a moving base, the drives are the
     accelerations of the base. Raises CampaignError when a channel or force is more than 5 mm off
@@ -51,7 +51,7 @@ def attach(config: ConfigPart, campaign: xr.Dataset) -> ModalModel:
     config = driven_by_base(config, campaign)
     try:
         model, displacements = displacement_shapes(
-            config, places, {int(number): directions[number] for number in gauged}
+            config, places, {int(number): directions[number] for number in gauged}, basis
         )
     except ValueError as error:
         raise CampaignError(_sentence(str(error), names)) from None
@@ -84,6 +84,7 @@ def displacement_shapes(
     config: ConfigPart,
     places: Sequence[Sequence[float]] | np.ndarray,
     normals: Mapping[int, np.ndarray] | None = None,
+    basis: np.ndarray | None = None,
 ) -> tuple[ModalModel, np.ndarray]:
     """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
 
@@ -93,15 +94,32 @@ def displacement_shapes(
     """
     if config.structure.kind not in TUBES:
         return _shapes_at_points(config, places)
-    points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
-    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
     model = build_model(
-        config.model_copy(update={"points": {**config.points, **points}, "record": sensors}),
+        _with_places(config, places),
         motion_only=True,
         gauges=[(f"place_{number}", normal) for number, normal in (normals or {}).items()],
+        basis=basis,
     )
     moved = model.sensor_shapes[:, : 3 * len(places)]
     return model, moved.reshape(model.modes, len(places), 3)
+
+
+def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> np.ndarray | None:
+    """Return the basis (dof, vector) of a tube attached to a campaign, which variants of it are
+    reduced on; None of another structure, which is small.
+    """
+    if config.structure.kind not in TUBES:
+        return None
+    forces = campaign["force_channel_point"].values[~base_channels(campaign)]
+    places = np.concatenate([campaign["channel_point"].values, forces])
+    return reduced_basis(_with_places(driven_by_base(config, campaign), places))[1]
+
+
+def _with_places(config, places):
+    """Return the configuration of a tube with named points place_0, ... as its sensors."""
+    points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
+    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
+    return config.model_copy(update={"points": {**config.points, **points}, "record": sensors})
 
 
 def _shapes_at_points(config, places):

@@ -31,6 +31,7 @@ from .ritz_basis import (
     DofGroup,
     basis_vectors,
     orthonormal_basis,
+    rigid_body_shift,
     uncoupled_groups,
 )
 from .structural_modifications import with_frequency_factors, with_point_masses, with_support_plates
@@ -43,7 +44,10 @@ ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is ri
 
 
 def build_model(
-    config: ConfigPart, motion_only: bool = False, gauges: Sequence[tuple[str, np.ndarray]] = ()
+    config: ConfigPart,
+    motion_only: bool = False,
+    gauges: Sequence[tuple[str, np.ndarray]] = (),
+    basis: np.ndarray | None = None,
 ) -> ModalModel:
     """Return the ModalModel of a configuration.
 
@@ -52,6 +56,9 @@ def build_model(
     motion_only: leave out the shape line and the stresses.
     gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
         behind those of record.sensors, its shape a strain per unit amplitude.
+    basis: (dof, vector) of another configuration, see reduced_basis, that the structure is reduced
+        on; its own basis is made where None, or where its degrees of freedom are others. A variant
+        that differs in point masses or local elements needs no basis of its own.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
     unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload
@@ -60,7 +67,11 @@ def build_model(
     tube = config.structure.kind in TUBES
     structure, local_rows = full_structure(config)
     point_rows = _point_rows(structure, config)
-    omega, shapes, full_frequencies = _modes(structure, local_rows, config)
+    if basis is not None and len(basis) == structure.dofs and not keeps_all_modes(structure):
+        omega, shapes = _modes_in(structure, local_rows, basis)
+        full_frequencies = omega / (2.0 * np.pi)
+    else:
+        omega, shapes, full_frequencies = _modes(structure, local_rows, config)
     if not len(omega):
         raise ValueError(
             f"basis.free_modes_to_Hz = {config.basis.free_modes_to_Hz:g}: the structure has no mode"
@@ -252,6 +263,44 @@ def _modes(
     key = content_key(repr(basis), rows, *arrays)
     names = _matrix_names(config.structure)
     return BASES.get(key, lambda: _modes_on(structure, rows, basis, names))
+
+
+def _modes_in(
+    structure: Any, local_rows: np.ndarray, basis: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (omega (mode,) rad/s, shapes (dof, mode)) of the modes within a basis (dof, vector).
+
+    A vector is exactly 0.0 outside its uncoupled group, and so are the shapes.
+    """
+    rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
+    matrices = map(sparse.csr_array, (structure.mass, structure.stiffness))
+    arrays = [array for each in matrices for array in (each.data, each.indices, each.indptr)]
+    return BASES.get(
+        content_key("within", basis, rows != 0.0, *arrays),
+        lambda: _within(uncoupled_groups(structure.mass, structure.stiffness, rows), basis),
+    )
+
+
+def _within(groups: Sequence[DofGroup], basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return what _modes_in does, of uncoupled groups."""
+    omegas, columns = [], []
+    for group in groups:
+        own = basis[:, np.any(basis[group.dofs] != 0.0, axis=0)]
+        inside = own[group.dofs]
+        if not inside.size:
+            continue
+        # for the flexibility, as in ritz_basis.eigenmodes: the lowest modes lose no digits
+        stiffness, mass = inside.T @ group.stiffness @ inside, inside.T @ group.mass @ inside
+        shift = rigid_body_shift(stiffness, mass)
+        flexibility, turn = linalg.eigh(mass, stiffness + shift * mass)
+        omega = np.sqrt(np.maximum(1.0 / flexibility[::-1] - shift, 0.0))
+        shapes = np.zeros_like(own)
+        shapes[group.dofs] = inside @ (turn / np.sqrt(flexibility))[:, ::-1]
+        omegas.append(omega)
+        columns.append(shapes)
+    omega, shapes = np.concatenate(omegas), np.hstack(columns)
+    order = np.argsort(omega, kind="stable")
+    return omega[order], shapes[:, order]
 
 
 def _matrix_names(structure: ConfigPart) -> tuple[str, str]:

@@ -51,7 +51,7 @@ def penetration(contact, laws, k, u1, u2):
     d1, d2, r_squared = radial_offset(contact, laws.contact_point[k], u1, u2)
     gap = load(laws.gap, k)
     if laws.flat[k] != 0:
-        n1, n2 = spread(laws.normal_1[k]), spread(laws.normal_2[k])
+        n1, n2 = load(laws.normal_1, k), load(laws.normal_2, k)
         return n1, n2, one, fma(n1, d1, n2 * d2) - gap
     inverse_r = inverse_square_root(r_squared)
     n1, n2 = d1 * inverse_r, d2 * inverse_r

@@ -68,8 +68,8 @@ class Laws(NamedTuple):
 
     contact_point: np.ndarray  # (law,)
     flat: np.ndarray  # (law,) 1: a flat land with the normal below; 0: round the centre
-    normal_1: np.ndarray  # (law,)
-    normal_2: np.ndarray  # (law,)
+    normal_1: np.ndarray  # (law, lane)
+    normal_2: np.ndarray  # (law, lane)
     lobes: np.ndarray  # (law,) number of lobes, 0: a circle
     lobe_depth: np.ndarray  # (law, lane) m
     lobe_cosine: np.ndarray  # (law, lane) of the lobes' angle
