@@ -50,14 +50,14 @@ def held_records(
     The number is -1 where the values of a Point make no model. free: channels without a damper.
     """
     runs, index = [], np.full((len(points), len(bench.stretches)), -1)
+    strength = np.where(measures_motion(bench), bench.strength, 0.0)
+    strength[list(free)] = 0.0
     for number, point in enumerate(points):
         try:
             model, chain = bench.structure.model(point), bench.structure.measuring(point)
         except (ConfigError, ValueError):
             continue
         for place, stretch in enumerate(bench.stretches):
-            strength = np.where(measures_motion(bench), bench.strength, 0.0)
-            strength[list(free)] = 0.0
             index[number, place] = len(runs)
             runs.append(
                 HeldLane(
