@@ -91,8 +91,8 @@ def _undelayed(motion, delay, rate):
 def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     """Return (point, stretch, channel, line) complex: the spectrum of the holding force in N.
 
-    It is multiplied with the gain of the channel, so that it is a residual of what was measured. NaN
-    of a Point that could not be run.
+    It is multiplied with the gain of the channel, so that it is a residual of what was measured.
+    NaN of a Point that could not be run.
     """
     records, index = held_records(bench, points)
     rate = bench.schedule.sampling_frequency
@@ -124,7 +124,8 @@ def counts(bench: Bench, lines: np.ndarray) -> np.ndarray:
 
 
 def misfit(bench: Bench, lines: np.ndarray) -> float:
-    """Return minus the log likelihood of holding lines (stretch, channel, line), but for a constant.
+    """Return minus the log likelihood of holding lines (stretch, channel, line), but for a
+    constant.
 
     Gaussian lines whose level in each band is the most likely one (Whittle, with the levels
     profiled): the number of lines times the log of their mean power. Of the lines INDEPENDENT

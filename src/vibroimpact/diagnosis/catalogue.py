@@ -24,8 +24,9 @@ AT_A_POINT = (
 PLACES = 8  # along a tube, for what acts at a point; the place is fitted from there
 ACROSS_DEG = 90.0
 ALL_FIRST = ("foliate_trefoil", "foliate_hexafoil", "hertz")  # tried at all supports alone
-# Logarithm of a factor, within which two good codes of one structure differ: two standard deviations
-# of the priors, and what models in which nothing is hidden were off by on development campaigns.
+# Logarithm of a factor, within which two good codes of one structure differ: two standard
+# deviations of the priors, and what models in which nothing is hidden were off by on development
+# campaigns.
 NO_EFFECT = {
     "mode_frequency_error": 2.0 * FREQUENCY_SD,
     "sensor_gain": 2.0 * GAIN_SD,

@@ -19,8 +19,8 @@ NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
 
 
 def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
-    """Return the rows of `effects` of verdict.json: id, family, location, parameters with their 90 %
-    intervals.
+    """Return the rows of `effects` of verdict.json: id, family, location, parameters with their 90
+    % intervals.
     """
     fit = hypothesis.fit
     half = NINETY_SD * fit.deviation

@@ -2,8 +2,8 @@
 campaigns.
 """
 
-# Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a good
-# model to be off by.
+# Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a
+# good model to be off by.
 FREQUENCY_SD = 0.003
 DAMPING_SD = 0.15
 GAIN_SD = 0.02

@@ -1,8 +1,8 @@
 """From gains to probabilities, and from probabilities to a conclusion.
 
-A hypothesis counts by its gain on stretches that took no part. Nothing is missing where the best gain
-is one that right models have too. Something else is missing where the holding force stays above its
-floor with the best hypothesis.
+A hypothesis counts by its gain on stretches that took no part. Nothing is missing where the best
+gain is one that right models have too. Something else is missing where the holding force stays
+above its floor with the best hypothesis.
 """
 
 from __future__ import annotations
@@ -111,8 +111,8 @@ def _verdict(
 
 
 def ambiguity(decision: Decision) -> tuple[list[list[str]], list[float]]:
-    """Return (sets of effect ids that explain equally well, their probabilities); an exact alias has
-    the probability of the effect it is an alias of.
+    """Return (sets of effect ids that explain equally well, their probabilities); an exact alias
+    has the probability of the effect it is an alias of.
     """
     sets: list[list[str]] = []
     chances: list[float] = []

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from vibroimpact.verdict.content import (
 )
 from vibroimpact.verdict.content import not_testable as not_testable_verdict
 from vibroimpact.verdict.file import write_verdict
+from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
@@ -90,8 +90,8 @@ def run_diagnosis(
     provenance: dict[str, Any] | None = None,
     log: Log = lambda text: None,
 ) -> Diagnosis:
-    """Return the Diagnosis; arguments as of `diagnose`. provenance: of verdict.json. log: is given a
-    line for each hypothesis that was fitted.
+    """Return the Diagnosis; arguments as of `diagnose`. provenance: of verdict.json. log: is given
+    a line for each hypothesis that was fitted.
     """
     if effort not in EFFORTS:
         raise ValueError(f"effort = '{effort}': give one of {', '.join(EFFORTS)}")
@@ -115,7 +115,20 @@ def run_diagnosis(
         runs = free_runs(
             comparison.structure, comparison.signals, None if chosen is None else chosen.point
         )
-    return _concluded(comparison, searched, decision, runs, checks, provenance or {}, watch)
+    found = _Found(comparison, searched, decision, runs, checks, provenance or {})
+    return _concluded(found, watch)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What the stages found."""
+
+    comparison: Comparison
+    searched: Search
+    decision: Decision
+    runs: FreeRuns
+    checks: list[dict[str, Any]]
+    provenance: dict[str, Any]
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
@@ -128,7 +141,9 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
 
 
 def spectra(diagnosis: Diagnosis) -> xr.Dataset:
-    """Return psd (state, record, channel, frequency): measured, and of free runs before and after."""
+    """Return psd (state, record, channel, frequency): measured, and of free runs before and
+    after.
+    """
     runs, comparison = diagnosis.runs, diagnosis.comparison
     if runs is None or comparison is None:
         return xr.Dataset(attrs={"title": "no spectra: the campaign can not be tested"})
@@ -154,11 +169,6 @@ def spectra(diagnosis: Diagnosis) -> xr.Dataset:
     )
 
 
-def so_far(hypotheses: list[str]) -> str:
-    """Return the text of so_far.json."""
-    return json.dumps({"fitted": hypotheses}, indent=1)
-
-
 def _refused(refusal: Refused, provenance, watch) -> Verdict:
     """Return the verdict on a campaign that can not be tested."""
     empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
@@ -177,56 +187,120 @@ def _contract(checks):
     return [{key: row.get(key) for key in keys} for row in checks]
 
 
-def _concluded(comparison, searched, decision, runs, checks, provenance, watch) -> Diagnosis:
-    """Return the Diagnosis of a campaign that was compared."""
-    signals, structure = comparison.signals, comparison.structure
-    conclusion = decision.verdict
-    named = conclusion in WITH_EFFECTS
-    rows = effect_rows(decision.best, signals) if decision.best and conclusion != "none" else []
-    for row in rows:
-        row["law_fits"] = "yes" if conclusion in ("named", "ambiguous") else "no"
-    sets, chances = ambiguity(decision) if conclusion in WITH_AMBIGUITY_SET else ([], [])
-    misfits = {
-        split: distance(runs, signals, records) if len(records) else None
+def _concluded(found: _Found, watch: Stopwatch) -> Diagnosis:
+    """Return the Diagnosis of a campaign that was compared.
+
+    What makes held-out records worse is not offered: it is withdrawn, and the verdict is unknown.
+    """
+    decision, withdrawn = found.decision, None
+    misfits = _misfits(found)
+    effects = _effects(found)
+    if decision.verdict not in ("none", "unknown") and makes_worse(
+        misfits["holdout"] or misfits["fit"]
+    ):
+        withdrawn = {"effects": effects, "misfit": misfits}
+        decision = replace(decision, verdict="unknown", **_without_best(decision))
+    cost = _cost(watch, found.searched.runs)
+    content = {
+        **_decided(decision, effects),
+        "regions": (
+            []
+            if decision.verdict == "none"
+            else regions(found.runs, found.comparison.signals, REGIONS)
+        ),
+        "misfit": misfits,
+        "p_global_before": None,
+        "p_global_after": None,
+        "checks": _contract([*found.checks, *_failed_rows(found.searched)]),
+        "not_testable": not_testable(found.comparison.structure.campaign),
+        "provenance": found.provenance,
+        "load_unit": found.comparison.signals.load_unit,
+        "withdrawn": withdrawn,
+        "cost": cost,
+        "seconds": cost["cpu_seconds"],
+        "simulations": cost["simulations"],
+    }
+    completed = (
+        not_offered(withdrawn)
+        if withdrawn
+        else completed_model(
+            found.comparison.structure,
+            _offered(found.searched, decision),
+            _sentence(decision.verdict),
+        )
+    )
+    return Diagnosis(
+        Verdict.from_values(content),
+        found.comparison,
+        found.searched,
+        decision,
+        found.runs,
+        completed,
+    )
+
+
+def _misfits(found: _Found) -> dict[str, Any]:
+    """Return `misfit` of verdict.json."""
+    signals = found.comparison.signals
+    return {
+        split: distance(found.runs, signals, records) if len(records) else None
         for split, records in (("fit", signals.fit()), ("holdout", signals.holdout()))
     }
-    content = {
+
+
+def _effects(found: _Found) -> list[dict[str, Any]]:
+    """Return the rows of the effects of the best hypothesis, none where nothing is missing."""
+    decision = found.decision
+    if decision.best is None or decision.verdict == "none":
+        return []
+    fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
+    rows = effect_rows(decision.best, found.comparison.signals)
+    return [row | {"law_fits": fits} for row in rows]
+
+
+def _without_best(decision: Decision) -> dict[str, Any]:
+    """Return the probabilities of a Decision whose best hypothesis is refuted: what it had goes to
+    something else.
+    """
+    refuted = decision.ranked[0][1]
+    return {
+        "ranked": decision.ranked[1:],
+        "something_else": decision.something_else + refuted,
+    }
+
+
+def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the part of verdict.json that says what is missing, and how sure that is."""
+    conclusion = decision.verdict
+    named = conclusion in WITH_EFFECTS
+    sets, chances = ambiguity(decision) if conclusion in WITH_AMBIGUITY_SET else ([], [])
+    ranking = [
+        {
+            "ids": row["ids"].split("+"),
+            "heldout_score": row["gain_apart"],
+            "closed_fraction": None,
+            "location": row["location"],
+            "probability": row["probability"],
+        }
+        for row in _ranking_table(decision)
+    ]
+    broken = {
+        test
+        for term in (decision.best.point.terms if named and decision.best else ())
+        for test in term.effect.broken
+    }
+    return {
         "verdict": conclusion,
-        "effects": rows if named else [],
+        "effects": effects if named else [],
         "ambiguity_set": sets,
         "ambiguity_probability": chances,
         "probability_none": decision.nothing,
         "probability_something_else": decision.something_else,
-        "ranking": [
-            {
-                "ids": row["ids"].split("+"),
-                "heldout_score": row["gain_apart"],
-                "closed_fraction": None,
-                "location": row["location"],
-                "probability": row["probability"],
-            }
-            for row in _ranking_table(decision)
-        ],
+        "ranking": ranking,
         "next_measurement": next_measurement(sets),
-        "broken_invariances": sorted(
-            {test for term in decision.best.point.terms for test in term.effect.broken}
-            if named and decision.best
-            else ()
-        ),
-        "regions": [] if conclusion == "none" else regions(runs, signals, REGIONS),
-        "misfit": misfits,
-        "p_global_before": None,
-        "p_global_after": None,
-        "checks": _contract([*checks, *_failed_rows(searched)]),
-        "most_probable": rows,
-        "not_testable": not_testable(structure.campaign),
-        "provenance": provenance,
-        "load_unit": signals.load_unit,
+        "broken_invariances": sorted(broken),
+        "most_probable": effects,
     }
-    cost = _cost(watch, searched.runs)
-    content |= {"cost": cost, "seconds": cost["cpu_seconds"], "simulations": cost["simulations"]}
-    completed = completed_model(structure, _offered(searched, decision), _sentence(conclusion))
-    return Diagnosis(Verdict.from_values(content), comparison, searched, decision, runs, completed)
 
 
 def _offered(searched: Search, decision: Decision) -> Point:

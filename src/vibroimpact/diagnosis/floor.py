@@ -52,7 +52,9 @@ def floor_of(comparison: Comparison, best: Hypothesis) -> tuple[float, float]:
 
 
 def _noise(comparison: Comparison, samples: int, rng: np.random.Generator) -> np.ndarray:
-    """Return (channel, sample) m: noise of the channels as the displacement that they are held to."""
+    """Return (channel, sample) m: noise of the channels as the displacement that they are held
+    to.
+    """
     signals, (low, high) = comparison.signals, comparison.band
     rate = comparison.rates.sampling
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)

@@ -17,6 +17,7 @@ from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.observation.signals import Signals
 from vibroimpact.observation.simulated_records import Forces, simulate_records, steps_per_second
+from vibroimpact.verdict.misfit import closed_fraction
 
 from .explanations import Point, Structure
 from .stretches import valid_samples
@@ -25,7 +26,6 @@ SEEDS = 2
 SETTLE_S = 1.0  # at the start of a record
 ABOVE_NOISE_DB = 6.0
 SEGMENT_S = 2.0
-NO_EXCESS = 0.5  # of the floor: a smaller excess tells nothing
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +87,8 @@ def _simulated(structure, signals, point):
 
 
 def _psd(values, signals):
-    """Return (frequency, PSD (record, run, channel, line)) of values (record, run, channel, sample),
-    averaged over segments that overlap by half.
+    """Return (frequency, PSD (record, run, channel, line)) of values (record, run, channel,
+    sample), averaged over segments that overlap by half.
     """
     length = int(SEGMENT_S * signals.rate)
     window = np.hanning(length)
@@ -123,13 +123,11 @@ def distance(
         mean = 10.0 * np.log10(np.mean(10.0 ** (power / 10.0), axis=1))
         own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
         away.append(float(np.hypot(_rms(measured - mean, chosen), own)))
-    excess = [np.sqrt(max(a**2 - f**2, 0.0)) for a, f in zip(away, floors, strict=True)]
-    closed = None if not excess[0] > NO_EXCESS * floors[0] else 1.0 - excess[1] / excess[0]
     return {
         "before_dB": away[0],
         "after_dB": away[1],
         "floor_dB": floors[1],
-        "closed_fraction": closed,
+        "closed_fraction": closed_fraction(*away, floors[1], floors[0]),
     }
 
 

@@ -1,7 +1,6 @@
 """What makes a completed model worse, and the file in its place."""
 
-from vibroimpact.discrepancy.completed_model import not_offered
-from vibroimpact.discrepancy.misfit import closed_fraction, makes_worse
+from vibroimpact.verdict.misfit import closed_fraction, makes_worse, not_offered
 
 DAMPING = [
     {

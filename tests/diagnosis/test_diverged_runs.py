@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.divergence_filter import of_survivors
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import IntegrationError
@@ -64,17 +63,3 @@ def test_model_with_mostly_diverged_runs_is_rejected(leaning, forces):
         simulate_records(
             leaning, *forces, runs_of(3), ["acceleration"] * leaning.sensor_shapes.shape[1]
         )
-
-
-def test_equal_number_of_runs_per_record():
-    features = np.arange(24.0).reshape(2, 4, 3)
-    features[1, 0] = np.nan
-    kept = of_survivors(features)
-    np.testing.assert_array_equal(kept, [features[0, :3], features[1, 1:]])
-
-
-def test_fewer_than_half_the_runs_are_too_few():
-    features = np.zeros((2, 4, 3))
-    features[0, :3] = np.nan
-    with pytest.raises(IntegrationError, match="3 of 4 runs"):
-        of_survivors(features)
