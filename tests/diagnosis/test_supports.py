@@ -9,7 +9,7 @@ import vibroimpact as vi
 from tests.contact_truth import contact_campaign
 from vibroimpact.cli import main
 from vibroimpact.diagnosis.explanations import Point, Structure
-from vibroimpact.diagnosis.stretches import schedule_of, stretches_of
+from vibroimpact.diagnosis.stretches import stretches_of
 from vibroimpact.diagnosis.whole_records import holder
 from vibroimpact.integration.held_run import HeldLane, hold
 from vibroimpact.observation.signals import signals_of
@@ -223,7 +223,7 @@ def test_modes_above_the_highest_frequency_are_not_held(measured):
     campaign = vi.read_campaign(path).isel(record=[1], channel=slice(0, 7))
     structure = Structure(vi.load_config(model), campaign)
     holding = holder(structure, signals_of(campaign), Point())
-    schedule = schedule_of(holding.rates, 0.5, "exact")
+    schedule = holding.rates.schedule(0.5, "exact")
     (stretch,) = stretches_of(
         holding.signals, [(0, 1.0)], 0.5, holding.band, holding.rates, structure.scale
     )
@@ -232,7 +232,7 @@ def test_modes_above_the_highest_frequency_are_not_held(measured):
         lane = HeldLane(
             holding.model, stretch.gap, stretch.force, stretch.motion, np.full(7, strength)
         )
-        return hold([lane], schedule, highest_Hz).support_force
+        return hold([lane], schedule, highest_Hz=highest_Hz).support_force
 
     free = forces(0.0, np.inf)
     np.testing.assert_array_equal(forces(100.0, 1.0), free)  # there is no mode below 1 Hz

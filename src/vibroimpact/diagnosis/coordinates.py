@@ -1,4 +1,4 @@
-"""Coordinates of what is fitted: parameters of effects and nuisances, of size one."""
+"""Coordinates of what is fitted: parameters of effects, their places, and nuisances."""
 
 from __future__ import annotations
 
@@ -7,36 +7,47 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.effects.places import arc_length_m, between
-from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.effects.effect import Parameter
+from vibroimpact.effects.places import arc_length_m, between, turned_deg
 
+from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
 from .explanations import Point, Term
 
-FREQUENCY_SD, DAMPING_SD, GAIN_SD = 0.003, 0.15, 0.02
-PLACE_SIZE = 0.05  # of the tube's length
+NUISANCES = {"frequency": FREQUENCY_SD, "damping": DAMPING_SD, "gain": GAIN_SD}
+FARTHEST = 4.0  # sigma of a nuisance
+ENDS = (0.02, 0.98)  # of a tube: nothing is looked for nearer to its ends
+PLACE_SIZE = 0.05  # of its length
+DIRECTION_SIZE_DEG = 20.0
+STEPS = {"log": 0.03, "amount": 0.1, "signed": 0.05, "place": 0.1, "nuisance": 0.3}
 
 
 @dataclass(frozen=True)
 class Coordinate:
-    """One number that is fitted.
+    """One number that is fitted, of size one.
 
-    kind: "frequency", "damping", "gain" or "term". index: of the mode, channel or term.
-    parameter: index of the term's parameter. size: value per unit; log: whether it is the logarithm
-    of the value over `size`. low, high: bounds. step: of differences. sd: of the prior about zero.
+    kind: "term", "place", "direction", or a key of NUISANCES. index: of the term, mode or channel.
+    parameter: index of the parameter of a term. size: value per unit; log: the coordinate is the
+    logarithm of the value over it. low, high: bounds. step: of differences. sd: of a Gaussian
+    prior about zero, infinite for none.
     """
 
     kind: str
     index: int
+    size: float
     parameter: int = 0
-    size: float = 1.0
     log: bool = False
     low: float = -np.inf
     high: float = np.inf
-    step: float = 0.05
-    sd: float = 1.0
+    step: float = 0.1
+    sd: float = np.inf
+
+    @property
+    def of_effect(self) -> bool:
+        """Return whether it belongs to an effect, not to a nuisance."""
+        return self.kind not in NUISANCES
 
     def to_value(self, x: float) -> float:
-        """Return the value of a coordinate."""
+        """Return the value at a coordinate."""
         return float(self.size * np.exp(x)) if self.log else float(self.size * x)
 
     def from_value(self, value: float) -> float:
@@ -44,96 +55,100 @@ class Coordinate:
         return float(np.log(value / self.size)) if self.log else float(value / self.size)
 
 
-def nuisances(modes: int, channels: Sequence[int], step: float = 0.3) -> list[Coordinate]:
-    """Return the coordinates of the nuisances, in standard deviations of their priors."""
-    rows = [
-        ("frequency", range(modes), FREQUENCY_SD),
-        ("damping", range(modes), DAMPING_SD),
-        ("gain", channels, GAIN_SD),
-    ]
+def nuisance_coordinates(modes: int, channels: int) -> list[Coordinate]:
+    """Return the coordinates of the frequencies and damping of so many modes, and of the gains."""
+    counts = {"frequency": modes, "damping": modes, "gain": channels}
     return [
-        Coordinate(kind, int(index), size=size, low=-4.0, high=4.0, step=step)
-        for kind, indices, size in rows
-        for index in indices
+        Coordinate(kind, index, size, low=-FARTHEST, high=FARTHEST, step=STEPS["nuisance"], sd=1.0)
+        for kind, size in NUISANCES.items()
+        for index in range(counts[kind])
     ]
 
 
-def place_of(term: Term, number: int, scales: Mapping[str, float]) -> list[Coordinate]:
-    """Return the coordinate of the place of a term along a tube, none where it has a name."""
+def effect_coordinates(terms: Sequence[Term], scales: Mapping[str, float]) -> list[Coordinate]:
+    """Return the coordinates of all parameters and places of terms.
+
+    scales: see scales.sizes.
+    """
+    rows = []
+    for number, term in enumerate(terms):
+        for index, parameter in enumerate(term.effect.parameters):
+            rows.append(_of_parameter(parameter, number, index, scales[parameter.per]))
+        rows += _of_place(term, number, scales["tube_length"])
+    return rows
+
+
+def _of_parameter(parameter: Parameter, number: int, index: int, unit: float) -> Coordinate:
+    """Return the Coordinate of a parameter whose bounds are multiples of a unit."""
+    low, high = parameter.low * unit, parameter.high * unit
+    if parameter.log and parameter.neutral == 0.0:  # an amount: nothing at 0
+        size = float(np.sqrt(low * high))
+        return Coordinate("term", number, size, index, False, 0.0, high / size, STEPS["amount"])
+    if parameter.log:
+        size = parameter.neutral or float(np.sqrt(low * high))
+        ends = np.log(low / size), np.log(high / size)
+        return Coordinate("term", number, size, index, True, *map(float, ends), STEPS["log"])
+    size = 0.2 * max(abs(low), abs(high))
+    return Coordinate("term", number, size, index, False, low / size, high / size, STEPS["signed"])
+
+
+def _of_place(term: Term, number: int, length: float) -> list[Coordinate]:
+    """Return the coordinates of the place of a term along a tube and of its direction across it,
+    none where the place has a name.
+    """
     if arc_length_m(term.location) is None:
         return []
-    length = scales["tube_length"]
-    size = PLACE_SIZE * length
-    return [
-        Coordinate("place", number, 0, size, False, 0.02 / PLACE_SIZE, 0.98 / PLACE_SIZE, 0.1, 1e3)
+    low, high = (end / PLACE_SIZE for end in ENDS)
+    rows = [
+        Coordinate("place", number, PLACE_SIZE * length, low=low, high=high, step=STEPS["place"])
     ]
+    if turned_deg(term.location) is not None:
+        rows.append(Coordinate("direction", number, DIRECTION_SIZE_DEG, step=STEPS["place"]))
+    return rows
 
 
-def of_term(term: Term, number: int, scales: Mapping[str, float]) -> list[Coordinate]:
-    """Return the coordinates of the parameters of the number-th term."""
-    out = []
-    for index, parameter in enumerate(EFFECTS[term.effect].parameters):
-        unit = scales[parameter.per]
-        low, high = parameter.low * unit, parameter.high * unit
-        if parameter.over:
-            pass
-        if parameter.neutral == 0.0 and parameter.log:
-            size = float(np.sqrt(low * high))
-            row = Coordinate("term", number, index, size, False, 0.0, high / size, 0.1, 10.0)
-        elif parameter.log:
-            size = parameter.neutral or float(np.sqrt(low * high))
-            row = Coordinate(
-                "term",
-                number,
-                index,
-                size,
-                True,
-                np.log(low / size),
-                np.log(high / size),
-                0.03,
-                3.0,
-            )
-        else:
-            size = 0.2 * max(abs(low), abs(high))
-            row = Coordinate(
-                "term", number, index, size, False, low / size, high / size, 0.05, 10.0
-            )
-        out.append(row)
-    return out
-
-
-def vector(point: Point, rows: Sequence[Coordinate]) -> np.ndarray:
+def to_vector(point: Point, rows: Sequence[Coordinate]) -> np.ndarray:
     """Return (coordinate,) of a Point."""
     out = []
     for row in rows:
-        if row.kind == "place":
-            out.append(row.from_value(arc_length_m(point.terms[row.index].location)))
-        elif row.kind == "term":
-            out.append(row.from_value(point.terms[row.index].values[row.parameter]))
-        else:
+        if row.kind in NUISANCES:
             own = getattr(point, row.kind)
             out.append((own[row.index] if row.index < len(own) else 0.0) / row.size)
-    return np.array(out)
+            continue
+        term = point.terms[row.index]
+        value = {"place": arc_length_m, "direction": turned_deg}.get(row.kind)
+        out.append(row.from_value(value(term.location) if value else term.values[row.parameter]))
+    return np.array(out, float)
 
 
-def point_of(x: np.ndarray, rows: Sequence[Coordinate], start: Point) -> Point:
-    """Return the Point of coordinates x; what rows do not hold is as in `start`."""
-    terms = [list(term.values) for term in start.terms]
-    lists = {kind: list(getattr(start, kind)) for kind in ("frequency", "damping", "gain")}
-    moved = {}
-    for value, row in zip(x, rows, strict=True):
-        if row.kind == "place":
-            moved[row.index] = between(row.to_value(value))
+def to_point(x: np.ndarray, rows: Sequence[Coordinate], start: Point) -> Point:
+    """Return the Point at coordinates x (coordinate,); what `rows` do not hold is as in `start`."""
+    values = [list(term.values) for term in start.terms]
+    places: dict[int, dict[str, float]] = {}
+    nuisances = {kind: dict(enumerate(getattr(start, kind))) for kind in NUISANCES}
+    for coordinate, row in zip(x, rows, strict=True):
+        if row.kind in NUISANCES:
+            nuisances[row.kind][row.index] = float(row.size * coordinate)
         elif row.kind == "term":
-            terms[row.index][row.parameter] = row.to_value(value)
+            values[row.index][row.parameter] = row.to_value(coordinate)
         else:
-            own = lists[row.kind]
-            own.extend([0.0] * (row.index + 1 - len(own)))
-            own[row.index] = row.size * value
-    return Point(
-        tuple(
-            replace(term, values=tuple(values), location=moved.get(number, term.location))
-            for number, (term, values) in enumerate(zip(start.terms, terms, strict=True))
-        ),
-        **{kind: tuple(map(float, own)) for kind, own in lists.items()},
+            key = "arc_length_m" if row.kind == "place" else "turned_deg"
+            places.setdefault(row.index, {})[key] = row.to_value(coordinate)
+    terms = tuple(
+        replace(
+            term,
+            values=tuple(own),
+            location=between(**places[number]) if number in places else term.location,
+        )
+        for number, (term, own) in enumerate(zip(start.terms, values, strict=True))
     )
+    filled = {
+        kind: tuple(own.get(index, 0.0) for index in range(max(own, default=-1) + 1))
+        for kind, own in nuisances.items()
+    }
+    return Point(terms, **filled)
+
+
+def bounds(rows: Sequence[Coordinate]) -> tuple[np.ndarray, np.ndarray]:
+    """Return (low (coordinate,), high (coordinate,))."""
+    return np.array([row.low for row in rows]), np.array([row.high for row in rows])

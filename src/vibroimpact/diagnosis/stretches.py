@@ -16,19 +16,21 @@ from vibroimpact.integration.output_filter import LEAST_STAGES, PASS_FRACTION
 from vibroimpact.observation.sensed_motion import of_modes, orders
 from vibroimpact.observation.signals import Signals
 
-SLOWEST_HZ = 2000.0  # the records are compared at this rate at least, or their own
-FADE_S = 1.0  # at the ends of a record, before its lines are integrated
-LEAD_STEPS = 4000  # beyond the end of a stretch: the output filter looks ahead
+SLOWEST_HZ = 2000.0  # records are compared at this rate at least, or at their own
+FADE_S = 1.0  # at the ends of a record, before it is integrated
+AHEAD_STEPS = 4000  # beyond the end of a stretch, which the output filter looks at
+MOVING = 0.02  # of the speed of the sensor that moves most
+NO_GAP_M = 1.0  # where a record has no clearance
 
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """A stretch of a record.
 
-    record: its number. start_s: where it begins. gap: m; load: RMS of the first force of the
-    record. force (step, force_channel): N; motion (step, channel): m as displacements, of channels
-    that are not held 0; both from one step before the start on, in steps of the Schedule.
-    noise (channel,): share of the noise in the motion, as power.
+    record: its number. start_s: where it begins. gap: m. load: RMS of the record's first force.
+    force (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
+    measure no motion. Both begin one step before the start, in steps of the Schedule.
+    moving (channel,) bool: whether a channel moves there.
     """
 
     record: int
@@ -42,84 +44,41 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Rates:
-    """Rates of the comparison: decimation of the records, steps per sample of theirs, in Hz."""
+    """Rates of the comparison: decimation of the records, sampling of what is left in Hz, and
+    integration steps per sample of it.
+    """
 
     decimation: int
-    steps_per_sample: int  # of the decimated records
     sampling: float
+    steps_per_sample: int
 
     @property
     def steps_per_second(self) -> float:
         """Return the integration steps per second."""
         return self.sampling * self.steps_per_sample
 
+    def schedule(self, duration_s: float, scheme: str) -> Schedule:
+        """Return the Schedule of a stretch."""
+        return Schedule(self.steps_per_second, self.sampling, 0.0, duration_s, scheme)
+
 
 def rates_of(sampling: float, integration: ConfigPart) -> Rates:
-    """Return the Rates of records sampled at a frequency in Hz."""
+    """Return the Rates of records sampled at a frequency in Hz.
+
+    integration: section of a configuration, whose steps per second are the least.
+    """
     decimation = max(int(sampling / SLOWEST_HZ), 1)
     rate = sampling / decimation
     stages = max(LEAST_STAGES, int(np.ceil(integration.steps_per_second / (RATIO * rate))))
-    return Rates(decimation, RATIO * stages, rate)
+    return Rates(decimation, rate, RATIO * stages)
 
 
 def held_band(signals: Signals, rates: Rates, first_mode_Hz: float) -> tuple[float, float]:
-    """Return (low, high) in Hz of the band that motion is held in."""
+    """Return (low, high) in Hz of the band in which motion is held: from below the first mode and
+    the force to the anti-alias filter of the runs.
+    """
     low = 0.6 * min(signals.band_Hz[0], first_mode_Hz)
     return max(low, 1.0), PASS_FRACTION * 0.5 * rates.sampling
-
-
-def displacement(
-    signals: Signals, record: int, band: tuple[float, float], rates: Rates, scale: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (force (step, force_channel) N, motion (step, channel) m) of a whole record.
-
-    scale (channel,): displacement per unit of a channel's own displacement-like quantity.
-    """
-    valid = np.isfinite(signals.response[record]).all(axis=0)
-    count = int(np.flatnonzero(valid)[-1] + 1) // rates.decimation * rates.decimation
-    response, force = signals.response[record][:, :count], signals.force[record][:, :count]
-    fade = np.ones(count)
-    tail = min(int(FADE_S * signals.rate), count // 4)
-    ramp = 0.5 * (1.0 + np.cos(np.pi * np.arange(tail) / tail))
-    fade[-tail:] = ramp
-    if not signals.from_rest:
-        fade[:tail] = ramp[::-1]
-    frequency = np.fft.rfftfreq(count, 1.0 / signals.rate)
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    omega = 2.0 * np.pi * np.where(inside, frequency, 1.0)
-    held = of_modes(signals.kinds)
-    lines = np.fft.rfft(response * fade * held[:, None], axis=-1)
-    lines *= inside / (1j * omega) ** orders(signals.kinds)[:, None]
-    up, down = rates.steps_per_sample, rates.decimation
-    steps = count * up // down
-    wide = np.zeros((len(lines), steps // 2 + 1), complex)
-    kept = min(lines.shape[1], wide.shape[1])
-    wide[:, :kept] = lines[:, :kept]
-    motion = np.fft.irfft(wide, steps, axis=-1) * (steps / count) * scale[:, None]
-    shared = gcd(up, down)
-    fine = signal.resample_poly(force, up // shared, down // shared, axis=-1, padtype="line")
-    return np.ascontiguousarray(fine[:, :steps].T), np.ascontiguousarray(motion.T)
-
-
-def cut(
-    whole: tuple[np.ndarray, np.ndarray], start_s: float, duration_s: float, rates: Rates
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (force, motion) of a stretch, zeros beyond the record's ends."""
-    rate = rates.steps_per_second
-    first = int(round(start_s * rates.sampling)) * rates.steps_per_sample - 1
-    count = int(round(duration_s * rate)) + LEAD_STEPS
-    out = []
-    for values in whole:
-        piece = np.zeros((count, values.shape[1]))
-        begin, end = max(first, 0), min(first + count, len(values))
-        piece[begin - first : end - first] = values[begin:end]
-        out.append(piece)
-    return out[0], out[1]
-
-
-def schedule_of(rates: Rates, duration_s: float, scheme: str) -> Schedule:
-    """Return the Schedule of a stretch."""
-    return Schedule(rates.steps_per_second, rates.sampling, 0.0, duration_s, scheme)
 
 
 def stretches_of(
@@ -130,22 +89,74 @@ def stretches_of(
     rates: Rates,
     scale: np.ndarray,
 ) -> list[Stretch]:
-    """Return the Stretch of each (record, start in s) of `places`."""
-    whole = {record: displacement(signals, record, band, rates, scale) for record, _ in places}
+    """Return the Stretch at each (record, start in s) of `places`.
+
+    band: of held_band. scale (channel,): displacement per unit of what a channel measures, other
+    than 1 for strains.
+    """
+    whole = {
+        record: _fine(signals, record, band, rates, scale)
+        for record in dict.fromkeys(record for record, _ in places)
+    }
     out = []
     for record, start in places:
-        force, motion = cut(whole[record], start, duration_s, rates)
+        force, motion = (_cut(values, start, duration_s, rates) for values in whole[record])
         speed = np.diff(motion, axis=0).std(axis=0)
         gap = float(signals.gap[record])
         out.append(
             Stretch(
-                record,
-                start,
-                gap if np.isfinite(gap) else 1.0,
-                float(signals.load[record]),
-                force,
-                motion,
-                speed > 0.02 * speed.max(),
+                record=int(record),
+                start_s=float(start),
+                gap=gap if np.isfinite(gap) else NO_GAP_M,
+                load=float(signals.load[record]),
+                force=force,
+                motion=motion,
+                moving=of_modes(signals.kinds) & (speed > MOVING * speed.max(initial=0.0)),
             )
         )
     return out
+
+
+def valid_samples(signals: Signals, record: int) -> int:
+    """Return the number of samples of a record before the first that is missing."""
+    valid = np.isfinite(signals.response[record]).all(axis=0)
+    return int(np.argmin(valid)) if not valid.all() else valid.size
+
+
+def _fine(signals, record, band, rates, scale):
+    """Return (force (step, force_channel), motion (step, channel)) of a whole record at the step."""
+    count = valid_samples(signals, record) // rates.decimation * rates.decimation
+    response, force = signals.response[record][:, :count], signals.force[record][:, :count]
+    frequency = np.fft.rfftfreq(count, 1.0 / signals.rate)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    omega = 2.0 * np.pi * np.where(inside, frequency, 1.0)
+    held = of_modes(signals.kinds)[:, None]
+    lines = np.fft.rfft(response * _fade(signals, count) * held, axis=-1)
+    lines *= inside / (1j * omega) ** orders(signals.kinds)[:, None]
+    up, down = rates.steps_per_sample, rates.decimation
+    steps = count * up // down
+    kept = min(lines.shape[1], steps // 2 + 1)
+    motion = np.fft.irfft(lines[:, :kept], steps, axis=-1) * (steps / count) * scale[:, None]
+    shared = gcd(up, down)
+    fine = signal.resample_poly(force, up // shared, down // shared, axis=-1, padtype="line")
+    return np.ascontiguousarray(fine[:, :steps].T), np.ascontiguousarray(motion.T)
+
+
+def _fade(signals, count):
+    """Return (sample,) the window of a record: whole at a start from rest."""
+    fade, tail = np.ones(count), min(int(FADE_S * signals.rate), count // 4)
+    ramp = 0.5 * (1.0 + np.cos(np.pi * np.arange(tail) / max(tail, 1)))
+    fade[count - tail :] = ramp
+    if not signals.from_rest:
+        fade[:tail] = ramp[::-1]
+    return fade
+
+
+def _cut(values, start_s, duration_s, rates):
+    """Return (step, channel) of a stretch of values (step, channel), 0 beyond the record's ends."""
+    first = round(start_s * rates.sampling) * rates.steps_per_sample - 1
+    count = round(duration_s * rates.steps_per_second) + AHEAD_STEPS
+    piece = np.zeros((count, values.shape[1]))
+    begin, end = max(first, 0), min(first + count, len(values))
+    piece[begin - first : end - first] = values[begin:end]
+    return piece

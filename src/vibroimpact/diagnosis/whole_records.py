@@ -13,9 +13,10 @@ from vibroimpact.observation.sensed_motion import orders
 from vibroimpact.observation.signals import Signals
 from vibroimpact.reduction.modal_model import ModalModel
 
+from .bench import undelayed
+from .constants import FORGET_S
 from .explanations import Point, Structure
-from .held import FORGET_S, delayed
-from .stretches import FADE_S, Rates, held_band, rates_of, stretches_of
+from .stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
 
 STRETCHES = LANES  # of a record: they fill the lanes of one batch
 STRENGTH = 4.0  # of the dampers, in units of the first mode: see unit_strength
@@ -70,8 +71,7 @@ class Holder:
         motion is known: lines are integrated with a fade at its ends, see stretches.displacement.
         """
         signals, rates = self.signals, self.rates
-        valid = np.isfinite(signals.response[record]).all(axis=0)
-        whole = (np.flatnonzero(valid)[-1] + 1) / signals.rate
+        whole = valid_samples(signals, record) / signals.rate
         fade = min(FADE_S, 0.25 * whole)
         first = 0.0 if signals.from_rest else fade + FORGET_S
         first = np.ceil(first * rates.sampling) / rates.sampling
@@ -109,7 +109,7 @@ class Holder:
                     self.model,
                     stretch.gap,
                     stretch.force,
-                    delayed(stretch.motion, chain.delay, rates.steps_per_second),
+                    undelayed(stretch.motion, chain.delay, rates.steps_per_second),
                     strength,
                     1.0 / chain.gain,
                     1.0 / chain.force_gain,
@@ -117,7 +117,7 @@ class Holder:
                 for stretch in stretches
             ],
             schedule,
-            self.band[1],
+            highest_Hz=self.band[1],
         )
         return Held(
             record, first, duration, strength, known, runs, rates.steps_per_second, rates.sampling

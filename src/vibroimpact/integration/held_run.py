@@ -12,6 +12,7 @@ Source: a passive, collocated observer: D.G. Luenberger, IEEE Trans. Autom. Cont
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -29,7 +30,7 @@ from .preload import seated
 OWN_COEFFICIENTS = ("shapes", "row_compliance", *MODE_COEFFICIENTS)  # of Modal, by lane
 OWN_OBSTACLES = ("stiffness", "gap", "offset_1", "offset_2")  # of Contact
 NO_DAMPING = 1e-12  # N s/m: as good as none, and yet a term of the general law
-HELD_TURN = 2.0  # rad of a mode in a step: above, its velocity is not known from displacements
+HELD_TURN = 1.0  # rad of a mode in a step: above, its velocity is not known from displacements
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +74,9 @@ class HeldRecords:
     element_rows: np.ndarray
 
 
-def hold(runs: Sequence[HeldLane], schedule: Schedule, highest_Hz: float = np.inf) -> HeldRecords:
+def hold(
+    runs: Sequence[HeldLane], schedule: Schedule, threads: int = 1, highest_Hz: float = np.inf
+) -> HeldRecords:
     """Return the HeldRecords of any number of runs.
 
     highest_Hz: modes above it are not held. What was measured ends there: dampers on the modes
@@ -102,11 +105,13 @@ def hold(runs: Sequence[HeldLane], schedule: Schedule, highest_Hz: float = np.in
             batches.setdefault(prepared.signature(run.model), []).append(number)
         except IntegrationError:
             continue  # too stiff for the step
+    pieces = []
     for numbers in batches.values():
         # lanes of one model side by side, so that a batch of one model takes the shorter way
         numbers.sort(key=lambda number: (id(runs[number].model), number))
-        for first in range(0, len(numbers), LANES):
-            _integrate(runs, numbers[first : first + LANES], prepared, out)
+        pieces += [numbers[first : first + LANES] for first in range(0, len(numbers), LANES)]
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(lambda piece: _integrate(runs, piece, prepared, out), pieces))
     return out
 
 

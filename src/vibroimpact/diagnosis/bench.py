@@ -1,0 +1,153 @@
+"""Points held to measured stretches: the lines of the holding force, and their power."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.config.problems import ConfigError
+from vibroimpact.integration.batch import Schedule
+from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
+
+from .constants import FORGET_S, INDEPENDENT
+from .explanations import Point, Structure
+from .stretches import Stretch
+
+BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
+FIRST_BAND = 4  # lines in the lowest
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """What Points are compared on: stretches, their Schedule, the band of the lines in Hz, and the
+    strength of the dampers in N s/m.
+    """
+
+    structure: Structure
+    stretches: tuple[Stretch, ...]
+    schedule: Schedule
+    band: tuple[float, float]
+    strength: float
+    threads: int = 1
+
+    def held_at(self, strength: float) -> Bench:
+        """Return the Bench with dampers of another strength."""
+        return replace(self, strength=strength)
+
+    @property
+    def moving(self) -> np.ndarray:
+        """Return (stretch, channel, 1) bool: which channels move there."""
+        return np.stack([stretch.moving for stretch in self.stretches])[..., None]
+
+
+def held_records(
+    bench: Bench, points: Sequence[Point], free: Sequence[int] = ()
+) -> tuple[HeldRecords, np.ndarray]:
+    """Return (HeldRecords, (point, stretch) number of the run among them).
+
+    The number is -1 where the values of a Point make no model. free: channels without a damper.
+    """
+    runs, index = [], np.full((len(points), len(bench.stretches)), -1)
+    for number, point in enumerate(points):
+        try:
+            model, chain = bench.structure.model(point), bench.structure.measuring(point)
+        except (ConfigError, ValueError):
+            continue
+        for place, stretch in enumerate(bench.stretches):
+            strength = np.where(measures_motion(bench), bench.strength, 0.0)
+            strength[list(free)] = 0.0
+            index[number, place] = len(runs)
+            runs.append(
+                HeldLane(
+                    model,
+                    stretch.gap,
+                    stretch.force,
+                    undelayed(stretch.motion, chain.delay, bench.schedule.steps_per_second),
+                    strength,
+                    1.0 / chain.gain,
+                    1.0 / chain.force_gain,
+                )
+            )
+    return hold(runs, bench.schedule, bench.threads), index
+
+
+def measures_motion(bench: Bench) -> np.ndarray:
+    """Return (channel,) bool: which channels measure a motion, so that they can be held."""
+    return np.any([np.any(stretch.motion, axis=0) for stretch in bench.stretches], axis=0)
+
+
+def undelayed(motion: np.ndarray, delay: np.ndarray, rate: float) -> np.ndarray:
+    """Return motion (step, channel), rate steps a second, before delays (channel,) in s."""
+    if not delay.any():
+        return motion
+    out, at = motion.copy(), np.arange(len(motion))
+    for channel in np.flatnonzero(delay):
+        out[:, channel] = np.interp(at + delay[channel] * rate, at, motion[:, channel])
+    return out
+
+
+def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
+    """Return (point, stretch, channel, line) complex: the spectrum of the holding force in N.
+
+    It is multiplied with the gain of the channel, so that it is a residual of what was measured. NaN
+    of a Point that could not be run.
+    """
+    records, index = held_records(bench, points)
+    rate = bench.schedule.sampling_frequency
+    force = records.force[..., int(FORGET_S * rate) :]
+    frequency = np.fft.rfftfreq(force.shape[-1], 1.0 / rate)
+    inside = (frequency >= bench.band[0]) & (frequency <= bench.band[1])
+    found = np.fft.rfft(force * np.hanning(force.shape[-1]), axis=-1)[..., inside]
+    out = np.full((*index.shape, *found.shape[1:]), np.nan, np.complex64)
+    out[index >= 0] = found[index[index >= 0]]
+    gain = np.stack([bench.structure.measuring(point).gain for point in points])
+    return out * gain[:, None, :, None].astype(np.float32)
+
+
+def band_edges(lines: int) -> np.ndarray:
+    """Return (band + 1,) numbers of the lines at which the bands of so many lines begin and end."""
+    return np.unique(np.r_[0, np.geomspace(FIRST_BAND, lines, BANDS).astype(int)])
+
+
+def log_power(lines: np.ndarray) -> np.ndarray:
+    """Return (.., band): the logarithm of the mean power of lines (.., line) in each band."""
+    edges = band_edges(lines.shape[-1])
+    power = np.add.reduceat(np.abs(lines) ** 2, edges[:-1], axis=-1) / np.diff(edges)
+    return np.log(np.maximum(power, np.finfo(float).tiny))
+
+
+def counts(bench: Bench, lines: np.ndarray) -> np.ndarray:
+    """Return (stretch, channel, band): lines that count in each band, 0 of channels at rest."""
+    return bench.moving * np.diff(band_edges(lines.shape[-1]))
+
+
+def misfit(bench: Bench, lines: np.ndarray) -> float:
+    """Return minus the log likelihood of holding lines (stretch, channel, line), but for a constant.
+
+    Gaussian lines whose level in each band is the most likely one (Whittle, with the levels
+    profiled): the number of lines times the log of their mean power. Of the lines INDEPENDENT
+    count. Infinite where a run failed.
+    """
+    value = float(np.sum(counts(bench, lines) * log_power(lines)))
+    return INDEPENDENT * value if np.isfinite(value) else np.inf
+
+
+def mean_log_power(bench: Bench, lines: np.ndarray) -> float:
+    """Return the mean over lines of the log power of their bands."""
+    weight = counts(bench, lines)
+    return float(np.sum(weight * log_power(lines)) / weight.sum())
+
+
+def effective_lines(bench: Bench, lines: np.ndarray) -> float:
+    """Return the number of lines that count in `misfit`: it divides a gain to one of log power."""
+    return INDEPENDENT * float(counts(bench, lines).sum())
+
+
+def whitening(bench: Bench, lines: np.ndarray) -> np.ndarray:
+    """Return (stretch, channel, line): one over the RMS of the lines of each band, 0 of channels at
+    rest.
+    """
+    level = np.exp(-0.5 * log_power(lines))
+    return np.repeat(level, np.diff(band_edges(lines.shape[-1])), axis=-1) * bench.moving

@@ -1,0 +1,117 @@
+"""Where and at which values the effects of the catalogue are tried first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from vibroimpact.effects import places as on_structure
+from vibroimpact.effects.effect import Effect, Values
+from vibroimpact.observation.sensor_chain import places as in_the_chain
+
+from .explanations import Term
+
+AT_A_POINT = (
+    "added_mass",
+    "cubic_stiffness",
+    "quadratic_stiffness",
+    "saturation_stiffness",
+    "coulomb_friction",
+    "clearance",
+)
+PLACES = 8  # along a tube, for what acts at a point; the place is fitted from there
+ACROSS_DEG = 90.0
+ALL_FIRST = ("foliate_trefoil", "foliate_hexafoil", "hertz")  # tried at all supports alone
+LINEAR_MODES = 8  # whose frequency may be in error
+
+
+def _ways(*sizes: float) -> list[tuple[float, float]]:
+    """Return vectors of some sizes in eight directions."""
+    angles = np.arange(8) * np.pi / 4
+    return [(size * np.cos(angle), size * np.sin(angle)) for size in sizes for angle in angles]
+
+
+def _turned(count: int, *before: float) -> list[tuple[float, ...]]:
+    """Return values before an angle, which takes four values within a lobe of so many."""
+    return [(*before, turn * 2.0 * np.pi / count / 4) for turn in range(4)]
+
+
+# Multiples of the sizes of the parameters (see effects.effect.SCALES), far from where the effect
+# does nothing: what lies near is found from its derivative there.
+FAR: dict[str, Sequence[tuple[float, ...]]] = {
+    "gap": [(0.4,), (0.6,), (0.8,), (1.3,), (1.8,), (3.0,)],
+    "contact_stiffness": [(0.1,), (4.0,)],
+    "contact_damping": [(1.0e-3,)],
+    "dry_friction": [(0.3,)],
+    "support_offset": _ways(0.6),
+    "preload": _ways(0.8, 2.5),
+    "hertz": [(0.02,), (0.1,)],
+    "plate_flexibility": [(0.05, 0.3), (0.3, 0.3), (2.0, 0.3)],
+    "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
+    "saturation_stiffness": [(1.0, 0.3), (4.0, 2.0)],
+    "clearance": [(0.1, 10.0), (0.3, 10.0), (0.8, 10.0)],
+    "foliate_lands": _turned(4),
+    "foliate_obstacle": _turned(4, 0.6),
+    "foliate_trefoil": _turned(3, 0.6),
+    "foliate_hexafoil": _turned(6, 0.6),
+}
+
+
+def locations(effect: Effect, values: Values, channels: Sequence[str], across: bool) -> list[str]:
+    """Return the places where an effect is tried.
+
+    values: configuration in plain values. channels: names. across: whether the structure is seen
+    to move across its force.
+    """
+    if effect.measured:
+        return in_the_chain(channels)
+    if "voltage" in effect.needs:
+        return []
+    length = on_structure.length_m(values)
+    if effect.id in AT_A_POINT and length is not None:
+        turns = [None, ACROSS_DEG] if across and effect.id != "added_mass" else [None]
+        return [
+            on_structure.between(length * (number + 0.5) / PLACES, turned)
+            for turned in turns
+            for number in range(PLACES)
+        ]
+    found = effect.locations(values)
+    return found[:1] if effect.id in ALL_FIRST else found
+
+
+def far_terms(effect: Effect, location: str, sizes: Mapping[str, float]) -> Iterator[Term]:
+    """Yield the terms of an effect at a place that are far from doing nothing."""
+    names = [parameter.name for parameter in effect.parameters]
+    for row in FAR.get(effect.id, ()):
+        share = dict(zip(names, row, strict=True))
+        yield Term(
+            effect.id,
+            location,
+            tuple(
+                float(share[each.name] * (share[each.over] if each.over else 1.0) * sizes[each.per])
+                for each in effect.parameters
+            ),
+        )
+
+
+def neutral_term(effect: Effect, location: str, sizes: Mapping[str, float]) -> Term | None:
+    """Return the term at which an effect does nothing and has a derivative, None where there is
+    none.
+    """
+    if effect.id == "contact_stiffness":
+        return Term(effect.id, location, (sizes["contact_stiffness"],))
+    neutral = effect.neutral()
+    if neutral is None or effect.id in ("saturation_stiffness", *LOBED):
+        return None
+    return Term(effect.id, location, tuple(neutral.values()))
+
+
+LOBED = ("foliate_obstacle", "foliate_trefoil", "foliate_hexafoil")
+
+
+def parts(term: Term, values: Values) -> list[str]:
+    """Return the places whose derivatives add up to that of a term: all supports for "all"."""
+    if term.location != "all" or term.effect.measured:
+        return [term.location]
+    return term.effect.locations(values)[1:] or [term.location]

@@ -1,0 +1,146 @@
+"""A campaign as the model is compared with it: read once, cut to what is usable."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.observation.signals import Signals
+
+from .bench import Bench
+from .constants import SCREENED_S, SHARP, STRETCH_S, WIDE
+from .explanations import Structure
+from .sizes import sizes_of
+from .stretches import Rates, held_band, rates_of, stretches_of, valid_samples
+
+FITTED, SCREENED, APART = 3, 2, 4  # stretches
+BEGIN = 0.2  # of a record: where its first stretch begins
+INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Signals of a campaign beside a Structure.
+
+    checks: rows of what was left out and why. impedance: of the structure at its sensors, N s/m:
+    the first frequency over the largest square of a mode shape. band: in which motion is held, Hz.
+    """
+
+    signals: Signals
+    structure: Structure
+    checks: tuple[Mapping[str, Any], ...] = ()
+    threads: int = 1
+    rates: Rates = field(init=False)
+    band: tuple[float, float] = field(init=False)
+    impedance: float = field(init=False)
+    sizes: Mapping[str, float] = field(init=False)
+
+    def __post_init__(self) -> None:
+        model = self.structure.with_terms(())
+        rates = rates_of(self.signals.rate, self.structure.config.integration)
+        elastic = model.omega > 0.0
+        first = float(model.omega[elastic].min())
+        band = held_band(self.signals, rates, first / (2.0 * np.pi))
+        inside = elastic & (model.frequencies < band[1])
+        largest = float(np.max(model.sensor_shapes[inside] ** 2))
+        for name, value in {
+            "rates": rates,
+            "band": band,
+            "impedance": first / largest,
+        }.items():
+            object.__setattr__(self, name, value)
+        order = self.by_load(self.signals.fit())
+        highest = self._cut([(order[-1], self.start(order[-1], 0, STRETCH_S))], STRETCH_S)[0]
+        sizes = sizes_of(
+            model, self.signals, highest, rates.steps_per_second, self.structure.values
+        )
+        object.__setattr__(self, "sizes", sizes)
+
+    @property
+    def modes(self) -> int:
+        """Return the number of modes up to the upper end of the band."""
+        return int(np.sum(self.structure.with_terms(()).frequencies < self.band[1]))
+
+    @property
+    def across(self) -> bool:
+        """Return whether sensors of more than one direction move at the highest load."""
+        moving = self.fitted().moving[-1, :, 0]
+        directions = self.structure.with_terms(()).sensor_directions[moving]
+        return len(directions) > 0 and int(np.linalg.matrix_rank(directions, tol=0.3)) > 1
+
+    def by_load(self, records: Sequence[int] | np.ndarray) -> list[int]:
+        """Return records in the order of their load over the gap."""
+        gap = np.nan_to_num(self.signals.gap, nan=1.0)
+        return sorted(map(int, records), key=lambda record: self.signals.load[record] / gap[record])
+
+    def fitted(self) -> Bench:
+        """Return the Bench that explanations are fitted on: low, middle and high loads."""
+        return self._bench(self._spread(self.signals.fit(), FITTED, STRETCH_S), STRETCH_S, SHARP)
+
+    def screened(self) -> Bench:
+        """Return the Bench of screening: the higher loads, strong dampers."""
+        places = self._spread(self.signals.fit(), FITTED, SCREENED_S)[-SCREENED:]
+        return self._bench(places, SCREENED_S, WIDE)
+
+    def apart(self) -> Bench:
+        """Return the Bench of stretches that took no part: of held-out records, or late ones of the
+        others where there are none.
+        """
+        held_out = self.signals.holdout()
+        if len(held_out):
+            places = self._spread(held_out, APART, STRETCH_S)
+        else:
+            places = [
+                (record, self.start(record, 2, STRETCH_S))
+                for record, _ in self._spread(self.signals.fit(), FITTED, STRETCH_S)
+            ]
+        return self._bench(places, STRETCH_S, SHARP)
+
+    def start(self, record: int, number: int, duration_s: float) -> float:
+        """Return where the number-th stretch of a record begins, s."""
+        whole = valid_samples(self.signals, record) / self.signals.rate
+        last = max(whole - duration_s - 1.2, 0.0)
+        return float(min(BEGIN * whole + number * duration_s, last))
+
+    def _spread(self, records, count, duration_s):
+        """Return [(record, start)]: so many stretches of records, from the lowest load to the
+        highest.
+        """
+        order = self.by_load(records)
+        chosen = [order[round(at)] for at in np.linspace(0, len(order) - 1, count)]
+        seen: dict[int, int] = {}
+        places = []
+        for record in chosen:
+            number = seen.get(record, 0)
+            seen[record] = number + 1
+            places.append((record, self.start(record, number, duration_s)))
+        return places
+
+    def _cut(self, places, duration_s):
+        """Return the stretches at places."""
+        return tuple(
+            stretches_of(
+                self.signals, places, duration_s, self.band, self.rates, self.structure.scale
+            )
+        )
+
+    def _bench(self, places, duration_s, strength):
+        """Return the Bench of places; strength over the impedance."""
+        low, high = self.band
+        scheme = self.structure.config.integration.scheme
+        return Bench(
+            self.structure,
+            self._cut(list(dict.fromkeys(places)), duration_s),
+            self.rates.schedule(duration_s, scheme),
+            (INSIDE[0] * low, INSIDE[1] * high),
+            strength * self.impedance,
+            self.threads,
+        )
+
+
+def with_threads(comparison: Comparison, threads: int) -> Comparison:
+    """Return the Comparison with so many runs at a time."""
+    return replace(comparison, threads=threads)

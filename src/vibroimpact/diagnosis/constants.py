@@ -1,0 +1,21 @@
+"""Every tuned number of the diagnosis. Priors have a source; the others were chosen on development
+campaigns.
+"""
+
+# Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a good
+# model to be off by.
+FREQUENCY_SD = 0.003
+DAMPING_SD = 0.15
+GAIN_SD = 0.02
+
+# Strength of the dampers over the impedance of the structure at its sensors: wide and smooth, and
+# narrow and sharp.
+WIDE, SHARP = 10.0, 5.0
+# Share of the lines that count as independent. A window ties neighbours together, and errors of a
+# model repeat from line to line, as noise does not.
+INDEPENDENT = 0.1
+FORGET_S = 0.7  # of a stretch: until its unknown start is forgotten
+STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that is screened
+
+# Gain in mean log power, on stretches that took no part, from which an effect is asked for.
+LEAST_GAIN = 0.05

@@ -1,0 +1,121 @@
+"""Gauss-Newton on the lines of the holding force.
+
+With r the whitened lines, J their derivative and z the coordinates over their prior sigma, it lowers
+misfit + z² / 2: the step solves (2 J^H J + 1 / sd²) dx = -(2 J^H r + x / sd²). Held to the
+measurement, r is a smooth function even where the free motion is chaotic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .bench import Bench, holding_lines, misfit, whitening
+from .constants import INDEPENDENT
+from .coordinates import Coordinate, bounds, to_point, to_vector
+from .explanations import Point
+
+SHARES = (1.0, 0.5, 0.2)  # of a step, run side by side
+LARGEST_STEP = 1.0  # of the coordinate of an effect
+TRIES = 3
+SETTLED = 2.0e-3  # gain per effective line, below which it ends
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fitted Point.
+
+    rows, x (coordinate,): what was fitted, and its coordinates. lines (stretch, channel, line): of
+    the holding force there. objective: misfit and prior. information (coordinate, coordinate): the
+    inverse of their covariance.
+    """
+
+    point: Point
+    rows: tuple[Coordinate, ...]
+    x: np.ndarray
+    lines: np.ndarray
+    objective: float
+    information: np.ndarray
+
+    @property
+    def deviation(self) -> np.ndarray:
+        """Return (coordinate,): one standard deviation of the coordinates."""
+        return np.sqrt(np.diag(np.linalg.pinv(self.information)))
+
+
+def columns(
+    bench: Bench, point: Point, rows: Sequence[Coordinate], lines: np.ndarray
+) -> np.ndarray:
+    """Return (coordinate, stretch, channel, line): derivatives of the lines at a Point by
+    differences; 0 where a run fails. lines: those at the Point.
+    """
+    x = to_vector(point, rows)
+    step = np.array(
+        [
+            row.step if at + row.step <= row.high else -row.step
+            for at, row in zip(x, rows, strict=True)
+        ]
+    )
+    moved = [to_point(x + own, rows, point) for own in np.diag(step)]
+    if not moved:
+        return np.zeros((0, *lines.shape), np.complex64)
+    return np.nan_to_num((holding_lines(bench, moved) - lines) / step[:, None, None, None])
+
+
+def fit(
+    bench: Bench,
+    start: Point,
+    rows: Sequence[Coordinate],
+    passes: int,
+    known: np.ndarray | None = None,
+) -> Fit:
+    """Return the Fit of coordinates from a Point.
+
+    passes: at most. known (nuisance, stretch, channel, line): columns of the nuisances among
+    `rows`, which are kept; where None, they are found anew in each pass.
+    """
+    low, high = bounds(rows)
+    sd = np.array([row.sd for row in rows])
+    own = np.array([row.of_effect for row in rows], bool)
+    x = np.clip(to_vector(start, rows), low, high)
+    point = to_point(x, rows, start)
+    lines = holding_lines(bench, [point])[0]
+    slope = np.zeros((len(rows), *lines.shape), np.complex64)
+    if known is not None:
+        slope[~own] = known
+    renewed = own if known is not None else np.ones(len(rows), bool)
+    value = misfit(bench, lines) + 0.5 * float(np.sum((x / sd) ** 2))
+    information, damping = np.diag(1.0 / sd**2), 1.0e-3
+    settled = SETTLED * INDEPENDENT * lines.size
+    for _ in range(passes if np.isfinite(value) else 0):
+        chosen = [row for row, new in zip(rows, renewed, strict=True) if new]
+        slope[renewed] = columns(bench, point, chosen, lines)
+        weight = whitening(bench, lines)
+        white = (slope * weight).reshape(len(rows), -1)
+        information = 2.0 * INDEPENDENT * (white.conj() @ white.T).real.astype(float)
+        information += np.diag(1.0 / sd**2)
+        pull = 2.0 * INDEPENDENT * (white.conj() @ (lines * weight).ravel()).real + x / sd**2
+        before = value
+        for _ in range(TRIES):
+            step = -np.linalg.lstsq(
+                information + damping * np.diag(np.diag(information)), pull, rcond=None
+            )[0]
+            step /= max(1.0, np.abs(step[own]).max(initial=0.0) / LARGEST_STEP)
+            tried = [np.clip(x + share * step, low, high) for share in SHARES]
+            points = [to_point(each, rows, start) for each in tried]
+            found = holding_lines(bench, points)
+            values = [
+                misfit(bench, each) + 0.5 * float(np.sum((at / sd) ** 2))
+                for each, at in zip(found, tried, strict=True)
+            ]
+            best = int(np.argmin(values))
+            if values[best] < value:
+                x, point, lines, value = tried[best], points[best], found[best], values[best]
+                damping *= 0.3 if best == 0 else 1.0
+                break
+            damping = max(10.0 * damping, 1.0e-2)
+        if before - value < settled:
+            break
+    return Fit(point, tuple(rows), x, lines, value, information)

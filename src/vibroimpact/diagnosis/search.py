@@ -1,0 +1,202 @@
+"""Forward search: the best effect beside what is known, until none gains on stretches that took no
+part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from vibroimpact.effects.effect import Effect
+from vibroimpact.effects.registry import EFFECTS
+
+from .bench import (
+    Bench,
+    counts,
+    effective_lines,
+    holding_lines,
+    log_power,
+    misfit,
+)
+from .comparison import Comparison
+from .constants import LEAST_GAIN
+from .coordinates import effect_coordinates, nuisance_coordinates
+from .explanations import Point
+from .gauss_newton import Fit, columns, fit
+from .screening import Screened, screen
+
+RACED, FINALISTS = 10, 3
+PER_EFFECT = 2  # places of one effect in a race
+RACE_PASSES, FINAL_PASSES = 3, 4
+MOST_EFFECTS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """A fitted explanation.
+
+    gain: of the objective over nothing, in mean log power, on the fitted stretches. apart, error:
+    the same on stretches that took no part, with its standard error. apart_cells (stretch, band):
+    what `apart` is the mean of, weighted.
+    """
+
+    fit: Fit
+    gain: float
+    apart: float
+    error: float
+
+    @property
+    def point(self) -> Point:
+        """Return its Point."""
+        return self.fit.point
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Return the ids of its effects, sorted."""
+        return tuple(sorted(self.point.ids))
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What was found: nothing, and hypotheses, best first; screened: gains of single effects beside
+    nothing.
+    """
+
+    nothing: Hypothesis
+    hypotheses: tuple[Hypothesis, ...]
+    screened: tuple[tuple[str, float], ...] = ()
+    failed: tuple[str, ...] = ()
+    runs: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class _Benches:
+    """The benches of a Comparison, each made once, and the lines of nothing on the last."""
+
+    comparison: Comparison
+    screened: Bench
+    fitted: Bench
+    apart: Bench
+    effects: Sequence[Effect]
+
+
+def search(
+    comparison: Comparison,
+    most: int = MOST_EFFECTS,
+    effects: Sequence[Effect] | None = None,
+    log: Callable[[str], None] = lambda text: None,
+) -> Search:
+    """Return the Search of a Comparison for up to `most` effects at once."""
+    at = _Benches(
+        comparison,
+        comparison.screened(),
+        comparison.fitted(),
+        comparison.apart(),
+        list(EFFECTS.values()) if effects is None else effects,
+    )
+    nothing = _finals(at, [Point()], None)[0]
+    found: dict[str, Hypothesis] = {}
+    base, screened = nothing, []
+    for size in range(1, most + 1):
+        beside = replace(Point(), terms=base.point.terms)
+        ranked = screen(at.screened, beside, at.effects, comparison.sizes, comparison.across)
+        if size == 1:
+            screened = [
+                (each.point.name, each.gain / effective_lines(at.screened, nothing.fit.lines))
+                for each in ranked
+            ]
+        raced = _race(at, ranked)
+        new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
+        found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
+        if not new:
+            break
+        best = max(new, key=lambda each: each.gain)
+        for each in sorted(new, key=lambda each: -each.gain):
+            log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
+        if best.apart - base.apart < LEAST_GAIN:
+            break
+        if size > 1:
+            found |= _exchanged(at, best, nothing, log)
+            best = max(found.values(), key=lambda each: each.gain)
+        base = best
+    ranked_found = sorted(found.values(), key=lambda each: -each.gain)
+    return Search(nothing, tuple(ranked_found), tuple(screened))
+
+
+def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
+    """Return the Fits of the best screened points of different effects, best first."""
+    chosen: dict[str, Point] = {}
+    per_effect: dict[str, int] = {}
+    for each in ranked:
+        name, effect = each.point.name, each.point.terms[-1].effect_id
+        if name in chosen or per_effect.get(effect, 0) >= PER_EFFECT or not np.isfinite(each.gain):
+            continue
+        per_effect[effect] = per_effect.get(effect, 0) + 1
+        chosen[name] = each.point
+        if len(chosen) == RACED:
+            break
+    fits = [
+        fit(at.screened, point, effect_coordinates(point.terms, at.comparison.sizes), RACE_PASSES)
+        for point in chosen.values()
+    ]
+    return sorted(fits, key=lambda each: each.objective)
+
+
+def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -> list[Hypothesis]:
+    """Return the Hypotheses of points, fitted with all nuisances at sharp dampers.
+
+    The columns of the nuisances are those at the first point.
+    """
+    nuisances = nuisance_coordinates(at.comparison.modes, len(at.comparison.structure.names))
+    known: np.ndarray | None = None
+    out = []
+    for point in points:
+        if known is None:
+            lines = holding_lines(at.fitted, [point])[0]
+            if not np.isfinite(lines).all():
+                continue
+            known = columns(at.fitted, point, nuisances, lines)
+        rows = [*effect_coordinates(point.terms, at.comparison.sizes), *nuisances]
+        own = fit(at.fitted, point, rows, FINAL_PASSES, known)
+        out.append(_hypothesis(at, own, nothing))
+    return out
+
+
+def _hypothesis(at: _Benches, own: Fit, nothing: Hypothesis | None) -> Hypothesis:
+    """Return the Hypothesis of a Fit, compared with nothing."""
+    if nothing is None:
+        return Hypothesis(own, 0.0, 0.0, 0.0)
+    gain = (nothing.fit.objective - own.objective) / effective_lines(at.fitted, own.lines)
+    before, after = holding_lines(at.apart, [nothing.point, own.point])
+    apart, error = difference(at.apart, before, after)
+    return Hypothesis(own, gain, apart, error)
+
+
+def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[float, float]:
+    """Return (gain, standard error) of lines after over lines before, in mean log power.
+
+    The error is that of a jackknife over stretches and bands.
+    """
+    weight = counts(bench, before).sum(axis=1).astype(float)
+    change = np.sum(counts(bench, before) * (log_power(before) - log_power(after)), axis=1)
+    if not np.isfinite(change).all():
+        return -np.inf, np.inf
+    total, lines = change.sum(), weight.sum()
+    left_out = ((total - change) / (lines - weight)).ravel()
+    cells = left_out.size
+    return float(total / lines), float(np.sqrt((cells - 1) * left_out.var()))
+
+
+def _exchanged(at, best, nothing, log):
+    """Return {name: Hypothesis} of pairs in which one effect of the best is exchanged for another."""
+    out = {}
+    for kept in best.point.terms:
+        base = replace(Point(), terms=(kept,))
+        ranked = screen(at.screened, base, at.effects, at.comparison.sizes, at.comparison.across)
+        raced = [each for each in _race(at, ranked)[:2] if each.point.name not in out]
+        for each in _finals(at, [fit.point for fit in raced], nothing):
+            out[each.point.name] = each
+            log(f"exchanged: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
+    return out
