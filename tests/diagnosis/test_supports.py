@@ -15,6 +15,7 @@ from vibroimpact.integration.held_run import HeldLane, hold
 from vibroimpact.observation.signals import signals_of
 
 LEVELS = ((0.5, 1.3, "fit"), (12.0, 1.3, "fit"))
+RISING = ((0.5, 1.3, "fit"), (4.0, 1.3, "fit"), (12.0, 1.3, "fit"), (35.0, 1.3, "fit"))
 SIDES = ("left", "right")
 Y_ALONE = ("apex_y", "bend45_right_y", "left_leg_upper_y", "right_leg_upper_y")
 
@@ -197,6 +198,30 @@ def test_the_command_says_what_is_missing(measured, tmp_path, monkeypatch, capsy
     given = [argument.format(path=path, model=model) for argument in arguments]
     assert main(["supports", *given]) == 1
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("channels", [range(7), [3, 4, 5]], ids=["seven", "three"])
+def test_a_calibrated_model_tells_forces_to_three_percent(tmp_path, channels):
+    path, model, truth = contact_campaign(tmp_path, seed=(20,), levels=RISING, duration=10.0)
+    campaign = vi.read_campaign(path).isel(channel=list(channels))
+    found = vi.virtual_supports(campaign, vi.load_config(model), calibrate=True, with_forces=True)
+    for record in (1, 2, 3):
+        forces = found.forces[record]
+        first, count = round(forces.first_s * truth.rate), forces.force.shape[-1]
+        last = forces.first_s + count / forces.sampling_frequency
+        for side, name in enumerate(SIDES):
+            true = truth.measured[record, 2 * side : 2 * side + 2, first : first + count]
+            assert correlation(forces.force[side], true) > 0.97
+            rows, values = named(found, record, name), truth.of(record, side, forces.first_s, last)
+            assert rows["rms_force"].value == pytest.approx(values["rms_force"], rel=0.03)
+            assert rows["contact_fraction"].value == pytest.approx(
+                values["contact_fraction"], rel=0.05
+            )
+            if record > 1:  # below, the motion across is in the noise
+                assert rows["wear_work_rate"].value == pytest.approx(
+                    values["wear_work_rate"], rel=0.06
+                )
 
 
 @pytest.mark.slow

@@ -22,7 +22,7 @@ FIRST_BAND = 4  # lines in the lowest
 @dataclass(frozen=True, eq=False)
 class Bench:
     """What Points are compared on: stretches, their Schedule, the band of the lines in Hz, and the
-    strength of the dampers in N s/m.
+    strength of the dampers in N s/m. Modes above held_below_Hz are not held.
     """
 
     structure: Structure
@@ -31,6 +31,7 @@ class Bench:
     band: tuple[float, float]
     strength: float
     threads: int = 1
+    held_below_Hz: float = np.inf
 
     def held_at(self, strength: float) -> Bench:
         """Return the Bench with dampers of another strength."""
@@ -70,7 +71,7 @@ def held_records(
                     1.0 / chain.force_gain,
                 )
             )
-    return hold(runs, bench.schedule, bench.threads), index
+    return hold(runs, bench.schedule, bench.threads, bench.held_below_Hz), index
 
 
 def measures_motion(bench: Bench) -> np.ndarray:

@@ -30,6 +30,7 @@ from vibroimpact.observation.comparable import (
 from vibroimpact.observation.sensed_motion import of_modes
 from vibroimpact.observation.signals import signals_of
 
+from .calibration import calibrated
 from .explanations import Point, Structure
 from .measured_forces import force_channels, side_by_side
 from .support_statistics import (
@@ -109,7 +110,11 @@ class VirtualSupports:
 
 
 def virtual_supports(
-    campaign: xr.Dataset, config: Config, point: Point | None = None, with_forces: bool = False
+    campaign: xr.Dataset,
+    config: Config,
+    point: Point | None = None,
+    calibrate: bool = False,
+    with_forces: bool = False,
 ) -> VirtualSupports:
     """Return the VirtualSupports of every record of a measured campaign.
 
@@ -119,7 +124,8 @@ def virtual_supports(
     Measured contact forces are not used; they stand beside the virtual ones along their channels.
 
     config: of the model. point: effects, and nuisances of the channels that measure a motion; None
-    for the model as given. with_forces: also give the forces over time.
+    for the model as given. calibrate: fit frequencies, damping and gains first, see calibration.py.
+    with_forces: also give the forces over time.
 
     Raises CampaignError where the campaign can not be compared with the model, with sentences that
     say why, one a line.
@@ -128,9 +134,12 @@ def virtual_supports(
     own = campaign.isel(channel=held)
     signals = signals_of(own)
     structure = Structure(config, own)
-    holding = holder(structure, signals, point or Point())
+    point = point or Point()
+    holding = holder(structure, signals, point)
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
+    if calibrate:
+        holding = holder(structure, signals, calibrated(structure, signals, point))
     channels, more = force_channels(campaign, holding.model)
     directions = support_directions(holding.model, "each")
     values: list[SupportValue] = []

@@ -41,6 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=MODEL,
         help=f"configuration of the model (default: {MODEL})",
     )
+    parser.add_argument(
+        "--calibrate",
+        action="store_true",
+        help="first fit the model's frequencies and damping and the sensors' gains, within what a"
+        " good model is off by; takes some 20 s of CPU time",
+    )
     parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file too")
     parser.set_defaults(command=run)
 
@@ -60,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"{options.campaign}: {problem}", file=sys.stderr)
         if campaign is None:
             return 1
-        found = virtual_supports(campaign, config)
+        found = virtual_supports(campaign, config, calibrate=options.calibrate)
         if options.csv:
             _write(found, options.csv)
     except CampaignError as error:
