@@ -125,8 +125,8 @@ def agreement_of(run: Held, weaker: Held, chosen: np.ndarray) -> np.ndarray:
     """Return (support,) the correlation of the contact forces under two strengths of the dampers,
     1 where neither touches.
 
-    Measured: it is that with the true force to 0.02 wherever the sensors see both directions (0.74
-    to 1.00), and where it is 0.98 or more, so is the true one to 0.02.
+    Measured: where it is below 0.95, the correlation with the true force is about as low; above, it
+    does not see what is wrong in the model. See docs/virtual_supports.md.
     """
     one, other = (
         held.runs.support_force[chosen].astype(float).transpose(1, 0, 2) for held in (run, weaker)
