@@ -20,8 +20,8 @@ from .stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_s
 
 STRETCHES = LANES  # of a record: they fill the lanes of one batch
 # Of the dampers, in units of the first mode, see unit_strength. Measured, correlation with the true
-# force at the highest load with seven sensors: 0.98, 0.995, 0.996 at 2, 4 and 8; with two at the apex
-# 0.80, 0.82, 0.82, 0.74 at 1, 2, 4 and 8, so that stronger is no safer.
+# force at the highest load with seven sensors: 0.98, 0.995, 0.996 at 2, 4 and 8; with two at the
+# apex 0.80, 0.82, 0.82, 0.74 at 1, 2, 4 and 8, so that stronger is no safer.
 STRENGTH = 4.0
 
 
