@@ -51,6 +51,7 @@ PUBLIC = {
     "write_campaign": "campaign.file",
     "check_campaign": "campaign.checks.file_checks",
     "import_folder": "campaign.importing.assemble",
+    "virtual_supports": "diagnosis.supports",
     "read_record": "records",
     "write_record": "records",
     "configurations": "study_folder.shared_files",

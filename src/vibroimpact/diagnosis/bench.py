@@ -22,7 +22,7 @@ FIRST_BAND = 4  # lines in the lowest
 @dataclass(frozen=True, eq=False)
 class Bench:
     """What Points are compared on: stretches, their Schedule, the band of the lines in Hz, and the
-    strength of the dampers in N s/m.
+    strength of the dampers in N s/m. Modes above held_below_Hz are not held.
     """
 
     structure: Structure
@@ -31,6 +31,7 @@ class Bench:
     band: tuple[float, float]
     strength: float
     threads: int = 1
+    held_below_Hz: float = np.inf
 
     def held_at(self, strength: float) -> Bench:
         """Return the Bench with dampers of another strength."""
@@ -64,13 +65,13 @@ def held_records(
                     model,
                     stretch.gap,
                     stretch.force,
-                    _undelayed(stretch.motion, chain.delay, bench.schedule.steps_per_second),
+                    undelayed(stretch.motion, chain.delay, bench.schedule.steps_per_second),
                     strength,
                     1.0 / chain.gain,
                     1.0 / chain.force_gain,
                 )
             )
-    return hold(runs, bench.schedule, bench.threads), index
+    return hold(runs, bench.schedule, bench.threads, bench.held_below_Hz), index
 
 
 def measures_motion(bench: Bench) -> np.ndarray:
@@ -78,8 +79,8 @@ def measures_motion(bench: Bench) -> np.ndarray:
     return np.any([np.any(stretch.motion, axis=0) for stretch in bench.stretches], axis=0)
 
 
-def _undelayed(motion, delay, rate):
-    """Return motion (step, channel) as it was before delays (channel,) in s."""
+def undelayed(motion: np.ndarray, delay: np.ndarray, rate: float) -> np.ndarray:
+    """Return motion (step, channel), rate steps a second, before delays (channel,) in s."""
     if not delay.any():
         return motion
     out, at = motion.copy(), np.arange(len(motion))

@@ -1,0 +1,28 @@
+"""The nuisances of a measured structure: frequencies, damping of its modes, gains of its channels.
+
+They are fitted to the lines of the holding force, with the priors of constants.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from vibroimpact.observation.signals import Signals
+
+from .comparison import Comparison
+from .coordinates import nuisance_coordinates
+from .explanations import Point, Structure
+from .gauss_newton import fit
+
+PASSES = 3  # at most: gains are then known to 1 %, see docs/virtual_supports.md
+
+
+def calibrated(structure: Structure, signals: Signals, point: Point) -> Point:
+    """Return a Point with fitted nuisances: those of all modes in the band and of all channels.
+
+    point: its terms stay, its nuisances are where the fit begins.
+    """
+    comparison = Comparison(signals, structure)
+    bench = replace(comparison.fitted(), held_below_Hz=comparison.band[1])
+    rows = nuisance_coordinates(comparison.modes, len(signals.names))
+    return fit(bench, point, rows, PASSES).point
