@@ -51,6 +51,8 @@ PUBLIC = {
     "write_campaign": "campaign.file",
     "check_campaign": "campaign.checks.file_checks",
     "import_folder": "campaign.importing.assemble",
+    "diagnose": "diagnosis.diagnose",
+    "Verdict": "verdict.content",
     "virtual_supports": "diagnosis.supports",
     "read_record": "records",
     "write_record": "records",

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vibroimpact import __version__
-from vibroimpact.diagnosis import supports_command
+from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 
 NETCDF = (".nc", ".nc4", ".cdf")
@@ -104,6 +104,14 @@ def _parser() -> argparse.ArgumentParser:
         " or c is not resolved; what is not resolved is never exported.",
     )
     add_arguments(answer)
+    diagnosis = commands.add_parser(
+        "diagnose",
+        help="say what a model lacks, given a measured campaign",
+        description="Hold the model to the measured motion and say which effect it lacks, where and"
+        " how strong, and how sure that is. Prints one line per explanation that was fitted, then"
+        " the verdict. The exit code is 1 where the campaign can not be compared with the model.",
+    )
+    diagnose_command.add_arguments(diagnosis)
     supports = commands.add_parser(
         "supports",
         help="print the contact forces at the supports of a measured structure, from its sensors",

@@ -5,8 +5,6 @@ They are fitted to the lines of the holding force, with the priors of constants.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from vibroimpact.observation.signals import Signals
 
 from .comparison import Comparison
@@ -23,6 +21,5 @@ def calibrated(structure: Structure, signals: Signals, point: Point) -> Point:
     point: its terms stay, its nuisances are where the fit begins.
     """
     comparison = Comparison(signals, structure)
-    bench = replace(comparison.fitted(), held_below_Hz=comparison.band[1])
     rows = nuisance_coordinates(comparison.modes, len(signals.names))
-    return fit(bench, point, rows, PASSES).point
+    return fit(comparison.fitted(), point, rows, PASSES).point
