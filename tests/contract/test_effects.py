@@ -32,6 +32,7 @@ CATALOGUE = {
     "quadratic_drag",
     "coulomb_friction",
     "clearance",
+    "one_sided_stop",
     "force_misalignment",
     "shaker_interaction",
     "sensor_gain",
