@@ -54,6 +54,7 @@ PACKAGES = (
     "discrepancy",
     "completion",
     "missing_effect",
+    "diagnosis",
     "acceptance",
     "validation",
     "reports",
