@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import xarray as xr
+from scipy.signal import resample_poly
 
 from vibroimpact.observation.strain import STRAIN
 
@@ -23,7 +24,8 @@ HOLDING_BANDS = 10  # logarithmic, over the band of the lines
 MOST_FREE = 96  # runs with a sensor left free, of both states
 FREE_STRETCHES = 2
 LAW_STRETCHES = 3
-WAVEFORM_S = 0.25
+WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
+FINER = 4  # times the sampling of the runs, as a waveform is drawn
 ACTS = 0.3  # of the power of the sensors: beyond what the drive alone does
 
 
@@ -228,12 +230,16 @@ def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
 
 def _waveform(bench, series, told, unit, scale):
     """Return the waveform where the response is largest: series (3, sample) in m/s."""
-    rate = bench.schedule.sampling_frequency
-    count = min(round(WAVEFORM_S * rate), series.shape[-1])
+    rate = FINER * bench.schedule.sampling_frequency
+    series = resample_poly(series, FINER, 1, axis=-1)
+    crossings = np.mean(np.diff(np.signbit(series[0])))  # per sample
+    cycles = round(2.0 * CYCLES / max(float(crossings), 1.0e-9))
+    count = min(round(WAVEFORM_S * rate), cycles, series.shape[-1])
     power = np.convolve(series[0] ** 2, np.ones(count), "valid")
     first = int(np.argmax(power))
     inside = slice(first, first + count)
-    time = settled(bench)[inside] / rate + bench.stretches[told[0]].start_s
+    start = bench.stretches[told[0]].start_s + settled(bench)[0] * FINER / rate
+    time = start + np.arange(first, first + count) / rate
     return {
         "waveform": (("series", "moment"), series[:, inside] / scale, {"units": unit}),
         "moment_time": ("moment", time, {"units": "s"}),
