@@ -21,7 +21,6 @@ write_text(
         snakemake.params.name,
         results.verdict,
         shown,
-        compared_s=snakemake.params.compared_s,
         model=str(folder / "model_updated.yaml"),
     ),
     snakemake.output.page,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.verdict.content import Verdict
@@ -65,3 +66,16 @@ def _agree(verdict: Verdict, rows: list[Explanation]) -> bool:
     if verdict.verdict == "partly_explained":
         return first.told or first.words == SOMETHING_ELSE
     return first.words == (NOTHING if verdict.verdict == "none" else SOMETHING_ELSE)
+
+
+def best_places(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the rows of a ranking in plain values, best first, without those that were only
+    screened and whose effects are in a row before at another place.
+    """
+    shown, kept = set(), []
+    for row in rows:
+        ids = tuple(sorted(row["ids"]))
+        if ids not in shown or row.get("heldout_score") is not None:
+            kept.append(row)
+        shown.add(ids)
+    return kept

@@ -19,8 +19,8 @@ MOVES = 1.0e-3  # of the power of the channel that moves most
 CAPTION = (
     "PSD, measured (black) and of free runs under the measured force, not held to any sensor: with"
     " the model as given (orange, dashed) and with the completed one (blue). Records: the lowest"
-    " and the highest that was fitted, and the held-out one that disagrees most; channels: those that"
-    " disagree most."
+    " and the highest that was fitted, and the held-out one that disagrees most; channels: those"
+    " that disagree most."
 )
 
 
