@@ -35,6 +35,7 @@ from .stretches import FADE_S, Stretch, stretches_of, valid_samples
 MARGIN_S, TAPER_S = 2.0, 1.0  # beside a stretch, and of it faded
 BANDS = 12  # logarithmic, each with a variance of its own
 PASSES = 12  # of the variances
+LEAST_POWER = 1.0e-12  # of the largest: of the prior of a force
 SMOOTHED = 9  # lines over which the power of a sensor is averaged
 SEEN = 0.5  # resolution from which a force is known
 AXES = "xyz"
@@ -129,10 +130,10 @@ def demanded(
     white = left / np.sqrt(variance.T)
     normal = np.swapaxes(matrix.conj(), 1, 2) @ matrix
     pull = np.squeeze(np.swapaxes(matrix.conj(), 1, 2) @ white[..., None], -1)
-    force, known = _most_probable(normal, pull, _bands_of(frequency))
+    force, known, prior = _most_probable(normal, pull, _bands_of(frequency))
     motion = (driven + own * (force @ places.shapes.T)) @ places.shapes
-    power = np.sum(np.abs(force) ** 2, axis=0)
-    resolution = np.sum(np.abs(force) ** 2 * known, axis=0) / np.where(power > 0.0, power, 1.0)
+    power = prior.sum(axis=0)
+    resolution = np.sum(prior * known, axis=0) / np.where(power > 0.0, power, 1.0)
     misfit = white - np.squeeze(matrix @ force[..., None], -1)
     explained = 1.0 - float(np.sum(np.abs(misfit) ** 2) / max(np.sum(np.abs(white) ** 2), 1e-300))
     return force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained
@@ -145,27 +146,35 @@ def _bands_of(frequency):
 
 
 def _most_probable(normal, pull, band):
-    """Return (force (line, place), known (line, place)) with the most probable variances by band.
+    """Return (force, known, variance) (line, place): forces with the most probable variances by
+    band, and how much of each the sensors know where all have the largest variance of the band.
 
     normal (line, place, place), pull (line, place): of the whitened least squares.
     """
     count = pull.shape[1]
-    force, known = np.zeros_like(pull), np.zeros(pull.shape)
+    force, known, variance = np.zeros_like(pull), np.zeros(pull.shape), np.zeros(pull.shape)
     for number in range(BANDS):
         own = band == number
         if not own.any() or not count:
             continue
-        scale = np.maximum(np.einsum("lpp->p", normal[own]).real / own.sum(), 1e-300)
+        scale = np.maximum(np.einsum("lpp->p", normal[own]).real / own.sum(), 1.0e-100)
         wanted = np.abs(pull[own]) ** 2 / scale**2
-        prior = np.maximum(wanted.mean(axis=0), 1e-300)  # (place,) N²
+        prior = wanted.mean(axis=0)  # (place,) N²
+        least = LEAST_POWER * prior.max()
+        if least == 0.0:
+            continue  # nothing is demanded here
+        prior = np.maximum(prior, least)
         for _ in range(PASSES):
             inverse = np.linalg.inv(normal[own] + np.diag(1.0 / prior))
             force[own] = np.squeeze(inverse @ pull[own][..., None], -1)
-            spread = np.einsum("lpp->lp", inverse).real
-            known[own] = 1.0 - spread / prior
+            share = 1.0 - np.einsum("lpp->lp", inverse).real / prior
             power = np.mean(np.abs(force[own]) ** 2, axis=0)
-            prior = np.maximum(power / np.maximum(known[own].mean(axis=0), 1e-6), 1e-12 * prior)
-    return force, known
+            prior = np.maximum(power / np.maximum(share.mean(axis=0), 1.0e-6), least)
+        alike = prior.max()  # each force might have been the largest
+        inverse = np.linalg.inv(normal[own] + np.eye(count) / alike)
+        known[own] = 1.0 - np.einsum("lpp->lp", inverse).real / alike
+        variance[own] = alike
+    return force, known, variance
 
 
 def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Point) -> Demand:
