@@ -57,6 +57,7 @@ def write_generated_pages(app, config):
     _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
     _write(folder / "command_line.md", _command_line())
     _write(folder / "command_line_equivalent.md", _command_line("equivalent"))
+    _write(folder / "command_line_supports.md", _command_line("supports"))
     python = folder / "python"
     packages = python / "packages"
     packages.mkdir(parents=True, exist_ok=True)

@@ -26,6 +26,8 @@ from .config.problems import ConfigError as ConfigError
 from .config.reading import check_config as check_config
 from .config.reading import load_config as load_config
 from .config.schema import Config as Config
+from .diagnosis.diagnose import diagnose as diagnose
+from .diagnosis.supports import virtual_supports as virtual_supports
 from .equivalent_support.answer import EquivalentError as EquivalentError
 from .equivalent_support.estimate import estimate_equivalent as estimate_equivalent
 from .equivalent_support.export_formats.registry import springs_text as springs_text

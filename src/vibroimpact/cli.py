@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vibroimpact import __version__
+from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 
 NETCDF = (".nc", ".nc4", ".cdf")
@@ -103,6 +104,25 @@ def _parser() -> argparse.ArgumentParser:
         " or c is not resolved; what is not resolved is never exported.",
     )
     add_arguments(answer)
+    diagnosis = commands.add_parser(
+        "diagnose",
+        help="say what a model lacks, given a measured campaign",
+        description="Hold the model to the measured motion and say which effect it lacks, where and"
+        " how strong, and how sure that is. Prints one line per explanation that was fitted, then"
+        " the verdict. The exit code is 1 where the campaign can not be compared with the model.",
+    )
+    diagnose_command.add_arguments(diagnosis)
+    supports = commands.add_parser(
+        "supports",
+        help="print the contact forces at the supports of a measured structure, from its sensors",
+        description="Print what remote sensors tell of each support in each record of a measured"
+        " campaign: contact force, time in contact, impacts, wear work rate, secant stiffness and"
+        " damping. The model is held to the measured motion by dampers at the sensors; its contact"
+        " forces are then those of the structure. Measured contact forces are not used, they are"
+        " shown beside. Values that can not be relied on say why. The exit code is 1 where the"
+        " campaign can not be compared with the model.",
+    )
+    supports_command.add_arguments(supports)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),

@@ -28,8 +28,8 @@ def model(study_model):
 
 
 def sprung(model, sensors, noise=0.0, seed=1):
-    """((drive, sensors (sensor, line)), variance, force (place, line), motion) of a linear structure
-    with a spring and a damper at every support, under a white force; noise: over the RMS.
+    """((drive, sensors (sensor, line)), variance, force (place, line), motion) of a linear
+    structure with a spring and a damper at every support, under a white force; noise: over the RMS.
     """
     rng = np.random.default_rng(seed)
     places = places_of(model)

@@ -4,7 +4,7 @@
 # identified and has no modes.
 
 
-ruleorder: _completion_outcome > _missing_effect
+ruleorder: _completion_outcome > _diagnosis
 ruleorder: _completion_report > _discrepancy_report
 
 

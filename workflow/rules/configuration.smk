@@ -47,7 +47,7 @@ os.environ.update(
 from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
-from vibroimpact.missing_effect.effort import EFFORTS
+from vibroimpact.diagnosis.diagnose_command import EFFORTS
 
 # Values of --config that are not keys of the study.
 REQUEST = {
@@ -61,7 +61,6 @@ REQUEST = {
         "count",
         "shard",
         "add",
-        "draw",
         *(f"{folder.name}_data" for folder in sorted(Path(EXAMPLES).glob("*/"))),
     )
     if name in config
@@ -97,7 +96,6 @@ def asked_effort():
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
-DRAW = int(number_asked("draw", example="1", whole=True) or 0)
 EFFORT = asked_effort()
 
 

@@ -1,18 +1,16 @@
 """One sealed campaign of a draw, from its file to its verdict: as a user would run it."""
 
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from vibroimpact.config.reading import load_config
-from vibroimpact.missing_effect.engine import Engine
+from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.provenance import package_digest
+from vibroimpact.verdict.file import write_verdict
 
 
-def run_sealed(campaign, model, verdict):
-    """Judge a campaign file against the model file of its user; the verdict is all that is kept."""
-    verdict = Path(verdict)
-    with TemporaryDirectory(dir=verdict.parent) as work:
-        Engine(load_config(model), str(campaign), Path(work)).run(
-            {"source_digest": package_digest()}
-        )
-        Path(work, "verdict.json").rename(verdict)
+def run_sealed(campaign: str | Path, model: str | Path, verdict: str | Path) -> None:
+    """Judge a campaign file against the model file of its user, and write the verdict."""
+    found = run_diagnosis(
+        campaign, load_config(model), provenance={"source_digest": package_digest()}
+    )
+    write_verdict(found.verdict, verdict)

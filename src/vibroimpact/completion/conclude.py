@@ -6,10 +6,10 @@ import numpy as np
 from scipy.stats import chi2
 
 from vibroimpact.config.measured_structure import ELSEWHERE
-from vibroimpact.discrepancy.misfit import makes_worse
 from vibroimpact.run_cost import Meter, total_cost, with_cost
 from vibroimpact.spectra.periodic_lines import line_power
 from vibroimpact.verdict.content import WITH_AMBIGUITY_SET, WITH_EFFECTS, Verdict
+from vibroimpact.verdict.misfit import makes_worse
 
 from .candidate import further_additions
 from .intervals import told_parameters

@@ -4,12 +4,12 @@ prediction and a model that runs.
 
 import numpy as np
 
-from vibroimpact.discrepancy.completed_model import not_offered
 from vibroimpact.records import write_table, write_text
 from vibroimpact.run_cost import with_cost
 from vibroimpact.spectra.periodic_lines import PeriodError
 from vibroimpact.verdict.content import Verdict, not_testable
 from vibroimpact.verdict.file import write_verdict
+from vibroimpact.verdict.misfit import not_offered
 
 from .conclude import conclude
 from .levels import levels_of

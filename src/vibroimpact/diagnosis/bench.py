@@ -25,7 +25,7 @@ END_S = 0.3  # of a run: before its end
 @dataclass(frozen=True, eq=False)
 class Bench:
     """What Points are compared on: stretches, their Schedule, the band of the lines in Hz, and the
-    strength of the dampers in N s/m.
+    strength of the dampers in N s/m. Modes above held_below_Hz are not held.
     """
 
     structure: Structure
@@ -34,6 +34,7 @@ class Bench:
     band: tuple[float, float]
     strength: float
     threads: int = 1
+    held_below_Hz: float = np.inf
 
     def held_at(self, strength: float) -> Bench:
         """Return the Bench with dampers of another strength."""
@@ -62,7 +63,7 @@ def held_records(
         for place, stretch in enumerate(bench.stretches):
             index[number, place] = len(runs)
             runs.append(lane_of(bench, stretch, model, chain, free))
-    return hold(runs, bench.schedule, bench.threads), index
+    return hold(runs, bench.schedule, bench.threads, bench.held_below_Hz), index
 
 
 def lane_of(
@@ -112,8 +113,8 @@ def measures_motion(bench: Bench) -> np.ndarray:
     return np.any([np.any(stretch.motion, axis=0) for stretch in bench.stretches], axis=0)
 
 
-def undelayed(motion, delay, rate):
-    """Return motion (step, channel) as it was before delays (channel,) in s."""
+def undelayed(motion: np.ndarray, delay: np.ndarray, rate: float) -> np.ndarray:
+    """Return motion (step, channel), rate steps a second, before delays (channel,) in s."""
     if not delay.any():
         return motion
     out, at = motion.copy(), np.arange(len(motion))
@@ -125,8 +126,8 @@ def undelayed(motion, delay, rate):
 def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     """Return (point, stretch, channel, line) complex: the spectrum of the holding force in N.
 
-    It is multiplied with the gain of the channel, so that it is a residual of what was measured. NaN
-    of a Point that could not be run.
+    It is multiplied with the gain of the channel, so that it is a residual of what was measured.
+    NaN of a Point that could not be run.
     """
     records, index = held_records(bench, points)
     rate = bench.schedule.sampling_frequency
@@ -158,7 +159,8 @@ def counts(bench: Bench, lines: np.ndarray) -> np.ndarray:
 
 
 def misfit(bench: Bench, lines: np.ndarray) -> float:
-    """Return minus the log likelihood of holding lines (stretch, channel, line), but for a constant.
+    """Return minus the log likelihood of holding lines (stretch, channel, line), but for a
+    constant.
 
     Gaussian lines whose level in each band is the most likely one (Whittle, with the levels
     profiled): the number of lines times the log of their mean power. Of the lines INDEPENDENT

@@ -10,6 +10,7 @@ from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Effect, Values
 from vibroimpact.observation.sensor_chain import places as in_the_chain
 
+from .constants import FREQUENCY_SD, GAIN_SD
 from .explanations import Term
 
 AT_A_POINT = (
@@ -23,7 +24,18 @@ AT_A_POINT = (
 PLACES = 8  # along a tube, for what acts at a point; the place is fitted from there
 ACROSS_DEG = 90.0
 ALL_FIRST = ("foliate_trefoil", "foliate_hexafoil", "hertz")  # tried at all supports alone
-LINEAR_MODES = 8  # whose frequency may be in error
+# Logarithm of a factor, within which two good codes of one structure differ: two standard
+# deviations of the priors, and what models in which nothing is hidden were off by on development
+# campaigns.
+NO_EFFECT = {
+    "mode_frequency_error": 2.0 * FREQUENCY_SD,
+    "sensor_gain": 2.0 * GAIN_SD,
+    "gap": 2.0 * GAIN_SD,  # a gain common to force and responses is a gap
+    "modal_damping": 0.6,
+    "contact_stiffness": 0.35,
+}
+NO_CONTACT_DAMPING = 1.5e-5  # s, times the contact stiffness
+LATE_SAMPLES = 0.25  # of a delay that is named
 
 
 def _ways(*sizes: float) -> list[tuple[float, float]]:
@@ -40,17 +52,18 @@ def _turned(count: int, *before: float) -> list[tuple[float, ...]]:
 # Multiples of the sizes of the parameters (see effects.effect.SCALES), far from where the effect
 # does nothing: what lies near is found from its derivative there.
 FAR: dict[str, Sequence[tuple[float, ...]]] = {
-    "gap": [(0.4,), (0.6,), (0.8,), (1.3,), (1.8,), (3.0,)],
-    "contact_stiffness": [(0.1,), (4.0,)],
+    "gap": [(0.4,), (0.65,), (1.5,), (2.5,)],
+    "added_mass": [(0.15,), (0.8,)],
+    "contact_stiffness": [(0.02,), (0.2,), (4.0,)],
     "contact_damping": [(1.0e-3,)],
     "dry_friction": [(0.3,)],
     "support_offset": _ways(0.6),
-    "preload": _ways(0.8, 2.5),
+    "preload": _ways(1.5),
     "hertz": [(0.02,), (0.1,)],
-    "plate_flexibility": [(0.05, 0.3), (0.3, 0.3), (2.0, 0.3)],
+    "plate_flexibility": [(0.05, 0.3), (0.2, 0.3), (0.7, 0.3), (2.5, 0.3)],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
-    "saturation_stiffness": [(1.0, 0.3), (4.0, 2.0)],
-    "clearance": [(0.1, 10.0), (0.3, 10.0), (0.8, 10.0)],
+    "saturation_stiffness": [(2.0, 1.0)],
+    "clearance": [(0.15, 10.0), (0.6, 10.0)],
     "foliate_lands": _turned(4),
     "foliate_obstacle": _turned(4, 0.6),
     "foliate_trefoil": _turned(3, 0.6),
@@ -72,9 +85,9 @@ def locations(effect: Effect, values: Values, channels: Sequence[str], across: b
     if effect.id in AT_A_POINT and length is not None:
         turns = [None, ACROSS_DEG] if across and effect.id != "added_mass" else [None]
         return [
-            on_structure.between(length * (number + 0.5) / PLACES, turned)
-            for turned in turns
-            for number in range(PLACES)
+            on_structure.between(length * (number + 0.5) / count, turned)
+            for turned, count in zip(turns, (PLACES, PLACES // 2), strict=False)
+            for number in range(count)
         ]
     found = effect.locations(values)
     return found[:1] if effect.id in ALL_FIRST else found
@@ -93,6 +106,21 @@ def far_terms(effect: Effect, location: str, sizes: Mapping[str, float]) -> Iter
                 for each in effect.parameters
             ),
         )
+
+
+def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bool:
+    """Return whether a term is no more than a good model of a measured structure is off by anyway.
+
+    sampling: of the records, Hz. sizes: see sizes.sizes_of.
+    """
+    value = term.values[0]
+    if term.effect_id == "sensor_delay":
+        return abs(value) < LATE_SAMPLES / sampling
+    if term.effect_id == "contact_damping":
+        return value < NO_CONTACT_DAMPING * sizes["contact_stiffness"]
+    if term.effect_id == "contact_stiffness":
+        value /= sizes["contact_stiffness"]
+    return abs(np.log(value)) < NO_EFFECT.get(term.effect_id, 0.0)
 
 
 def neutral_term(effect: Effect, location: str, sizes: Mapping[str, float]) -> Term | None:

@@ -138,6 +138,7 @@ class Comparison:
             (INSIDE[0] * low, INSIDE[1] * high),
             strength * self.impedance,
             self.threads,
+            self.band[1],
         )
 
 

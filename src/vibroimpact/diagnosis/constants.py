@@ -2,8 +2,8 @@
 campaigns.
 """
 
-# Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a good
-# model to be off by.
+# Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a
+# good model to be off by.
 FREQUENCY_SD = 0.003
 DAMPING_SD = 0.15
 GAIN_SD = 0.02
@@ -19,3 +19,13 @@ STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that
 
 # Gain in mean log power, on stretches that took no part, from which an effect is asked for.
 LEAST_GAIN = 0.05
+
+# Decision: gains in mean log power on stretches that took no part.
+NULL_GAIN, NULL_WIDTH = 0.12, 0.02  # at which an effect is as likely as nothing, and how sharply
+RIVAL, RIVAL_SHARE = (
+    0.02,
+    0.04,
+)  # difference of rivals that counts e-fold, and its share of the gain
+REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
+NAMED = 0.8  # probability from which an explanation is named
+PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained

@@ -17,6 +17,7 @@ from .comparison import Comparison
 from .explanations import Point
 from .held_states import HeldState, held_state, measured_motion
 from .law import Demand, Places, demand_of
+from .stretches import Stretch
 
 STATES = ("before", "after")
 SERIES = ("measured", *STATES)
@@ -26,6 +27,13 @@ FREE_STRETCHES = 2
 LAW_STRETCHES = 3
 WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
 FINER = 4  # times the sampling of the runs, as a waveform is drawn
+PLACES = (  # of a campaign: where its channels and forces are
+    "channel_point",
+    "channel_direction",
+    "force_channel_name",
+    "force_channel_point",
+    "force_channel_direction",
+)
 ACTS = 0.3  # of the power of the sensors: beyond what the drive alone does
 
 
@@ -46,7 +54,10 @@ def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Datas
     bench = replace(fitted, stretches=(*fitted.stretches, *apart.stretches))
     free = _left_free(bench, len(fitted.stretches))
     states = [held_state(bench, point, free) for point in (before, after)]
-    out = xr.Dataset(_coordinates(comparison, bench, len(fitted.stretches)))
+    labels = {"state": list(STATES), "series": list(SERIES)}
+    out = xr.Dataset(_names(comparison, bench, len(fitted.stretches)), coords=labels)
+    campaign = comparison.structure.campaign
+    out = out.assign({name: campaign[name].variable for name in PLACES if name in campaign})
     out = out.assign(_holding(bench, states))
     out = out.assign(_law(comparison, bench, states, after))
     out = out.assign(_free(comparison, bench, states))
@@ -55,16 +66,14 @@ def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Datas
     )
 
 
-def _coordinates(comparison, bench, fitted):
-    """Return the variables that name states, stretches, channels and bands."""
+def _names(comparison, bench, fitted):
+    """Return the variables that name channels, stretches and bands."""
     signals, rows = comparison.signals, bench.stretches
     held_out = set(signals.holdout().tolist())
     edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
     split = ["holdout" if row.record in held_out else "fit" for row in rows]
     part = ["fitted" if number < fitted else "apart" for number in range(len(rows))]
     return {
-        "state_name": ("state", np.array(STATES, object)),
-        "series_name": ("series", np.array(SERIES, object)),
         "channel_name": ("channel", np.array(comparison.structure.names, object)),
         "channel_kind": ("channel", np.array(signals.kinds, object)),
         "record_name": (
@@ -74,10 +83,16 @@ def _coordinates(comparison, bench, fitted):
         "split": ("stretch", np.array(split, object)),
         "part": ("stretch", np.array(part, object)),
         "load": ("stretch", [row.load for row in rows], {"units": signals.load_unit}),
-        "start": ("stretch", [row.start_s for row in rows], {"units": "s"}),
+        "start": ("stretch", [_start(bench, row) for row in rows], {"units": "s"}),
         "band_low": ("band", edges[:-1], {"units": "Hz"}),
         "band_high": ("band", edges[1:], {"units": "Hz"}),
     }
+
+
+def _start(bench: Bench, stretch: Stretch) -> float:
+    """Return the time in s of the sample of its record at which a stretch begins."""
+    rate = bench.schedule.sampling_frequency
+    return round(stretch.start_s * rate) / rate
 
 
 def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
@@ -238,7 +253,7 @@ def _waveform(bench, series, told, unit, scale):
     power = np.convolve(series[0] ** 2, np.ones(count), "valid")
     first = int(np.argmax(power))
     inside = slice(first, first + count)
-    start = bench.stretches[told[0]].start_s + settled(bench)[0] * FINER / rate
+    start = _start(bench, bench.stretches[told[0]]) + settled(bench)[0] * FINER / rate
     time = start + np.arange(first, first + count) / rate
     return {
         "waveform": (("series", "moment"), series[:, inside] / scale, {"units": unit}),

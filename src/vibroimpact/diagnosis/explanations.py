@@ -120,7 +120,9 @@ class Structure:
         return [str(name) for name in self.campaign["channel_name"].values]
 
     def configuration(self, terms: tuple[Term, ...]) -> Config:
-        """Return the checked Config with terms. Raises ConfigError for values that none can have."""
+        """Return the checked Config with terms. Raises ConfigError for values that none can
+        have.
+        """
         values = self.values
         for term in terms:
             if term.effect.apply is not None:

@@ -1,7 +1,7 @@
 """Gauss-Newton on the lines of the holding force.
 
-With r the whitened lines, J their derivative and z the coordinates over their prior sigma, it lowers
-misfit + z² / 2: the step solves (2 J^H J + 1 / sd²) dx = -(2 J^H r + x / sd²). Held to the
+With r the whitened lines, J their derivative and z the coordinates over their prior sigma, it
+lowers misfit + z² / 2: the step solves (2 J^H J + 1 / sd²) dx = -(2 J^H r + x / sd²). Held to the
 measurement, r is a smooth function even where the free motion is chaotic.
 """
 

@@ -89,7 +89,7 @@ def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> H
         model,
         places,
         chain,
-        hold(lanes, bench.schedule, bench.threads),
+        hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz),
         {key: stretches + number for number, key in enumerate(free)},
     )
 

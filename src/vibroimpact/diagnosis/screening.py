@@ -98,7 +98,9 @@ def _last_rows(point: Point, sizes: Mapping[str, float]) -> list[Coordinate]:
 
 
 def _derivatives(bench, white, weight, points, rows_of):
-    """Return {(effect, location): (parameter, stretch, channel, line)} of whitened lines `white`."""
+    """Return {(effect, location): (parameter, stretch, channel, line)} of whitened lines
+    `white`.
+    """
     moved, owners = [], []
     for point in points:
         rows = rows_of[point.name]

@@ -5,7 +5,7 @@ part.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,8 +18,8 @@ from .bench import (
     effective_lines,
     holding_lines,
     log_power,
-    misfit,
 )
+from .catalogue import within_priors
 from .comparison import Comparison
 from .constants import LEAST_GAIN
 from .coordinates import effect_coordinates, nuisance_coordinates
@@ -27,7 +27,7 @@ from .explanations import Point
 from .gauss_newton import Fit, columns, fit
 from .screening import Screened, screen
 
-RACED, FINALISTS = 10, 3
+RACED, FINALISTS = 8, 3
 PER_EFFECT = 2  # places of one effect in a race
 RACE_PASSES, FINAL_PASSES = 3, 4
 MOST_EFFECTS = 2
@@ -141,7 +141,9 @@ def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
         fit(at.screened, point, effect_coordinates(point.terms, at.comparison.sizes), RACE_PASSES)
         for point in chosen.values()
     ]
-    return sorted(fits, key=lambda each: each.objective)
+    rate, sizes = at.comparison.signals.rate, at.comparison.sizes
+    apart = [each for each in fits if not within_priors(each.point.terms[-1], rate, sizes)]
+    return sorted(apart, key=lambda each: each.objective)
 
 
 def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -> list[Hypothesis]:
@@ -190,13 +192,13 @@ def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[flo
 
 
 def _exchanged(at, best, nothing, log):
-    """Return {name: Hypothesis} of pairs in which one effect of the best is exchanged for another."""
+    """Return {name: Hypothesis} of pairs in which the first effect of the best is exchanged."""
     out = {}
-    for kept in best.point.terms:
+    for kept in best.point.terms[1:]:
         base = replace(Point(), terms=(kept,))
         ranked = screen(at.screened, base, at.effects, at.comparison.sizes, at.comparison.across)
         raced = [each for each in _race(at, ranked)[:2] if each.point.name not in out]
-        for each in _finals(at, [fit.point for fit in raced], nothing):
+        for each in _finals(at, [each.point for each in raced], nothing):
             out[each.point.name] = each
             log(f"exchanged: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
     return out

@@ -1,5 +1,5 @@
-"""Sizes of a structure and its campaign, which the bounds of the parameters of effects are multiples
-of; see effects.effect.SCALES.
+"""Sizes of a structure and its campaign: the bounds of the parameters of effects are multiples of
+them, see effects.effect.SCALES.
 """
 
 from __future__ import annotations

@@ -124,7 +124,7 @@ def valid_samples(signals: Signals, record: int) -> int:
 
 
 def _fine(signals, record, band, rates, scale):
-    """Return (force (step, force_channel), motion (step, channel)) of a whole record at the step."""
+    """Return (force (step, force_channel), motion (step, channel)) of a record at the step."""
     count = valid_samples(signals, record) // rates.decimation * rates.decimation
     response, force = signals.response[record][:, :count], signals.force[record][:, :count]
     frequency = np.fft.rfftfreq(count, 1.0 / signals.rate)

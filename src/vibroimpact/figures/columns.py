@@ -76,6 +76,7 @@ COLUMNS = {
     "place_force_N": ("Force on the structure (N)", 1.0),
     "holding_force_N": ("Holding force (N RMS)", 1.0),
     "channel_number": ("Channel (-)", 1.0),
+    "known_share": ("Share of a force that the sensors tell (%)", 1e2),
     "free_error": ("Error / response (%)", 1e2),
     "velocity_m_per_s": ("Velocity (mm/s)", 1e3),
     "strain_rate_1_per_s": ("Strain rate (µm/m/s)", 1e6),

@@ -15,6 +15,7 @@ from .kernels.lanes import LANES
 from .kernels.march import initial_forces, march
 from .kernels.tables import Contact, Laws, Modal, State, Work
 from .output_filter import OutputFilter, output_filter
+from .run_statistics import LARGEST
 from .step_stability import require_stable_step
 from .stored_energy import stored_energy
 
@@ -408,8 +409,7 @@ class Run:
         self.take_energies()
         if recorded:
             for name, array in tally._asdict().items():
-                largest = name.startswith(("peak", "impact_velocity_peak", "residual"))
-                combine = np.maximum if largest else np.add
+                combine = np.maximum if name.startswith(LARGEST) else np.add
                 self.sums[name] = combine(self.sums[name], array)
 
     def take_energies(self) -> None:

@@ -2,8 +2,8 @@
 
     q'' + D q' + W q = b F + C^T f(Cq, Cq') + sum_s S_s^T u_s,      u_s = c_s (v_s - S_s q')
 
-v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. Where model
-and structure agree, the dampers carry noise; the holding force u_s is what the model lacks.
+v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. Where
+model and structure agree, the dampers carry noise; the holding force u_s is what the model lacks.
 
 Source: a passive, collocated observer: D.G. Luenberger, IEEE Trans. Autom. Control 16 (1971)
 596-602; M. Demetriou, Math. Control Signals Syst. (natural observers of second-order systems).
@@ -61,7 +61,8 @@ class HeldRecords:
     force (run, sensor, sample): holding force, N.
     support_force (run, 2 support, sample): resultants of each support on the structure, N.
     motion (run, sensor, sample): displacement of the model, m.
-    tally: {name: (.., run)}, see kernels.tables.Tally; steps: steps that it counts.
+    tally: {name: (.., run)}, see kernels.tables.Tally; steps: steps that it counts. contact_rows
+    (contact_point, 2), element_rows (element,): rows in the tally, of the first run's model.
     """
 
     force: np.ndarray
@@ -69,10 +70,17 @@ class HeldRecords:
     motion: np.ndarray
     tally: dict[str, np.ndarray]
     steps: int
+    contact_rows: np.ndarray
+    element_rows: np.ndarray
 
 
-def hold(runs: Sequence[HeldLane], schedule: Schedule, threads: int = 1) -> HeldRecords:
+def hold(
+    runs: Sequence[HeldLane], schedule: Schedule, threads: int = 1, highest_Hz: float = np.inf
+) -> HeldRecords:
     """Return the HeldRecords of any number of runs.
+
+    highest_Hz: modes above it are not held. What was measured ends there: dampers on the modes
+    above would only take from what rings in them.
 
     The result of a run does not depend on the others. A run that diverges, or whose contact is too
     stiff for the step, is NaN. All runs have the same numbers of sensors and forces; of a model
@@ -80,14 +88,17 @@ def hold(runs: Sequence[HeldLane], schedule: Schedule, threads: int = 1) -> Held
     """
     sensors = runs[0].motion.shape[1]
     supports = len(runs[0].model.support_names)
+    prepared = _Prepared(schedule, highest_Hz)
+    layout = prepared.layout(runs[0].model)
     out = HeldRecords(
         np.full((len(runs), sensors, schedule.samples), np.nan, np.float32),
         np.full((len(runs), 2 * supports, schedule.samples), np.nan, np.float32),
         np.full((len(runs), sensors, schedule.samples), np.nan, np.float32),
         {},
         schedule.samples * round(schedule.steps_per_second / schedule.sampling_frequency),
+        layout.contact_rows(),
+        layout.element_rows(),
     )
-    prepared = _Prepared(schedule)
     batches: dict[tuple, list[int]] = {}
     for number, run in enumerate(runs):
         try:
@@ -133,16 +144,18 @@ def _integrate(runs, numbers, prepared, out):
 class _Prepared:
     """Layouts of models for one schedule, each made once."""
 
-    def __init__(self, schedule: Schedule):
+    def __init__(self, schedule: Schedule, highest_Hz: float):
         self.schedule = schedule
+        self.highest = min(
+            HELD_TURN * schedule.steps_per_second, 2.0 * np.pi * highest_Hz
+        )  # rad/s, of the modes that are held
         self.layout = lru_cache(maxsize=None)(self._layout)
         self.contraction = lru_cache(maxsize=None)(self._contraction)
         self.rest = lru_cache(maxsize=None)(self._rest)
 
     def _layout(self, model):
         """Return the ModalLayout of a model whose sensors are force channels too."""
-        slow = model.omega < HELD_TURN * self.schedule.steps_per_second
-        held = model.sensor_shapes * slow[:, None]
+        held = model.sensor_shapes * (model.omega < self.highest)[:, None]
         driven = replace(model, drive_shapes=np.hstack([model.drive_shapes, held]))
         laws = model.contact_laws
         if not laws.plain.all():  # all points take the general law: more models side by side

@@ -29,11 +29,12 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     """Return the ModalModel of `config` with the campaign's channels as sensors and its forces as
     drives, without shape line and stresses.
 
-    config: a checked Config or StageSettings. basis: see build_model and attached_basis. The sensors are in the order of the channels:
-    displacements, positive along channel_direction; for a strain gauge on a tube the strain of the
-    outer fibre; for a contact force zero. With a campaign on a moving base, the drives are the
-    accelerations of the base. Raises CampaignError when a channel or force is more than 5 mm off
-    the structure, where it is no tube off its named points, or a direction is no vector.
+    config: a checked Config or StageSettings. basis: see build_model and attached_basis. The
+    sensors are in the order of the channels: displacements, positive along channel_direction; for
+    a strain gauge on a tube the strain of the outer fibre; for a contact force zero. With a
+    campaign on a moving base, the drives are the accelerations of the base. Raises CampaignError
+    when a channel or force is more than 5 mm off the structure, where it is no tube off its named
+    points, or a direction is no vector.
     """
     forces = ~base_channels(campaign)
     places, directions, stored_names = (

@@ -51,6 +51,7 @@ SECTIONS = {
     "diagnosis_holding": "where",
     "where": "where",
     "diagnosis_law": "law",
+    "diagnosis_place": "what",
     "mounting": "what",
     "restoring_force": "what",
 }

@@ -19,9 +19,9 @@ from vibroimpact.integration.batch import (
     rest_state,
 )
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
+from vibroimpact.integration.run_statistics import statistics
 from vibroimpact.random_streams import random_generator
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.stopwatch import Stopwatch
@@ -193,7 +193,7 @@ def record_dataset(
         "energy_term": list(ENERGY_TERMS),
         "energy_time": lanes.energy_time,
     }
-    tallies = statistics(lanes, lane, schedule)
+    tallies = statistics(lanes, lane, schedule.steps_per_second)
     over_limit = tallies["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa
     values = series | tallies | energy_balance(lanes, lane, model.conservative)
     values["stress_flag"] = np.asarray(over_limit, np.int8)
@@ -216,40 +216,6 @@ def case_attributes(config: Any, schedule: Schedule, case: Case) -> dict:
         "sampling_frequency": float(schedule.sampling_frequency),
         "steps_per_second": float(schedule.steps_per_second),
         "start_up_s": float(schedule.start_up),
-    }
-
-
-def statistics(lanes: BatchResult, lane: int, schedule: Schedule) -> dict[str, np.ndarray]:
-    """Return contact, wear and stress statistics of one lane over the recorded steps, by name."""
-    tally = {name: np.asarray(value[..., lane]) for name, value in lanes.tally.items()}
-    steps, dt = lanes.steps, 1.0 / schedule.steps_per_second
-    impacts = tally["impacts"]
-    per_impact = np.divide(1.0, impacts, out=np.full(impacts.shape, np.nan), where=impacts > 0)
-    rows, elements = lanes.contact_rows, lanes.element_rows
-    return {
-        "stress_rms": np.sqrt(tally["square_stress"] / steps),
-        "stress_peak": np.sqrt(tally["peak_square_stress"]),
-        "contact_fraction": tally["contact_steps"] / steps,
-        "impact_count": impacts.astype(np.int32),
-        "impact_rate": impacts / (steps * dt),
-        "peak_force": tally["peak_force"],
-        "rms_force": np.sqrt(tally["square_force"] / steps),
-        "mean_impulse": tally["force_sum"] * dt * per_impact,
-        "impact_velocity_rms": np.sqrt(tally["impact_velocity_square"] * per_impact),
-        "impact_velocity_max": tally["impact_velocity_peak"],
-        "wear_work_rate": tally["sliding_work"] / (steps * dt),
-        "force_displacement": -tally["force_displacement"][rows] / steps,
-        "displacement_square": tally["square_displacement"][rows] * RATIO / steps,
-        "contact_power": -tally["row_work"][rows] / (steps * dt),
-        "force_mean": -tally["row_force"][rows] / steps,
-        "displacement_mean": tally["displacement_sum"][rows] * RATIO / steps,
-        "velocity_square": tally["square_velocity"][rows] * RATIO / steps,
-        "displacement_product": tally["product_displacement"] * RATIO / steps,
-        "velocity_product": tally["product_velocity"] * RATIO / steps,
-        "element_displacement_square": tally["square_displacement"][elements] * RATIO / steps,
-        "element_force_displacement": -tally["force_displacement"][elements] / steps,
-        "element_power": -tally["element_work"] / (steps * dt),
-        "slip_power": tally["slip_work"] / (steps * dt),
     }
 
 

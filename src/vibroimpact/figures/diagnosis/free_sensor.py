@@ -8,12 +8,13 @@ import xarray as xr
 from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import BLACK, label_of, shown
 
-from .states import AS_GIVEN, COLOURS, level_in_words, percent, shown_states
+from .states import AS_GIVEN, COLOURS, REFUSED, empty_sheet, level_in_words, percent, shown_states
 
 MOST_CHANNELS = 14
 LARGEST = 2.0  # error that is drawn to scale
 COLUMNS = {"m/s": "velocity_m_per_s", "1/s": "strain_rate_1_per_s"}
 
+ALONE = "fewer than two sensors measure a motion, and nothing would be held"
 CAPTION = (
     "Each sensor in turn is left free while all others are held to their measurement; the model"
     " then says what it should have measured. Above: the sensor whose prediction gains most, where"
@@ -25,7 +26,9 @@ CAPTION = (
 def free_sensor_figure(evidence: xr.Dataset) -> list[Sheet]:
     """Return [Sheet]: the waveform of a sensor that was left free, and the errors of all."""
     if "free_error" not in evidence:
-        return [_empty()]
+        why = ALONE if "holding_force" in evidence else REFUSED
+        columns = ("time_s", "velocity_m_per_s")
+        return [empty_sheet("diagnosis_free_sensor", "No sensor is left free", why, columns)]
     states, error = shown_states(evidence), evidence["free_error"].values[:, 0]
     told = int(evidence["waveform_channel"].values)
     channels = _chosen(error, told)
@@ -46,18 +49,6 @@ def free_sensor_figure(evidence: xr.Dataset) -> list[Sheet]:
     sheet.axes["waveform"].set_title(f"{names[told]}, {level}")
     _errors(sheet, sheet.axes["errors"], evidence, states, channels)
     return [sheet]
-
-
-def _empty():
-    """Return the Sheet that says why nothing was left free."""
-    sheet = Sheet(
-        "diagnosis_free_sensor",
-        "No sensor can be left free",
-        "With one sensor alone nothing is held where it is left free.",
-    )
-    why = "fewer than two sensors measure a motion"
-    sheet.note(sheet.axes["main"], why, "time_s", "velocity_m_per_s")
-    return sheet
 
 
 def _chosen(error, told):

@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm
 
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import label_of, tidy_log_axis
 
-from .states import level_in_words, shown_states
+from .states import REFUSED, empty_sheet, level_in_words, shown_states
 
 MOST_LEVELS, MOST_CHANNELS = 3, 12
 RANGE = 50.0  # between the largest colour and the least
@@ -24,6 +24,9 @@ CAPTION = (
 
 def holding_figure(evidence: xr.Dataset) -> list[Sheet]:
     """Return [Sheet]: maps of the holding force, a column per level and a row per state."""
+    if "holding_force" not in evidence:
+        columns = ("frequency_Hz", "holding_force_N")
+        return [empty_sheet("diagnosis_holding", "Holding force", REFUSED, columns)]
     levels, channels = chosen_levels(evidence), chosen_channels(evidence)
     states = shown_states(evidence)
     mosaic = [[f"{name}, {level}" for level in levels] for _, name in states]
@@ -35,7 +38,7 @@ def holding_figure(evidence: xr.Dataset) -> list[Sheet]:
         _title(evidence, states),
         CAPTION.format(left_out=words),
         mosaic,
-        size=(2.1 + 1.85 * len(levels), 1.5 + height * len(states)),
+        size=(WIDTH_IN, 1.5 + height * len(states)),
         sharex=True,
         sharey=True,
     )

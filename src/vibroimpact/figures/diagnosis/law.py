@@ -7,10 +7,21 @@ import xarray as xr
 
 from vibroimpact.diagnosis.law import SEEN
 from vibroimpact.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.figures.style import BLACK, GREY, PALE, shown
+from vibroimpact.figures.style import BLACK, GREY, PALE, label_of, shown
 
-from .states import AS_GIVEN, COLOURS, before_and_after, level_in_words, percent, shown_states
+from .states import (
+    AS_GIVEN,
+    COLOURS,
+    REFUSED,
+    before_and_after,
+    empty_sheet,
+    level_in_words,
+    percent,
+    shown_states,
+)
 
+NO_PLACE = "the structure has no support and no local element"
+MOST_UNSEEN = 12  # bars of places
 MOST_PLACES = 3  # supports and elements
 ACROSS = 3  # panels
 DOTS = 1200  # of the demanded law
@@ -37,12 +48,13 @@ STATIC = "A static part of motion or force is not measured and is left out of bo
 def law_figure(evidence: xr.Dataset) -> list[Sheet]:
     """Return [Sheet]: force against motion at each support that the sensors tell of."""
     if "demanded_force" not in evidence:
-        return [_empty("the structure has no support and no local element", "")]
+        why = NO_PLACE if "holding_force" in evidence else REFUSED
+        columns = ("place_motion_m", "place_force_N")
+        return [empty_sheet("diagnosis_law", "The law at the supports", why, columns)]
     told, unseen = _told_places(evidence)
     level = level_in_words(evidence, int(evidence["law_of_stretch"].values[0]))
     if not told:
-        why = "the sensors do not tell the forces at the supports:\n" + unseen.strip()
-        return [_empty(why.replace(": known", ":\nknown"), unseen)]
+        return [_unseen(evidence, level, unseen)]
     panels = _panels(evidence, told)
     states = shown_states(evidence)
     errors = [force_error(evidence, state, told) for state, _ in states]
@@ -68,14 +80,27 @@ def law_figure(evidence: xr.Dataset) -> list[Sheet]:
     return [sheet]
 
 
-def _empty(why, unseen):
-    """Return the Sheet that says why no law is shown."""
+def _unseen(evidence, level, unseen):
+    """Return the Sheet of how little the sensors know of each force."""
+    known, names = evidence["resolution"].values[0], evidence["place_name"].values
+    order = np.argsort(-known, kind="stable")[:MOST_UNSEEN]
     sheet = Sheet(
         "diagnosis_law",
-        "The law at the supports is not seen",
-        CAPTION.format(panels="", static=STATIC, unseen=unseen),
+        "The law at the supports is not seen by these sensors",
+        f"{level}. Share of the force at each place that the sensors tell; below"
+        f" {100.0 * SEEN:.0f} % it is not shown against the motion.{unseen}",
+        size=(WIDTH_IN, 1.3 + 0.28 * len(order)),
     )
-    sheet.note(sheet.axes["main"], why, "place_motion_m", "place_force_N")
+    axes, places = sheet.axes["main"], np.arange(len(order))
+    gid = sheet.record(axes, "known", place=names[order], known_share=known[order])
+    for bar in axes.barh(places, 100.0 * known[order], 0.62, color=GREY, zorder=2):
+        bar.set_gid(gid)
+    axes.axvline(100.0 * SEEN, color=BLACK, linewidth=0.8, linestyle=":")
+    axes.set_yticks(places, [str(name) for name in names[order]])
+    axes.set_ylim(len(order) - 0.5, -0.5)
+    axes.set_xlim(0.0, 100.0)
+    axes.set_xlabel(label_of("known_share"))
+    axes.grid(False, axis="y")
     return sheet
 
 

@@ -10,10 +10,19 @@ from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import BLACK, label_of
 from vibroimpact.verdict.content import Misfit, Verdict
 
-from .states import AS_GIVEN, COLOURS, COMPLETED
+from .states import AS_GIVEN, COLOURS, COMPLETED, REFUSED, empty_sheet
 
 MOST_RECORDS, CHANNELS_SHOWN = 3, 2
-BELOW = 1e-3  # lowest drawn value, over the smallest measured PSD
+BELOW = 1.0e-8  # of the largest PSD: the lowest drawn
+LOWEST = 1.0e-5  # of the peak of a measured PSD: what counts as response
+LOWEST_HZ, PASSED = 1.0, 0.78  # drawn from; of the highest line, which a filter has passed
+SI_UNITS = {
+    "acceleration": "m s-2",
+    "velocity": "m s-1",
+    "displacement": "m",
+    "contact_force": "N",
+    "strain": "1",
+}
 MOVES = 1.0e-3  # of the power of the channel that moves most
 
 CAPTION = (
@@ -27,10 +36,13 @@ CAPTION = (
 def psd_figure(psd: xr.Dataset, verdict: Verdict) -> list[Sheet]:
     """Return [Sheet]: a row per channel and a column per record, for those that matter most.
 
-    psd: variable psd (state: measured, before, after; record, channel, frequency) in unit²/Hz with
-    frequency in Hz, load, record_name, split (record,), channel_name and, where it is known,
-    channel_unit (channel,).
+    psd: variable psd (state: measured, before, after; record, channel, frequency) in unit²/Hz, NaN
+    of a run that failed, with frequency in Hz, load, record_name, split (record,), channel_name and
+    channel_kind (channel,).
     """
+    if "psd" not in psd:
+        columns = ("frequency_Hz", "psd_unit2_per_Hz")
+        return [empty_sheet("diagnosis_psd", "Spectra of free runs", REFUSED, columns)]
     records, channels = chosen_records(psd), chosen_channels(psd)
     mosaic = [[f"{record} {channel}" for record in records] for channel in channels]
     sheet = Sheet(
@@ -65,13 +77,16 @@ def _title(misfit: Misfit | None, completed: bool) -> str:
 
 
 def _gap(psd):
-    """Return (record, channel) dB: RMS of measured over simulated PSD with the model as given, 0 of
-    channels that hardly move.
+    """Return (record, channel) dB: RMS of measured over simulated PSD with the model as given,
+    where the measured one is no more than LOWEST below its peak; 0 of channels that hardly move.
     """
-    level = 10.0 * np.log10(np.maximum(psd["psd"].values.astype(float), np.finfo(float).tiny))
-    power = psd["psd"].values[0].astype(float).mean(axis=-1)
+    values = np.maximum(psd["psd"].values[:2].astype(float), np.finfo(float).tiny)
+    apart = 10.0 * np.log10(values[0] / values[1])
+    counted = np.isfinite(apart) & (values[0] > LOWEST * values[0].max(axis=-1, keepdims=True))
+    power = values[0].mean(axis=-1)
     moves = power > MOVES * power.max(axis=-1, keepdims=True)
-    return np.sqrt(np.mean((level[0] - level[1]) ** 2, axis=-1)) * moves
+    sums = np.sum(np.where(counted, apart, 0.0) ** 2, axis=-1)
+    return np.sqrt(sums / np.maximum(counted.sum(axis=-1), 1)) * moves
 
 
 def chosen_records(psd: xr.Dataset) -> list[int]:
@@ -104,11 +119,10 @@ def _panel(sheet, axes, psd, record, channel, completed):
     unit = psd["load"].attrs.get("units", "N")
     load = float(psd["load"].values[record])
     axes.set_title(f"{sensor}\n{name}{held}\n{load:.3g} {unit} RMS", fontsize=8.5)
-    measure = str(psd["channel_unit"].values[channel]) if "channel_unit" in psd else ""
-    column = PSD_COLUMNS.get(measure, "psd_unit2_per_Hz")
+    column = PSD_COLUMNS.get(SI_UNITS.get(_kind(psd, channel), ""), "psd_unit2_per_Hz")
     frequency = psd["frequency"].values.astype(float)
     values = psd["psd"].values[:, record, channel].astype(float)
-    shown = frequency > 0.0
+    shown = (frequency >= LOWEST_HZ) & (frequency <= PASSED * frequency[-1])
     rows = [(0, "measured", BLACK), (1, AS_GIVEN, COLOURS[AS_GIVEN])]
     rows += [(2, COMPLETED, COLOURS[COMPLETED])] if completed else []
     for row, label, colour in rows:
@@ -126,7 +140,13 @@ def _panel(sheet, axes, psd, record, channel, completed):
         )
     axes.set_xscale("log")
     axes.set_yscale("log")
-    positive = values[0][shown & (values[0] > 0.0)]
-    if len(positive):
-        largest = max(values[row][shown].max() for row, _, _ in rows)
-        axes.set_ylim(0.5 * max(positive.min(), BELOW**2 * largest), 2.0 * largest)
+    drawn = values[[row for row, _, _ in rows]][:, shown]
+    largest = np.nanmax(drawn)
+    if largest > 0.0:
+        least = np.nanmin(np.where(drawn > 0.0, drawn, np.nan))
+        axes.set_ylim(0.5 * max(least, BELOW * largest), 2.0 * largest)
+
+
+def _kind(psd, channel):
+    """Return the kind of a channel, empty where it is not known."""
+    return str(psd["channel_kind"].values[channel]) if "channel_kind" in psd else ""

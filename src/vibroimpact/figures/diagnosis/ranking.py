@@ -9,7 +9,10 @@ from vibroimpact.figures.style import BLUE, GREY, ORANGE, label_of
 from vibroimpact.reports.explanations import Explanation, explanations_of
 from vibroimpact.verdict.content import Verdict
 
+from .states import empty_sheet
+
 MOST_BARS = 14
+NONE_KNOWN = "no probabilities are known that the verdict stands by"
 
 CAPTION = (
     "Probability of each explanation among all that are shown, given the records and what was held"
@@ -19,12 +22,11 @@ CAPTION = (
 
 
 def ranking_figure(verdict: Verdict) -> list[Sheet]:
-    """Return [Sheet]: bars of the probabilities, the most probable first; empty where the verdict
-    has none that it stands by.
-    """
+    """Return [Sheet]: bars of the probabilities, the most probable first."""
     rows = explanations_of(verdict)
     if not rows:
-        return []
+        columns = ("probability", "place_in_list")
+        return [empty_sheet("diagnosis_ranking", "Probabilities", NONE_KNOWN, columns)]
     shown = rows[:MOST_BARS]
     left = sum(row.probability for row in rows[MOST_BARS:])
     words = f" {len(rows) - MOST_BARS} more have {100.0 * left:.2g} % together." if left else ""

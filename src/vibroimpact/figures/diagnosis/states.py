@@ -5,10 +5,23 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLUE, ORANGE
 
 AS_GIVEN, COMPLETED = "model as given", "completed model"
 COLOURS = {AS_GIVEN: ORANGE, COMPLETED: BLUE}
+
+
+REFUSED = "the campaign was refused"
+
+
+def empty_sheet(name: str, title: str, why: str, columns: tuple[str, str]) -> Sheet:
+    """Return a Sheet without a table that says why nothing is drawn; columns: of its axes."""
+    sheet = Sheet(name, title, f"Nothing is shown: {why}.", size=(7.6, 2.4))
+    sheet.note(sheet.axes["main"], why, *columns)
+    sheet.axes["main"].set_xticks([])
+    sheet.axes["main"].set_yticks([])
+    return sheet
 
 
 def shown_states(evidence: xr.Dataset) -> list[tuple[int, str]]:

@@ -28,8 +28,8 @@ from .compiled import entry_point, inlined
 from .contact_iteration import apply_compliance, solve_contact
 from .decimation import RATIO, filter_forces, filter_modes, finish_output
 from .force_laws import all_forces
-from .lanes import LANES, clear, fma, load, spread_from, store
 from .holding import hold_sensors
+from .lanes import LANES, clear, fma, load, spread_from, store
 from .panels import (
     PANEL,
     load_panel,

@@ -1,0 +1,94 @@
+"""The completed model as a configuration, and the rows of its effects."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import yaml
+
+from vibroimpact.effects.effect import Values
+from vibroimpact.observation.signals import Signals
+from vibroimpact.records import plain_values
+
+from .constants import GAIN_SD
+from .explanations import Point, Structure
+from .search import Hypothesis
+
+NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
+
+
+def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
+    """Return the rows of `effects` of verdict.json: id, family, location, parameters with their 90
+    % intervals.
+    """
+    fit = hypothesis.fit
+    half = NINETY_SD * fit.deviation
+    out = []
+    for number, term in enumerate(hypothesis.point.terms):
+        parameters: dict[str, dict[str, Any]] = {}
+        for row, x, reach in zip(fit.rows, fit.x, half, strict=True):
+            if row.kind == "term" and row.index == number:
+                parameter = term.effect.parameters[row.parameter]
+                low, high = (
+                    row.to_value(float(np.clip(end, row.low, row.high)))
+                    for end in (x - reach, x + reach)
+                )
+                value = term.values[row.parameter]
+                # a gain common to force and responses is hidden in every length
+                hidden = NINETY_SD * GAIN_SD * abs(parameter.gain_power * value)
+                parameters[parameter.name] = {
+                    "value": value,
+                    "low": value - float(np.hypot(value - low, hidden)),
+                    "high": value + float(np.hypot(high - value, hidden)),
+                    "unit": parameter.unit,
+                }
+        if term.effect_id == "gap" and np.isfinite(signals.gap).any():
+            nominal = float(np.nanmax(signals.gap))
+            parameters["gap"] = {"unit": "m"} | {
+                key: nominal * parameters["gap_factor"][key] for key in ("value", "low", "high")
+            }
+        out.append(
+            {
+                "id": term.effect.reported,
+                "family": term.effect.family,
+                "location": term.location,
+                "parameters": parameters,
+            }
+        )
+    return out
+
+
+def completed_model(structure: Structure, point: Point, what: str) -> str:
+    """Return the YAML text of the configuration of a Point, its frequencies and damping corrected.
+
+    what: the first line, a comment. Gains are a comment: they are no part of the model.
+    """
+    config = structure.configuration(point.terms)
+    values = config.model_dump(mode="json")
+    factors = np.exp(point.frequency)
+    known = [*values["mode_frequency_factors"], *[1.0] * len(factors)][
+        : max(len(factors), len(values["mode_frequency_factors"]))
+    ]
+    values["mode_frequency_factors"] = [
+        float(own * (factors[mode] if mode < len(factors) else 1.0))
+        for mode, own in enumerate(known)
+    ]
+    damping = dict(values["damping"])
+    if damping["kind"] == "modal" and point.damping:
+        ratios = [*damping["first_ratios"], *[damping["other_ratio"]] * len(point.damping)]
+        damping["first_ratios"] = [
+            float(ratio * np.exp(own)) for ratio, own in zip(ratios, point.damping, strict=False)
+        ] + [float(ratio) for ratio in damping["first_ratios"][len(point.damping) :]]
+    gains = np.exp([*point.gain, *[0.0] * (len(structure.names) - len(point.gain))])
+    told = ", ".join(
+        f"{name} {gain:.4f}" for name, gain in zip(structure.names, gains, strict=True)
+    )
+    values |= {"damping": damping, "study": f"{values['study']}_updated"}
+    return "\n".join(
+        [
+            f"# {what}",
+            f"# Gains of the channels, measured over true: {told}",
+            yaml.safe_dump(plain_values(values), sort_keys=False, width=140),
+        ]
+    )

@@ -1,0 +1,135 @@
+"""From gains to probabilities, and from probabilities to a conclusion.
+
+A hypothesis counts by its gain on stretches that took no part. Nothing is missing where the best
+gain is one that right models have too. Something else is missing where the holding force stays
+above its floor with the best hypothesis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import expit
+
+from vibroimpact.verdict.content import Conclusion
+
+from . import constants
+from .search import Hypothesis, Search
+
+EXACT_ALIASES = {  # what no measurement of this kind can tell apart
+    "gap@all": ("sensor_gain@force_and_responses", "sensor_gain"),
+    "sensor_gain@force_and_responses": ("gap@all", "gap"),
+}
+SHOWN = 12
+LEAST_SHOWN = 1.0e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """A conclusion and its probabilities.
+
+    ranked: hypotheses, one per set of effects, with their probabilities, most probable first.
+    nothing, something_else: probabilities. best: the most probable hypothesis, None where there is
+    none. rest: log power over the floor that the best leaves. share: of what is beyond the floor,
+    that the best explains.
+    """
+
+    verdict: Conclusion
+    ranked: tuple[tuple[Hypothesis, float], ...]
+    nothing: float
+    something_else: float
+    rest: float
+    share: float
+
+    @property
+    def best(self) -> Hypothesis | None:
+        """Return the most probable hypothesis."""
+        return self.ranked[0][0] if self.ranked else None
+
+    @property
+    def leading(self) -> list[tuple[Hypothesis, float]]:
+        """Return the most probable hypotheses that make NAMED of the probability of all."""
+        total, out = sum(chance for _, chance in self.ranked), []
+        for each in self.ranked:
+            out.append(each)
+            if sum(chance for _, chance in out) >= constants.NAMED * total:
+                break
+        return out
+
+
+def decide(search: Search, level: float, floor: float) -> Decision:
+    """Return the Decision on a Search.
+
+    level: mean log power of the holding force with the best hypothesis. floor: that of a model in
+    which nothing else is missing, NaN where it is not known.
+    """
+    distinct: dict[tuple[str, ...], Hypothesis] = {}
+    for each in sorted(search.hypotheses, key=worth, reverse=True):
+        distinct.setdefault(each.ids, each)
+    hypotheses = list(distinct.values())[:SHOWN]
+    gains = np.array([worth(each) for each in hypotheses])
+    if not gains.size:
+        return Decision("none", (), 1.0, 0.0, 0.0, 0.0)
+    best = float(gains[0])
+    nothing = float(expit((constants.NULL_GAIN - best) / constants.NULL_WIDTH))
+    rest = level - floor if np.isfinite(floor) else 0.0
+    unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
+    share = best / max(best + max(rest, 0.0), 1.0e-12)
+    width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
+    chance = np.exp((gains - best) / width)
+    chance *= (1.0 - nothing) * (1.0 - unexplained) / chance.sum()
+    ranked = tuple(
+        (each, float(own))
+        for each, own in zip(hypotheses, chance, strict=True)
+        if own > LEAST_SHOWN
+    ) or ((hypotheses[0], float(chance[0])),)
+    something_else = (1.0 - nothing) * unexplained
+    return Decision(
+        _verdict(nothing, unexplained, share, ranked), ranked, nothing, something_else, rest, share
+    )
+
+
+def worth(hypothesis: Hypothesis) -> float:
+    """Return the gain that a hypothesis counts by: that on stretches that took no part, and no more
+    than it had where it was fitted.
+    """
+    return min(hypothesis.apart, hypothesis.gain)
+
+
+def _verdict(
+    nothing: float, unexplained: float, share: float, ranked: Sequence[tuple[Hypothesis, float]]
+) -> Conclusion:
+    """Return the conclusion from probabilities."""
+    if nothing >= 0.5:
+        return "none"
+    if unexplained >= 0.5:
+        return "partly_explained" if share >= constants.PARTLY else "unknown"
+    total = sum(chance for _, chance in ranked)
+    return "named" if ranked[0][1] >= constants.NAMED * total else "ambiguous"
+
+
+def ambiguity(decision: Decision) -> tuple[list[list[str]], list[float]]:
+    """Return (sets of effect ids that explain equally well, their probabilities); an exact alias
+    has the probability of the effect it is an alias of.
+    """
+    sets: list[list[str]] = []
+    chances: list[float] = []
+    for hypothesis, chance in decision.leading:
+        ids = hypothesis.point.ids
+        for alternative in (ids, *_aliases(hypothesis)):
+            if sorted(alternative) not in [sorted(known) for known in sets]:
+                sets.append(list(alternative))
+                chances.append(chance)
+    total = sum(chances)
+    return sets, [chance / total if total > 1.0 else chance for chance in chances]
+
+
+def _aliases(hypothesis):
+    """Yield the ids with one effect exchanged for its exact alias."""
+    for number, term in enumerate(hypothesis.point.terms):
+        if term.name in EXACT_ALIASES:
+            ids = list(hypothesis.point.ids)
+            ids[number] = EXACT_ALIASES[term.name][1]
+            yield ids

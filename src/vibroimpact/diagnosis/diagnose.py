@@ -1,0 +1,354 @@
+"""From a campaign and a model to a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.config.reading import load_config
+from vibroimpact.config.schema import Config
+from vibroimpact.observation.attached_model import with_channel_points
+from vibroimpact.observation.signals import signals_of
+from vibroimpact.records import write_record, write_table, write_text
+from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.verdict.content import (
+    WITH_AMBIGUITY_SET,
+    WITH_EFFECTS,
+    Misfit,
+    MisfitBySplit,
+    Verdict,
+)
+from vibroimpact.verdict.content import not_testable as not_testable_verdict
+from vibroimpact.verdict.file import write_verdict
+from vibroimpact.verdict.misfit import makes_worse, not_offered
+
+from .comparison import Comparison
+from .completed import completed_model, effect_rows
+from .decision import Decision, ambiguity, decide
+from .explanations import Point, Structure
+from .floor import floor_of
+from .free_runs import FreeRuns, distance, free_runs, regions
+from .next_measurement import next_measurement
+from .search import Hypothesis, Search, search
+from .usable import Refused, not_testable, usable
+
+EFFORTS = {"quick": 1, "standard": 2, "thorough": 3}  # effects at once, at most
+REGIONS = 12
+RANKING = ("ids", "location", "probability", "gain", "gain_apart", "error")
+
+Log = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """A verdict and what it rests on; all but the verdict None where a campaign was refused."""
+
+    verdict: Verdict
+    comparison: Comparison | None = None
+    search: Search | None = None
+    decision: Decision | None = None
+    runs: FreeRuns | None = None
+    completed: str = "# not testable: the model is as it was\n"
+
+    @property
+    def chosen(self) -> Hypothesis | None:
+        """Return the hypothesis that the completed model holds, None for the model as given."""
+        if self.decision is None or self.verdict.verdict in ("none", "unknown"):
+            return None
+        return self.decision.best
+
+
+def diagnose(
+    campaign: xr.Dataset | str | Path,
+    model: Config | str | Path,
+    effort: str = "standard",
+    threads: int = 1,
+) -> Verdict:
+    """Return the Verdict on what a model lacks, given a measured campaign.
+
+    campaign: a campaign Dataset, or the path of its file. model: a checked Config, or the path of a
+    configuration. effort: "quick" looks for one effect, "standard" for two, "thorough" for three at
+    once. threads: runs at a time; no number depends on it.
+
+    A campaign that can not be compared gives the verdict "not_testable". Raises ConfigError for a
+    configuration that can not be used, ValueError for another effort.
+    """
+    return run_diagnosis(campaign, model, effort, threads).verdict
+
+
+def run_diagnosis(
+    campaign: xr.Dataset | str | Path,
+    model: Config | str | Path,
+    effort: str = "standard",
+    threads: int = 1,
+    provenance: dict[str, Any] | None = None,
+    log: Log = lambda text: None,
+) -> Diagnosis:
+    """Return the Diagnosis; arguments as of `diagnose`. provenance: of verdict.json. log: is given
+    a line for each hypothesis that was fitted.
+    """
+    if effort not in EFFORTS:
+        raise ValueError(f"effort = '{effort}': give one of {', '.join(EFFORTS)}")
+    config = model if isinstance(model, Config) else load_config(model)
+    watch = Stopwatch()
+    try:
+        with watch("reading and checks"):
+            found, checks = usable(campaign, config)
+            whole = with_channel_points(config, found)
+            comparison = Comparison(signals_of(found), Structure(whole, found), threads=threads)
+    except Refused as refusal:
+        return Diagnosis(_refused(refusal, provenance or {}, watch))
+    with watch("search"):
+        searched = search(comparison, EFFORTS[effort], log=log)
+    with watch("floor"):
+        best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
+        level, floor = floor_of(comparison, best)
+    decision = decide(searched, level, floor)
+    with watch("free runs"):
+        chosen = None if decision.verdict in ("none", "unknown") else decision.best
+        runs = free_runs(
+            comparison.structure, comparison.signals, None if chosen is None else chosen.point
+        )
+    found = _Found(comparison, searched, decision, runs, checks, provenance or {})
+    return _concluded(found, watch)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What the stages found."""
+
+    comparison: Comparison
+    searched: Search
+    decision: Decision
+    runs: FreeRuns
+    checks: list[dict[str, Any]]
+    provenance: dict[str, Any]
+
+
+def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
+    """Write verdict.json, ranking.csv, spectra.nc and model_updated.yaml into a folder."""
+    folder = Path(folder)
+    write_verdict(diagnosis.verdict, folder / "verdict.json")
+    write_table(_ranking_table(diagnosis.decision), folder / "ranking.csv", columns=RANKING)
+    write_record(spectra(diagnosis), folder / "spectra.nc")
+    write_text(diagnosis.completed, folder / "model_updated.yaml")
+
+
+def spectra(diagnosis: Diagnosis) -> xr.Dataset:
+    """Return psd (state, record, channel, frequency): measured, and of free runs before and
+    after.
+    """
+    runs, comparison = diagnosis.runs, diagnosis.comparison
+    if runs is None or comparison is None:
+        return xr.Dataset(attrs={"title": "no spectra: the campaign can not be tested"})
+    signals = comparison.signals
+    values = np.stack([runs.measured, runs.before.mean(axis=1), runs.after.mean(axis=1)])
+    return xr.Dataset(
+        {
+            "psd": (
+                ("state", "record", "channel", "frequency"),
+                values.astype(np.float32),
+                {"units": "squared SI unit of the channel per Hz"},
+            ),
+            "load": ("record", signals.load, {"units": signals.load_unit}),
+            "record_name": ("record", list(signals.record_names)),
+            "channel_name": ("channel", list(signals.names)),
+            "channel_kind": ("channel", [str(kind) for kind in signals.kinds]),
+            "split": ("record", [str(split) for split in signals.split]),
+        },
+        coords={
+            "state": ["measured", "before", "after"],
+            "frequency": ("frequency", runs.frequency, {"units": "Hz"}),
+        },
+    )
+
+
+def _refused(refusal: Refused, provenance, watch) -> Verdict:
+    """Return the verdict on a campaign that can not be tested."""
+    empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
+    return not_testable_verdict(
+        _contract(refusal.checks),
+        provenance,
+        next_measurement=str(refusal),
+        misfit=MisfitBySplit(fit=empty, holdout=empty),
+        cost=_cost(watch, 0),
+    )
+
+
+def _contract(checks):
+    """Return the rows of checks with the keys of the contract alone."""
+    keys = ("check", "level", "record", "channel", "message")
+    return [{key: row.get(key) for key in keys} for row in checks]
+
+
+def _concluded(found: _Found, watch: Stopwatch) -> Diagnosis:
+    """Return the Diagnosis of a campaign that was compared.
+
+    What makes held-out records worse is not offered: it is withdrawn, and the verdict is unknown.
+    """
+    decision, withdrawn = found.decision, None
+    misfits = _misfits(found)
+    effects = _effects(found)
+    if decision.verdict not in ("none", "unknown") and makes_worse(
+        misfits["holdout"] or misfits["fit"]
+    ):
+        withdrawn = {"effects": effects, "misfit": misfits}
+        decision = replace(decision, verdict="unknown", **_without_best(decision))
+    cost = _cost(watch, found.searched.runs)
+    content = {
+        **_decided(decision, effects),
+        "regions": (
+            []
+            if decision.verdict == "none"
+            else regions(found.runs, found.comparison.signals, REGIONS)
+        ),
+        "misfit": misfits,
+        "p_global_before": None,
+        "p_global_after": None,
+        "checks": _contract([*found.checks, *_failed_rows(found.searched)]),
+        "not_testable": not_testable(found.comparison.structure.campaign),
+        "provenance": found.provenance,
+        "load_unit": found.comparison.signals.load_unit,
+        "withdrawn": withdrawn,
+        "cost": cost,
+        "seconds": cost["cpu_seconds"],
+        "simulations": cost["simulations"],
+    }
+    completed = (
+        not_offered(withdrawn)
+        if withdrawn
+        else completed_model(
+            found.comparison.structure,
+            _offered(found.searched, decision),
+            _sentence(decision.verdict),
+        )
+    )
+    return Diagnosis(
+        Verdict.from_values(content),
+        found.comparison,
+        found.searched,
+        decision,
+        found.runs,
+        completed,
+    )
+
+
+def _misfits(found: _Found) -> dict[str, Any]:
+    """Return `misfit` of verdict.json."""
+    signals = found.comparison.signals
+    return {
+        split: distance(found.runs, signals, records) if len(records) else None
+        for split, records in (("fit", signals.fit()), ("holdout", signals.holdout()))
+    }
+
+
+def _effects(found: _Found) -> list[dict[str, Any]]:
+    """Return the rows of the effects of the best hypothesis, none where nothing is missing."""
+    decision = found.decision
+    if decision.best is None or decision.verdict == "none":
+        return []
+    fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
+    rows = effect_rows(decision.best, found.comparison.signals)
+    return [row | {"law_fits": fits} for row in rows]
+
+
+def _without_best(decision: Decision) -> dict[str, Any]:
+    """Return the probabilities of a Decision whose best hypothesis is refuted: what it had goes to
+    something else.
+    """
+    refuted = decision.ranked[0][1]
+    return {
+        "ranked": decision.ranked[1:],
+        "something_else": decision.something_else + refuted,
+    }
+
+
+def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the part of verdict.json that says what is missing, and how sure that is."""
+    conclusion = decision.verdict
+    named = conclusion in WITH_EFFECTS
+    sets, chances = ambiguity(decision) if conclusion in WITH_AMBIGUITY_SET else ([], [])
+    ranking = [
+        {
+            "ids": row["ids"].split("+"),
+            "heldout_score": row["gain_apart"],
+            "closed_fraction": None,
+            "location": row["location"],
+            "probability": row["probability"],
+        }
+        for row in _ranking_table(decision)
+    ]
+    broken = {
+        test
+        for term in (decision.best.point.terms if named and decision.best else ())
+        for test in term.effect.broken
+    }
+    return {
+        "verdict": conclusion,
+        "effects": effects if named else [],
+        "ambiguity_set": sets,
+        "ambiguity_probability": chances,
+        "probability_none": decision.nothing,
+        "probability_something_else": decision.something_else,
+        "ranking": ranking,
+        "next_measurement": next_measurement(sets),
+        "broken_invariances": sorted(broken),
+        "most_probable": effects,
+    }
+
+
+def _offered(searched: Search, decision: Decision) -> Point:
+    """Return the Point of the completed model: that of nothing where nothing is offered."""
+    if decision.verdict in ("none", "unknown") or decision.best is None:
+        return searched.nothing.point
+    return decision.best.point
+
+
+def _sentence(conclusion):
+    """Return what the file of the completed model says of itself."""
+    if conclusion in ("none", "unknown"):
+        return f"The verdict is {conclusion}: no effect was added, modes are corrected."
+    return "The model with the effects that the campaign shows to be missing; modes are corrected."
+
+
+def _failed_rows(searched):
+    """Return the rows of checks for effects that could not be run."""
+    return [
+        check_row("left out", "warn", f"{name} could not be run: it is not among the explanations.")
+        for name in searched.failed
+    ]
+
+
+def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:
+    """Return the rows of ranking.csv."""
+    if decision is None:
+        return []
+    return [
+        {
+            "ids": "+".join(each.point.ids),
+            "location": "+".join(term.location for term in each.point.terms),
+            "probability": chance,
+            "gain": each.gain,
+            "gain_apart": each.apart,
+            "error": each.error,
+        }
+        for each, chance in decision.ranked
+    ]
+
+
+def _cost(watch, simulations):
+    """Return the `cost` of verdict.json."""
+    return {
+        "cpu_seconds": float(sum(watch.values())),
+        "simulations": int(simulations),
+        "by_stage": {
+            stage: {"cpu_seconds": float(seconds), "simulations": 0}
+            for stage, seconds in watch.items()
+        },
+    }

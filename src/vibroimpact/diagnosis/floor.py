@@ -1,0 +1,92 @@
+"""What the holding force looks like where nothing is missing: the model plays the measurement.
+
+The model with drawn nuisances runs free under the measured force. The model without them is held to
+that motion and noise, and nuisances are fitted as those of the measurement are. What is left is the
+floor of the holding force.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import signal
+
+from vibroimpact.integration.held_run import HeldLane, hold
+from vibroimpact.observation.sensed_motion import orders
+
+from .bench import Bench, mean_log_power, measures_motion
+from .comparison import Comparison
+from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
+from .coordinates import nuisance_coordinates
+from .explanations import Point
+from .gauss_newton import fit
+from .search import Hypothesis
+from .stretches import Stretch
+
+WINDOW = ("kaiser", 9.0)  # of the interpolation: images 90 dB down
+PASSES = 2  # of the fit of the nuisances
+
+
+def floor_of(comparison: Comparison, best: Hypothesis) -> tuple[float, float]:
+    """Return (mean log power of the holding force with a hypothesis, the same where nothing else is
+    missing), on the fitted stretches; the second NaN where the model can not be run free.
+    """
+    bench = comparison.fitted()
+    rng = np.random.default_rng(1)
+    modes, channels = comparison.modes, len(comparison.structure.names)
+    played = Point(
+        best.point.terms,
+        tuple(FREQUENCY_SD * rng.standard_normal(modes)),
+        tuple(DAMPING_SD * rng.standard_normal(modes)),
+        tuple(GAIN_SD * rng.standard_normal(channels)),
+    )
+    level = mean_log_power(bench, best.fit.lines)
+    stretches = _played(comparison, bench, played, rng)
+    if stretches is None:
+        return level, np.nan
+    own = replace(bench, stretches=stretches)
+    rows = nuisance_coordinates(modes, channels)
+    found = fit(own, Point(best.point.terms), rows, PASSES)
+    return level, mean_log_power(own, found.lines)
+
+
+def _noise(comparison: Comparison, samples: int, rng: np.random.Generator) -> np.ndarray:
+    """Return (channel, sample) m: noise of the channels as the displacement that they are held
+    to.
+    """
+    signals, (low, high) = comparison.signals, comparison.band
+    rate = comparison.rates.sampling
+    frequency = np.fft.rfftfreq(samples, 1.0 / rate)
+    inside = (frequency >= low) & (frequency <= high)
+    omega = 2.0 * np.pi * np.where(inside, frequency, 1.0)
+    # white over the range to half the sampling frequency of the campaign
+    level = signals.noise * np.sqrt(rate / signals.rate) * comparison.structure.scale
+    white = level[:, None] * rng.standard_normal((len(level), samples))
+    lines = np.fft.rfft(white, axis=-1) * inside / (1j * omega) ** orders(signals.kinds)[:, None]
+    return np.fft.irfft(lines, samples, axis=-1)
+
+
+def _played(
+    comparison: Comparison, bench: Bench, point: Point, rng: np.random.Generator
+) -> tuple[Stretch, ...] | None:
+    """Return the stretches with the motion of a Point that runs free, None where it fails."""
+    model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    free = np.zeros(len(chain.gain))
+    runs = [
+        HeldLane(model, each.gap, each.force, np.zeros_like(each.motion), free)
+        for each in bench.stretches
+    ]
+    up = round(bench.schedule.steps_per_second / bench.schedule.sampling_frequency)
+    motion = hold(runs, bench.schedule, bench.threads).motion
+    if not np.isfinite(motion).all():
+        return None
+    held = measures_motion(bench)
+    out = []
+    for each, own in zip(bench.stretches, motion, strict=True):
+        own = own * chain.gain[:, None] + _noise(comparison, own.shape[1], rng)
+        fine = signal.resample_poly(own, up, 1, axis=-1, window=WINDOW, padtype="edge")
+        # the motion begins one step before the first sample
+        dense = np.pad(fine, ((0, 0), (1, len(each.motion))), mode="edge")[:, : len(each.motion)]
+        out.append(replace(each, motion=dense.T * held))
+    return tuple(out)

@@ -1,0 +1,189 @@
+"""What users know: spectra of free runs beside the measured ones, before and after a completion.
+
+The log-spectral distance is the RMS over bands, channels and records of the difference in dB. Its
+floor is the distance of two runs of the completed model from other starts: impacting motion is
+chaotic where it runs free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from vibroimpact.integration.batch import Schedule
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.observation.signals import Signals
+from vibroimpact.observation.simulated_records import Forces, simulate_records, steps_per_second
+from vibroimpact.verdict.misfit import closed_fraction
+
+from .explanations import Point, Structure
+from .stretches import valid_samples
+
+SEEDS = 2
+SETTLE_S = 1.0  # at the start of a record
+ABOVE_NOISE_DB = 6.0
+SEGMENT_S = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class FreeRuns:
+    """Spectra of whole records.
+
+    frequency (line,): Hz. measured (record, channel, line); before, after (record, seed, channel,
+    line): one-sided PSD in the unit of the channel squared per Hz; NaN of a run that failed.
+    noise (channel,): PSD.
+    """
+
+    frequency: np.ndarray
+    measured: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    noise: np.ndarray
+
+
+def free_runs(structure: Structure, signals: Signals, after: Point | None) -> FreeRuns:
+    """Return the FreeRuns of the model as given and of a Point; None where nothing is completed."""
+    given = _simulated(structure, signals, Point())
+    completed = given if after is None else _simulated(structure, signals, after)
+    spectra = [_psd(values, signals) for values in (signals.response[:, None], given, completed)]
+    return FreeRuns(
+        spectra[0][0],
+        spectra[0][1][:, 0],
+        spectra[1][1],
+        spectra[2][1],
+        signals.noise**2 / (0.5 * signals.rate),
+    )
+
+
+def _simulated(structure, signals, point):
+    """Return (record, seed, channel, sample): free runs of a Point, as the sensors record them."""
+    samples = max(valid_samples(signals, record) for record in range(len(signals.load)))
+    integration = structure.config.integration
+    schedule = Schedule(
+        steps_per_second(signals.rate, integration),
+        signals.rate,
+        0.0,
+        samples / signals.rate,
+        integration.scheme,
+    )
+    model, chain = structure.model(point), structure.measuring(point)
+    raw = replace(model, sensor_shapes=model.sensor_shapes / structure.scale)
+    runs = [
+        (record, float(signals.gap[record]), seed)
+        for record in range(len(signals.load))
+        for seed in range(SEEDS)
+    ]
+    shape = (len(signals.load), SEEDS, len(signals.names), schedule.samples)
+    try:
+        found = simulate_records(
+            raw, schedule, Forces(signals.force, schedule), runs, signals.kinds
+        )
+    except IntegrationError:
+        return np.full(shape, np.nan, np.float32)
+    return found.reshape(shape) * chain.gain[:, None].astype(np.float32)
+
+
+def _psd(values, signals):
+    """Return (frequency, PSD (record, run, channel, line)) of values (record, run, channel,
+    sample), averaged over segments that overlap by half.
+    """
+    length = int(SEGMENT_S * signals.rate)
+    window = np.hanning(length)
+    frequency = np.fft.rfftfreq(length, 1.0 / signals.rate)
+    out = np.full((*values.shape[:3], len(frequency)), np.nan)
+    for record in range(len(values)):
+        last = min(valid_samples(signals, record), values.shape[-1]) - length
+        starts = range(min(int(SETTLE_S * signals.rate), max(last, 0)), last + 1, length // 2)
+        if not len(starts):
+            continue
+        power = sum(
+            np.abs(np.fft.rfft(values[record, ..., at : at + length] * window, axis=-1)) ** 2
+            for at in starts
+        )
+        out[record] = power * 2.0 / (len(starts) * signals.rate * np.sum(window**2))
+    return frequency, out
+
+
+def distance(
+    runs: FreeRuns, signals: Signals, records: Sequence[int] | np.ndarray
+) -> dict[str, float | None]:
+    """Return {before_dB, after_dB, floor_dB, closed_fraction} over records."""
+    cells = _in_bands(runs, signals)
+    chosen = cells["known"][records]
+    if not chosen.any():
+        return dict.fromkeys(("before_dB", "after_dB", "floor_dB", "closed_fraction"))
+    measured = cells["measured"][records]
+    away, floors = [], []
+    for name in ("before", "after"):
+        power = cells[name][records]
+        floors.append(_floor(power, chosen))
+        mean = 10.0 * np.log10(np.mean(10.0 ** (power / 10.0), axis=1))
+        own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
+        away.append(float(np.hypot(_rms(measured - mean, chosen), own)))
+    return {
+        "before_dB": away[0],
+        "after_dB": away[1],
+        "floor_dB": floors[1],
+        "closed_fraction": closed_fraction(*away, floors[1], floors[0]),
+    }
+
+
+def _in_bands(runs, signals):
+    """Return {measured (record, channel, band), before, after (record, seed, channel, band): dB;
+    known (record, channel, band) bool: above the noise, and simulated}.
+    """
+    edges = np.searchsorted(runs.frequency, signals.edges)
+    bands = [(low, max(high, low + 1)) for low, high in zip(edges[:-1], edges[1:], strict=True)]
+
+    def power(psd):
+        mean = np.stack([psd[..., low:high].mean(axis=-1) for low, high in bands], axis=-1)
+        return 10.0 * np.log10(np.maximum(mean, np.finfo(float).tiny))
+
+    out = {name: power(getattr(runs, name)) for name in ("measured", "before", "after")}
+    noise = 10.0 * np.log10(np.maximum(runs.noise, np.finfo(float).tiny))[:, None]
+    known = out["measured"] > noise + ABOVE_NOISE_DB
+    for name in ("before", "after"):
+        known &= np.isfinite(out[name]).all(axis=1)
+    return out | {"known": known}
+
+
+def _rms(difference, chosen):
+    """Return the RMS of chosen cells."""
+    return float(np.sqrt(np.mean(difference[chosen] ** 2)))
+
+
+def _floor(power, chosen):
+    """Return the distance in dB between two seeds, RMS over pairs; power (record, seed, ...)."""
+    pairs = combinations(range(power.shape[1]), 2)
+    squares = [_rms(power[:, one] - power[:, other], chosen) ** 2 for one, other in pairs]
+    return float(np.sqrt(np.mean(squares))) if squares else 0.0
+
+
+def regions(runs: FreeRuns, signals: Signals, shown: int) -> list[dict]:
+    """Return the rows of verdict.json's regions: bands in which the model as given is farthest off,
+    in units of the scatter between its runs.
+    """
+    cells = _in_bands(runs, signals)
+    mean = 10.0 * np.log10(np.mean(10.0 ** (cells["before"] / 10.0), axis=1))
+    scatter = np.maximum(np.abs(np.diff(cells["before"], axis=1)[:, 0]) / np.sqrt(2.0), 0.5)
+    off = np.where(cells["known"], cells["measured"] - mean, 0.0)
+    z = off / np.hypot(scatter, np.sqrt(np.mean(scatter**2)))
+    rows = []
+    for flat in np.argsort(-np.abs(z), axis=None)[:shown]:
+        record, channel, band = np.unravel_index(flat, z.shape)
+        gap = float(signals.gap[record])
+        rows.append(
+            {
+                "band_Hz": [float(signals.edges[band]), float(signals.edges[band + 1])],
+                "load_rms_N": float(signals.load[record]),
+                "gap_m": gap if np.isfinite(gap) else None,
+                "channel": signals.names[channel],
+                "discrepancy_dB": float(off[record, channel, band]),
+                "z": float(z[record, channel, band]),
+                "record": signals.record_names[record],
+            }
+        )
+    return rows

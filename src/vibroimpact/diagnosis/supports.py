@@ -1,0 +1,296 @@
+"""Virtual sensors at the supports: contact forces and their statistics from remote sensors.
+
+The model is held to the measured motion by dampers at the sensors (see integration.held_run). It
+then follows the measured impacts one by one, and its contact forces are those of the structure.
+
+Source: the task is that of M. De Araujo, J. Antunes, P. Piteau, Remote identification of impact
+forces on loosely supported tubes, J. Sound Vib. 215 (1998) 1015-1041, who invert the propagation of
+waves; here an observer gives the forces. That two runs driven by the same data agree only where the
+data determine them: H. Abarbanel, N. Rulkov, M. Sushchik, Phys. Rev. E 53 (1996) 4528.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.file import CampaignError
+from vibroimpact.config.schema import Config
+from vibroimpact.linear.support_groups import support_directions
+from vibroimpact.observation.comparable import (
+    channel_faults,
+    comparison_problems,
+    left_out,
+    still_rows,
+    strain_rows,
+)
+from vibroimpact.observation.sensed_motion import of_modes
+from vibroimpact.observation.signals import signals_of
+
+from .calibration import calibrated
+from .explanations import Point, Structure
+from .measured_forces import force_channels, side_by_side
+from .support_statistics import (
+    HeldTwice,
+    agreement_of,
+    estimates,
+    measured_of,
+    unseen_of,
+    with_interval,
+)
+from .whole_records import STRENGTH, holder
+
+AGREEMENT = 0.95  # least correlation of the forces under two strengths
+KNOWN = 0.5  # least share of signal in a channel
+
+UNITS = {
+    "rms_force": "N",
+    "force_level": "N",
+    "peak_force": "N",
+    "contact_fraction": "1",
+    "impact_rate": "s-1",
+    "wear_work_rate": "W",
+    "agreement": "1",
+    "correlation": "1",
+}
+
+
+@dataclass(frozen=True)
+class SupportValue:
+    """A quantity of a support in a record.
+
+    load: RMS of the force in load_unit. gap_m: nominal gap, m. channel: a measured contact force
+    that the quantity belongs to, "" for the resultant on the structure.
+    value, low, high: in unit; low and high bound 90 % of what other stretches as long as the record
+    would give, NaN where that is not known. measured: the same of the measured contact force, else
+    NaN. remark: why the value can not be relied on, else "".
+    """
+
+    record: str
+    load: float
+    load_unit: str
+    gap_m: float
+    support: str
+    channel: str
+    quantity: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    measured: float
+    remark: str
+
+
+@dataclass(frozen=True, eq=False)
+class SupportForces:
+    """Contact forces of a record.
+
+    first_s: time of the first sample in the record. sampling_frequency: Hz.
+    force (support, 2, sample): resultants on the structure, N, along directions (support, 2, 3).
+    """
+
+    record: str
+    first_s: float
+    sampling_frequency: float
+    supports: tuple[str, ...]
+    directions: np.ndarray
+    force: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class VirtualSupports:
+    """What remote sensors tell of the supports: values, forces where asked for, and notes."""
+
+    values: tuple[SupportValue, ...]
+    forces: tuple[SupportForces, ...]
+    notes: tuple[str, ...]
+
+
+def virtual_supports(
+    campaign: xr.Dataset,
+    config: Config,
+    point: Point | None = None,
+    calibrate: bool = False,
+    with_forces: bool = False,
+) -> VirtualSupports:
+    """Return the VirtualSupports of every record of a measured campaign.
+
+    Per support: contact force (RMS and peak of every step; level below which it is for 99.9 % of
+    the time, in the band of the records), share of time in contact, impacts per second, wear work
+    rate, secant stiffness and damping by direction. Definitions are those of a study's statistics.
+    Measured contact forces are not used; they stand beside the virtual ones along their channels.
+
+    config: of the model. point: effects, and nuisances of the channels that measure a motion; None
+    for the model as given. calibrate: fit frequencies, damping and gains first, see calibration.py.
+    with_forces: also give the forces over time.
+
+    Raises CampaignError where the campaign can not be compared with the model, with sentences that
+    say why, one a line.
+    """
+    held, notes = _held_channels(campaign, config)
+    own = campaign.isel(channel=held)
+    signals = signals_of(own)
+    structure = Structure(config, own)
+    point = point or Point()
+    holding = holder(structure, signals, point)
+    if problems := [*_unusable(holding)]:
+        raise CampaignError("\n".join(problems))
+    if calibrate:
+        holding = holder(structure, signals, calibrated(structure, signals, point))
+    channels, more = force_channels(campaign, holding.model)
+    directions = support_directions(holding.model, "each")
+    values: list[SupportValue] = []
+    forces: list[SupportForces] = []
+    for record in range(len(signals.record_names)):
+        run, weaker = holding.hold(record), holding.hold(record, 0.5 * STRENGTH)
+        values += _values(HeldTwice(holding, run, weaker, directions, channels))
+        notes += [*_lost(signals, run), *_noisy(signals, run)]
+        if with_forces:
+            forces.append(_forces(holding, run))
+    return VirtualSupports(tuple(values), tuple(forces), tuple(dict.fromkeys(notes)))
+
+
+def _held_channels(campaign, config):
+    """Return (indices of the channels that are held, sentences on what is left out).
+
+    Raises CampaignError where nothing can be held.
+    """
+    problems = comparison_problems(config, campaign)
+    if not config.supports:
+        problems.append(
+            "the model has no supports, whose forces could be told: give `supports` in its"
+            " configuration"
+        )
+    if problems:
+        raise CampaignError("\n".join(f"{problem}." for problem in problems))
+    faults = channel_faults(campaign)
+    rows = [*still_rows(config, campaign), *strain_rows(config, campaign)]
+    names = campaign["channel_name"].values
+    told = of_modes(campaign["channel_kind"].values) & ~np.isin(names, sorted(left_out(rows)))
+    held = [int(channel) for channel in np.flatnonzero(told) if channel not in faults]
+    notes = [*(f"{fault}." for fault in faults.values()), *(row["message"] for row in rows)]
+    if not held:
+        raise CampaignError(
+            "\n".join(
+                [
+                    *notes,
+                    "no channel is left that measures a motion or a strain at a known place: the"
+                    " model can not be held.",
+                ]
+            )
+        )
+    return held, notes
+
+
+def _unusable(holding) -> Iterator[str]:
+    """Yield a sentence for every record that can not be held."""
+    signals, period = holding.signals, 1.0 / holding.first_mode_Hz
+    open_gap = bool(np.isnan(holding.model.contact_laws.gap).any())
+    for record, name in enumerate(signals.record_names):
+        if open_gap and not np.isfinite(signals.gap[record]):
+            yield f"gap[{record}] of record {name} is missing: give the radial gap in m."
+        duration = holding.stretch_times(record)[1]
+        if duration < period:
+            yield (
+                f"record {name} is too short: its stretches have {max(duration, 0.0):.3g} s, less"
+                f" than a period of the first mode ({period:.3g} s); give longer records."
+            )
+
+
+def _lost(signals, run) -> list[str]:
+    """Return a sentence on the stretches of a record that could not be run."""
+    lost = int(np.sum(~np.isfinite(run.runs.support_force).all(axis=(1, 2))))
+    record = signals.record_names[run.record]
+    return (
+        [
+            f"record {record}: {lost} of its {len(run.runs.support_force)} stretches diverged and"
+            " are left out; raise integration.steps_per_second."
+        ]
+        if lost
+        else []
+    )
+
+
+def _noisy(signals, run) -> list[str]:
+    """Return a sentence on the channels of a record that are mostly noise."""
+    noisy = [name for name, share in zip(signals.names, run.known, strict=True) if share < KNOWN]
+    record = signals.record_names[run.record]
+    return (
+        [
+            f"record {record}: {', '.join(noisy)} {'is' if len(noisy) == 1 else 'are'} mostly noise"
+            " as a velocity and hardly held; what depends on the motion along them, such as the"
+            " wear work rate, is then not known."
+        ]
+        if noisy
+        else []
+    )
+
+
+def _forces(holding, run) -> SupportForces:
+    """Return the SupportForces of a held record."""
+    model = holding.model
+    names = tuple(model.support_names)
+    first = [int(np.flatnonzero(model.support_of_point == k)[0]) for k in range(len(names))]
+    return SupportForces(
+        holding.signals.record_names[run.record],
+        run.first_s,
+        run.sampling,
+        names,
+        model.contact_directions[first],
+        run.support_force.reshape(len(names), 2, -1),
+    )
+
+
+def _values(record: HeldTwice) -> list[SupportValue]:
+    """Return the SupportValues of a record."""
+    signals, run = record.holder.signals, record.run
+    fine = np.flatnonzero(np.isfinite(run.runs.support_force).all(axis=(1, 2)))
+    if not len(fine):
+        return []
+    both = {c.name: side_by_side(record.holder, run, c) for c in record.channels}
+    found, low, high = with_interval(lambda chosen: estimates(record, both, chosen), fine)
+    measured = measured_of(record, both, fine)
+    agreement, unseen = agreement_of(run, record.weaker, fine), unseen_of(record)
+    for support in range(len(record.supports)):
+        found[support, "", "agreement"] = float(agreement[support])
+    return [
+        SupportValue(
+            record=signals.record_names[run.record],
+            load=float(signals.load[run.record]),
+            load_unit=signals.load_unit,
+            gap_m=float(signals.gap[run.record]),
+            support=record.supports[support],
+            channel=channel,
+            quantity=quantity,
+            unit=_unit(quantity),
+            value=found[support, channel, quantity],
+            low=low.get((support, channel, quantity), np.nan),
+            high=high.get((support, channel, quantity), np.nan),
+            measured=measured.get((support, channel, quantity), np.nan),
+            remark=_remark(quantity, agreement[support], unseen[support]),
+        )
+        for support, channel, quantity in sorted(found, key=lambda key: key[:2])
+    ]
+
+
+def _unit(quantity):
+    """Return the unit of a quantity."""
+    if quantity.startswith("secant_stiffness"):
+        return "N m-1"
+    return "N s m-1" if quantity.startswith("secant_damping") else UNITS[quantity]
+
+
+def _remark(quantity, agreement, unseen):
+    """Return why a quantity of a support can not be relied on, "" where it can.
+
+    unseen: directions there that no sensor sees.
+    """
+    if agreement < AGREEMENT:
+        return f"not held: forces under two strengths agree to {agreement:.2f}"
+    along = quantity.rsplit("_", 1)[-1]
+    if unseen and (quantity == "wear_work_rate" or along in unseen):
+        return f"no sensor sees the motion along {' and '.join(unseen)}"
+    return ""

@@ -1,0 +1,178 @@
+"""The command `vibroimpact supports`: its arguments, and what it prints and writes.
+
+The library is imported when the command runs, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from .supports import SupportValue, VirtualSupports
+
+MODEL = "config/study.yaml"
+# What a quantity is called, and its unit as shown; of a secant value the direction follows.
+SHOWN = {
+    "rms_force": ("contact force, RMS", "N"),
+    "force_level": ("contact force, 99.9 % level", "N"),
+    "peak_force": ("contact force, peak", "N"),
+    "contact_fraction": ("time in contact", ""),
+    "impact_rate": ("impacts", "1/s"),
+    "wear_work_rate": ("wear work rate", "W"),
+    "secant_stiffness": ("secant stiffness along", "N/m"),
+    "secant_damping": ("secant damping along", "N s/m"),
+    "correlation": ("correlation with the measured force", ""),
+    "agreement": ("agreement of two strengths of holding", ""),
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("campaign", metavar="CAMPAIGN", help="a measured campaign (.nc)")
+    parser.add_argument(
+        "--model",
+        metavar="FILE",
+        default=MODEL,
+        help=f"configuration of the model (default: {MODEL})",
+    )
+    parser.add_argument(
+        "--calibrate",
+        action="store_true",
+        help="first fit the model's frequencies and damping and the sensors' gains, within what a"
+        " good model is off by; takes some 20 s of CPU time",
+    )
+    parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file too")
+    parser.set_defaults(command=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command. Return 1 where there is no answer."""
+    from vibroimpact.campaign.file import CampaignError
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.records import RecordError
+
+    from .supports import virtual_supports
+
+    try:
+        config = _model(options.model)
+        campaign, problems = _campaign(options.campaign)
+        for problem in problems:
+            print(f"{options.campaign}: {problem}", file=sys.stderr)
+        if campaign is None:
+            return 1
+        found = virtual_supports(campaign, config, calibrate=options.calibrate)
+        if options.csv:
+            _write(found, options.csv)
+    except CampaignError as error:
+        for line in str(error).split("\n"):
+            print(f"{options.campaign}: {line}", file=sys.stderr)
+        return 1
+    except (ConfigError, RecordError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print(as_text(found.values))
+    for note in found.notes:
+        print(f"{options.campaign}: warning: {note}", file=sys.stderr)
+    return 0
+
+
+def _model(path: str):
+    """Return the Config of a file. Raises ConfigError."""
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.reading import load_config
+
+    if path == MODEL and not Path(path).is_file():
+        raise ConfigError([f"there is no {MODEL} here: name the model with --model FILE.yaml"])
+    return load_config(path)
+
+
+def _campaign(path: str) -> tuple[xr.Dataset | None, list[str]]:
+    """Return (the records and channels of a campaign that can be used, None where it is refused;
+    sentences on what can not).
+    """
+    from vibroimpact.campaign.checks.file_checks import (
+        EXCLUDING_CHECKS,
+        check_file,
+        refused,
+        usable_signals,
+    )
+
+    campaign, rows = check_file(path)
+    if campaign is None or refused(rows):
+        return None, [row["message"] for row in rows if row["level"] == "refuse"]
+    told = [
+        f"warning: {row['message']}"
+        for row in rows
+        if row["check"] in EXCLUDING_CHECKS and row["level"] == "warn"
+    ]
+    force, response = usable_signals(campaign, rows)
+    usable = response[force].all(axis=0)
+    if not usable.any():
+        return None, [*told, "no channel and record is left that can be used: see above."]
+    return campaign.isel(record=force.nonzero()[0], channel=usable.nonzero()[0]), told
+
+
+def _write(found: VirtualSupports, path: str) -> None:
+    """Write the table. Raises RecordError."""
+    from dataclasses import asdict, fields
+
+    from vibroimpact.records import write_table
+
+    from .supports import SupportValue
+
+    columns = tuple(field.name for field in fields(SupportValue))
+    write_table([asdict(value) for value in found.values], path, columns)
+
+
+def as_text(values: Sequence[SupportValue]) -> str:
+    """Return the table of values as text, one block per record."""
+    blocks: dict[str, list[SupportValue]] = {}
+    for value in values:
+        blocks.setdefault(value.record, []).append(value)
+    return "\n\n".join(
+        "\n".join([_heading(rows[0]), *_aligned([HEADER, *map(_cells, rows)])])
+        for rows in blocks.values()
+    )
+
+
+HEADER = ("support", "quantity", "value", "90 % interval", "measured", "")
+
+
+def _heading(value: SupportValue) -> str:
+    """Return the line above the table of a record."""
+    gap = f", gap {1e3 * value.gap_m:.4g} mm" if value.gap_m == value.gap_m else ""
+    return f"Record {value.record}: {value.load:.4g} {value.load_unit} RMS{gap}"
+
+
+def _cells(value: SupportValue) -> tuple[str, ...]:
+    """Return the texts of a row."""
+    name = value.quantity
+    along = ""
+    if name.startswith("secant"):
+        name, along = name.rsplit("_", 1)
+    label, unit = SHOWN[name]
+    shown = f"{value.value:.4g} {unit}".rstrip() if value.value == value.value else "-"
+    return (
+        value.support,
+        " ".join(filter(None, [label, along, value.channel and f"({value.channel})"])),
+        shown,
+        f"{value.low:.4g} to {value.high:.4g}" if value.low == value.low else "",
+        f"{value.measured:.4g}" if value.measured == value.measured else "",
+        value.remark,
+    )
+
+
+def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    """Return rows of texts as lines, columns side by side."""
+    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADER))]
+    return [
+        "  "
+        + "  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]

@@ -1,0 +1,178 @@
+"""What of a campaign can be compared with a model: checks, and the channels and records that are
+left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.base_motion import relative_to_base
+from vibroimpact.campaign.checks.file_checks import (
+    check_campaign,
+    check_file,
+    refused,
+    usable_signals,
+)
+from vibroimpact.campaign.checks.model_comparison import compare_with_model
+from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.campaign.file import CampaignError, fill_missing
+from vibroimpact.campaign.force_kinds import base_channels
+from vibroimpact.campaign.signals import campaign_signals, transfer
+from vibroimpact.config.schema import Config
+from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.observation.attached_model import attach
+from vibroimpact.observation.comparable import (
+    LEFT_OUT,
+    campaign_problems,
+    channel_rows,
+    compared_channels,
+    comparison_problems,
+    left_out,
+    still_rows,
+    strain_rows,
+)
+from vibroimpact.observation.sensed_motion import differentiated, of_modes
+from vibroimpact.reduction.modal_model import ModalModel
+
+CONTRADICTED = ("swapped channels", "directions")  # checks whose channels are left out
+FEWEST_RECORDS = 2
+
+
+class Refused(Exception):
+    """A campaign that can not be compared with a model.
+
+    checks: rows of all checks, one of them of level refuse.
+    """
+
+    def __init__(self, sentence: str, checks: Sequence[dict[str, Any]]):
+        super().__init__(sentence)
+        self.checks = list(checks)
+
+
+def usable(
+    campaign: xr.Dataset | str | Path, config: Config
+) -> tuple[xr.Dataset, list[dict[str, Any]]]:
+    """Return (campaign Dataset with what can be compared, rows of all checks).
+
+    campaign: a Dataset, or the file of one. Raises Refused, with the sentence why.
+    """
+    whole, checks = _checked(campaign)
+    if whole is not None and not refused(checks):
+        checks += [*channel_rows(whole), *still_rows(config, whole)]
+        checks += [
+            check_row("model", "refuse", f"{problem}.")
+            for problem in comparison_problems(config, whole)
+        ]
+    found = _left(whole, checks)
+    try:
+        more = [*strain_rows(config, found), *_contradicted(config, found)]
+    except CampaignError as error:
+        more = [check_row("places", "refuse", str(error))]
+    checks += more
+    return (_left(whole, checks) if more else found), checks
+
+
+def not_testable(campaign: xr.Dataset) -> list[str]:
+    """Return the ids of the effects that need what a campaign does not hold."""
+    held = {name for name in ("voltage",) if name in campaign}
+    if not base_channels(campaign).any():
+        held.add("force")
+    return [effect.reported for effect in EFFECTS.values() if not set(effect.needs) <= held]
+
+
+def _checked(campaign):
+    """Return (Dataset or None, rows) of a Dataset or a file."""
+    if not isinstance(campaign, xr.Dataset):
+        return check_file(campaign)
+    rows = check_campaign(campaign)
+    return (None if refused(rows) else fill_missing(campaign)), rows
+
+
+def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
+    """Return what the checks leave of a campaign. Raises Refused where that is too little."""
+    if refused(checks) or whole is None:
+        refusing = [row["message"] for row in checks if row["level"] == "refuse"]
+        raise Refused(refusing[0], checks)
+    force, response = usable_signals(whole, checks)
+    names = whole["channel_name"].values
+    out = {row["channel"] for row in checks if row["check"] in CONTRADICTED and _warns(row)}
+    known = compared_channels(whole)
+    kept = known & ~np.isin(names, [*left_out(checks), *filter(None, out)])
+    moving = of_modes([str(kind) for kind in whole["channel_kind"].values])
+    if not (kept & moving).any():
+        _refuse(
+            next(
+                (row["message"] for row in checks if row["check"] == LEFT_OUT),
+                next(
+                    iter(campaign_problems(whole)),
+                    "No channel that measures a motion or a strain is left after the checks:"
+                    " repair what they name.",
+                ),
+            ),
+            checks,
+        )
+    channels = np.flatnonzero(kept)
+    records = np.flatnonzero(force)
+    whole_channels = channels[response[np.ix_(records, channels)].all(axis=0)]
+    if len(records) >= FEWEST_RECORDS and moving[whole_channels].any():
+        channels = whole_channels
+    else:  # a channel that fails in some record costs that record
+        records = np.flatnonzero(force & response[:, channels].all(axis=1))
+    if len(records) < FEWEST_RECORDS:
+        _refuse("Fewer than two records are left after the checks: repair what they name.", checks)
+    return whole.isel(record=records, channel=channels)
+
+
+def _warns(row):
+    return row["level"] == "warn" and row["record"] is not None and row["channel"] is not None
+
+
+def _refuse(sentence, checks):
+    """Raise Refused with a row of checks that says why."""
+    raise Refused(sentence, [*checks, check_row("content", "refuse", sentence)])
+
+
+def _contradicted(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
+    """Return rows for channels that contradict the linear model at the lowest level: swapped,
+    reversed, in another unit.
+    """
+    measured = relative_to_base(campaign_signals(campaign))
+    record = measured.lowest()
+    spectra = None if record is None else transfer(measured, record)
+    if record is None or spectra is None:
+        return []
+    omega, model = 2.0 * np.pi * spectra.frequency, attach(config, campaign)
+    others = np.ones((1, omega.size))
+    if measured.force[record].shape[0] > 1:
+        beside = transfer(
+            replace(measured, response=[force[1:] for force in measured.force]), record
+        )
+        if beside is None:
+            return []
+        others = np.concatenate([others, beside.h1])
+    return compare_with_model(
+        spectra,
+        _receptance(model, omega, others)
+        * np.array([differentiated(omega, kind) for kind in measured.kinds]),
+        measured.channels,
+        measured.kinds,
+        measured.records[record],
+    )
+
+
+def _receptance(model: ModalModel, omega: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return (channel, line): displacements per first force; forces (force_channel, line): each
+    force per first one.
+    """
+    return np.einsum(
+        "mc,ml,ml->cl",
+        model.sensor_shapes,
+        model.drive_shapes @ forces,
+        1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega),
+    )

@@ -1,1 +1,0 @@
-"""Where simulation and measurement disagree: misfit, map, invariances, energy, completed model."""

@@ -1,1 +1,0 @@
-"""Names the effect that a model lacks, with a probability for every explanation."""

@@ -1,0 +1,65 @@
+"""Distances of model and measurement in dB: their excess over chance, the share that a completion
+closes, and the text in place of a model that is no better.
+
+closed_fraction is the only definition of that share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from vibroimpact.effects.registry import effects_in_words
+
+NO_EXCESS = 0.5  # of the floor: a smaller excess tells nothing
+
+
+def excess(distance: float, floor: float) -> float:
+    """Return the root of the squared distance less the squared floor in dB; 0 below the floor."""
+    return max(0.0, distance**2 - floor**2) ** 0.5
+
+
+def closed_fraction(
+    before: float, after: float, floor: float, floor_before: float | None = None
+) -> float | None:
+    """Return 1 - excess after / excess before; None where the excess before is negligible: then the
+    records tell nothing of what is added.
+
+    before, after: distances in dB. floor, floor_before: dB, of the model after and before, the same
+    where None.
+    """
+    given = floor if floor_before is None else floor_before
+    first = excess(before, given)
+    return None if first <= NO_EXCESS * given else 1.0 - excess(after, floor) / first
+
+
+def makes_worse(row: Mapping[str, Any]) -> bool:
+    """Return whether the misfit with the completed model is larger than before, and than its floor,
+    by more than chance.
+
+    row: {before_dB, after_dB, floor_dB}.
+    """
+    if row["after_dB"] is None:
+        return False
+    known = max(row["before_dB"], row["floor_dB"])
+    return excess(row["after_dB"], known) > NO_EXCESS * row["floor_dB"]
+
+
+def not_offered(withdrawn: Mapping[str, Any]) -> str:
+    """Return the text in place of a completed configuration that is no better than the given one.
+
+    withdrawn: verdict.content.Withdrawn in plain values.
+    """
+    effects = effects_in_words(row["id"] for row in withdrawn["effects"])
+    splits = {
+        "the records that took no part": withdrawn["misfit"]["holdout"],
+        "the records that it was fitted to, run anew,": withdrawn["misfit"]["fit"],
+    }
+    known = {name: row for name, row in splits.items() if row and row["before_dB"] is not None}
+    farther = {name: row for name, row in known.items() if makes_worse(row)}
+    records, misfit = next(iter((farther or known).items()))
+    return (
+        f"# No model is offered: {effects} was added, and {records} are\n"
+        f"# {'farther off' if farther else 'hardly nearer'} with it,"
+        f" {misfit['before_dB']:.2f} dB before and {misfit['after_dB']:.2f} dB after.\n"
+    )
