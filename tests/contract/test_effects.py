@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from tests.effect_values import term_at, with_term
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.linear_stage.candidates import Candidate
 from vibroimpact.reduction.reduced_model import build_model
 
 CATALOGUE = {
@@ -78,10 +78,7 @@ def test_variant_is_valid_and_leaves_the_original_unchanged(study_config, name):
     values = study_config.model_dump(mode="json")
     before = repr(values)
     for location in EFFECTS[name].locations(values):
-        candidate = Candidate(name, location)
-        varied = candidate.variant(
-            values, candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES)
-        )
+        varied = with_term(values, term_at(name, location, 0.6, SCALES))
         assert varied != values
         check_config(varied, name)
     assert repr(values) == before
@@ -93,18 +90,16 @@ def test_variant_is_valid_at_the_ends_of_its_range(study_config, name, unit):
     """Of a structure with much damping too."""
     values = study_config.model_dump(mode="json")
     values["damping"] |= {"first_ratios": [0.05, 0.05], "other_ratio": 0.04}
-    candidate = Candidate(name, EFFECTS[name].locations(values)[0])
-    physical = candidate.physical(np.full(len(EFFECTS[name].parameters), unit), SCALES)
-    check_config(candidate.variant(values, physical), name)
+    term = term_at(name, EFFECTS[name].locations(values)[0], unit, SCALES)
+    check_config(with_term(values, term), name)
 
 
 @pytest.mark.parametrize("name", sorted(set(OF_THE_MODEL) - {"clearance"}))
 def test_an_effect_is_added_to_a_model_that_has_it(study_config, name):
     """As a second rod at the shaker, or a second mass. A second stop is refused as such."""
     values = study_config.model_dump(mode="json")
-    candidate = Candidate(name, EFFECTS[name].locations(values)[0])
-    strength = candidate.physical(np.full(len(EFFECTS[name].parameters), 0.6), SCALES)
-    check_config(candidate.variant(candidate.variant(values, strength), strength), name)
+    term = term_at(name, EFFECTS[name].locations(values)[0], 0.6, SCALES)
+    check_config(with_term(with_term(values, term), term), name)
 
 
 @pytest.mark.parametrize(
@@ -147,13 +142,4 @@ def test_neutral_is_the_bare_model_bit_for_bit(study_config, name):
             "slip_limit",
             "saturation_limit",
         )
-    )
-
-
-@pytest.mark.parametrize("name", sorted(EFFECTS))
-def test_normalised_parameters_come_back(name):
-    candidate = Candidate(name, "all")
-    unit = np.linspace(0.2, 0.7, len(EFFECTS[name].parameters))
-    np.testing.assert_allclose(
-        candidate.normalised(candidate.physical(unit, SCALES), SCALES), unit, atol=1e-12
     )

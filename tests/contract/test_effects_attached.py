@@ -7,13 +7,13 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 import pytest
 
+from tests.effect_values import term_at, with_term
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
-from vibroimpact.effects.places import length_m
+from vibroimpact.diagnosis.comparison import Comparison
+from vibroimpact.diagnosis.explanations import Structure, Term
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.linear_stage.candidates import Candidate
-from vibroimpact.linear_stage.scales import scales
 from vibroimpact.observation.attached_model import attach, with_channel_points
 from vibroimpact.observation.signals import signals_of
 
@@ -45,9 +45,8 @@ def compared(study_config):
     )
     config = with_channel_points(study_config, campaign)
     model = attach(config, campaign)
-    values, moving = config.model_dump(mode="json"), {"displacement": GAP, "speed": 0.03}
-    sizes = scales(model, signals_of(campaign), moving, length_m(values))
-    return values, campaign, model, sizes
+    comparison = Comparison(signals_of(campaign), Structure(config, campaign))
+    return config.model_dump(mode="json"), campaign, model, comparison.sizes
 
 
 def differing(one, other):
@@ -69,9 +68,9 @@ def test_an_effect_changes_the_attached_model(compared, name):
     values, campaign, bare, sizes = compared
     effect = EFFECTS[name]
     location = effect.locations(values)[0]
-    candidate = Candidate(name, location)
-    physical = candidate.physical([0.7] * len(effect.parameters), sizes)
-    variant = attach(check_config(candidate.variant(values, physical), name), campaign)
+    variant = attach(
+        check_config(with_term(values, term_at(name, location, 0.7, sizes)), name), campaign
+    )
     assert differing(bare, variant), f"{name} at {location} changes nothing that is simulated"
 
 
@@ -90,9 +89,7 @@ def test_a_stop_acts_along_the_force_wherever_it_sits(compared, location):
     values, campaign, _, _ = compared
     model = attach(
         check_config(
-            Candidate("clearance", location).variant(
-                values, {"half_gap": 1.0e-4, "stiffness": 1.0e4}
-            ),
+            with_term(values, Term("clearance", location, (1.0e-4, 1.0e4))),
             "stop",
         ),
         campaign,
@@ -107,29 +104,22 @@ def test_a_stop_acts_along_the_force_wherever_it_sits(compared, location):
 def test_added_stop_is_not_among_all_supports(compared):
     """An effect of all supports leaves the stop as it is, whichever of the two comes first."""
     values, _, _, sizes = compared
-    stop = Candidate("clearance", "apex")
-    everywhere = [
-        Candidate(name, "all") for name in OF_THE_MODEL if "all" in EFFECTS[name].locations(values)
-    ]
+    stop = term_at("clearance", "apex", 0.6, sizes)
+    everywhere = [name for name in OF_THE_MODEL if "all" in EFFECTS[name].locations(values)]
     assert len(everywhere) >= 10
-    for other in everywhere:
-        results = []
-        for order in ((stop, other), (other, stop)):
-            varied = values
-            for candidate in order:
-                varied = candidate.variant(
-                    varied, candidate.physical([0.6] * len(candidate.effect.parameters), sizes)
-                )
-            results.append(varied)
-        assert results[0] == results[1], other.name
+    for name in everywhere:
+        other = term_at(name, "all", 0.6, sizes)
+        one, two = (
+            with_term(with_term(values, first), second)
+            for first, second in ((stop, other), (other, stop))
+        )
+        assert one == two, name
 
 
 def test_misaligned_force_drives_the_transverse_direction(compared):
     values, campaign, bare, _ = compared
     model = attach(
-        check_config(
-            Candidate("force_misalignment", "about_z").variant(values, {"angle": 0.4}), "turned"
-        ),
+        check_config(with_term(values, Term("force_misalignment", "about_z", (0.4,))), "turned"),
         campaign,
     )
     size = np.linalg.norm(bare.drive_shapes)
@@ -147,7 +137,7 @@ def test_force_turned_about_the_tube_stays_transverse(compared):
     values, campaign, bare, _ = compared
     model = attach(
         check_config(
-            Candidate("force_misalignment", "about_tube").variant(values, {"angle": 0.5 * np.pi}),
+            with_term(values, Term("force_misalignment", "about_tube", (0.5 * np.pi,))),
             "turned",
         ),
         campaign,
@@ -168,9 +158,7 @@ def test_force_turned_about_the_tube_stays_transverse(compared):
 def test_shifted_mode_may_cross_its_neighbours(compared):
     values, campaign, bare, _ = compared
     model = attach(
-        check_config(
-            Candidate("mode_frequency_error", "mode_3").variant(values, {"factor": 0.6}), "passed"
-        ),
+        check_config(with_term(values, Term("mode_frequency_error", "mode_3", (0.6,))), "passed"),
         campaign,
     )
     np.testing.assert_allclose(

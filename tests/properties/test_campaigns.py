@@ -14,7 +14,7 @@ from vibroimpact.campaign.file import CampaignError, checked_description, measur
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.completion.own_records import Unusable, own_records
 from vibroimpact.config.reading import load_config
-from vibroimpact.linear_stage.linear_analysis import usable_campaign
+from vibroimpact.diagnosis.usable import Refused, usable
 from vibroimpact.observation.comparable import comparison_problems
 from vibroimpact.observation.signals import signals_of
 
@@ -177,8 +177,10 @@ def read(path):
         told = [row["message"] for row in rows if row["level"] == "refuse"]
         raise CampaignError("\n".join(f"{path}: {message}" for message in told))
     if not comparison_problems(model(), checked_description(path)):
-        usable, refusal = usable_campaign(path, rows, model().integration)
-        assert refusal or np.isfinite(signals_of(usable).load).all()
+        try:
+            assert np.isfinite(signals_of(usable(path, model())[0]).load).all()
+        except Refused as refusal:
+            assert str(refusal)
     try:
         own_records(path)
     except Unusable as problem:

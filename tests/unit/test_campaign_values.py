@@ -12,7 +12,7 @@ from vibroimpact.campaign.contract import contract_problems
 from vibroimpact.campaign.file import fill_missing, write_campaign
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.reserved_names import name_problem
-from vibroimpact.linear_stage.linear_analysis import prepare
+from vibroimpact.diagnosis.diagnose import diagnose
 from vibroimpact.observation.comparable import comparison_problems
 
 ROOT = Path(__file__).parents[2]
@@ -105,8 +105,8 @@ def test_millimetres_are_seen_on_the_tube(campaign):
 )
 def test_models_without_tube_or_point_force_are_refused(campaign, tmp_path, file, part):
     write_campaign(campaign, tmp_path / "bench.nc")
-    refusal = prepare(load_config(ROOT / "config" / file), tmp_path / "bench.nc").refusal
-    assert refusal is not None and part in refusal
+    verdict = diagnose(tmp_path / "bench.nc", ROOT / "config" / file)
+    assert verdict.verdict == "not_testable" and part in verdict.next_measurement
 
 
 def test_volts_and_reserved_names_drive_no_model(campaign):

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from tests.effect_values import with_term
 from vibroimpact.config.reading import check_config
+from vibroimpact.diagnosis.explanations import Term
 from vibroimpact.effects import places
-from vibroimpact.linear_stage.candidates import candidate_named
 from vibroimpact.reduction.reduced_model import build_model
 
 
@@ -26,9 +27,7 @@ def test_mass_between_points_is_one_at_a_point(values):
     (arc_length,) = places.arc_lengths(values, ["left_leg"])
     location = places.between(arc_length)
     there, named = (
-        build_model(
-            check_config(candidate_named(f"added_mass@{place}").variant(values, {"mass": 0.2}), "x")
-        )
+        build_model(check_config(with_term(values, Term("added_mass", place, (0.2,))), "x"))
         for place in (location, "left_leg")
     )
     assert np.allclose(there.omega[:6], named.omega[:6], rtol=1.0e-3)

@@ -66,7 +66,6 @@ def test_snakemake_refuses_a_damaged_configuration(tmp_path, content, part, reli
 REQUESTS = {
     # value of --config: target, how the sentence begins
     "draw_seed=abc": ("acceptance", "draw_seed = 'abc': give a whole number"),
-    "draw=0.5": ("discrepancy", "draw = '0.5': give a whole number"),
     "count=-1": ("acceptance", "count = -1: give how many campaigns"),
     "count=10000": ("acceptance", "count = 10000: give how many campaigns, at most 9999"),
     "shard=9/3": ("acceptance", "shard = 9/3: give i/n"),

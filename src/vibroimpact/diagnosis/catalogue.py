@@ -79,8 +79,6 @@ def locations(effect: Effect, values: Values, channels: Sequence[str], across: b
     """
     if effect.measured:
         return in_the_chain(channels)
-    if "voltage" in effect.needs:
-        return []
     length = on_structure.length_m(values)
     if effect.id in AT_A_POINT and length is not None:
         turns = [None, ACROSS_DEG] if across and effect.id != "added_mass" else [None]

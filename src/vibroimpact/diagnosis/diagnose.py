@@ -13,6 +13,7 @@ import xarray as xr
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
+from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.observation.attached_model import with_channel_points
 from vibroimpact.observation.signals import signals_of
 from vibroimpact.records import write_record, write_table, write_text
@@ -105,7 +106,9 @@ def run_diagnosis(
     except Refused as refusal:
         return Diagnosis(_refused(refusal, provenance or {}, watch))
     with watch("search"):
-        searched = search(comparison, EFFORTS[effort], log=log)
+        unseen = not_testable(found)
+        effects = [each for each in EFFECTS.values() if each.reported not in unseen]
+        searched = search(comparison, EFFORTS[effort], effects, log)
     with watch("floor"):
         best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
         level, floor = floor_of(comparison, best)

@@ -9,6 +9,10 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vibroimpact.verdict.content import Estimate, Verdict
 
 EFFORTS = ("quick", "standard", "thorough")
 
@@ -37,7 +41,6 @@ def run(options: argparse.Namespace) -> int:
     from vibroimpact.config.reading import load_config
     from vibroimpact.provenance import verdict_origin
     from vibroimpact.records import RecordError
-    from vibroimpact.reports.verdict_words import verdict_sentence
 
     from .diagnose import run_diagnosis, write_diagnosis
 
@@ -60,5 +63,36 @@ def run(options: argparse.Namespace) -> int:
     except (ConfigError, RecordError) as error:
         print(error, file=sys.stderr)
         return 1
-    print(f"{found.verdict.verdict}: {verdict_sentence(found.verdict)}")
+    print("\n".join(summary(found.verdict)))
     return 1 if found.verdict.verdict == "not_testable" else 0
+
+
+def summary(verdict: Verdict) -> list[str]:
+    """Return the lines that tell a verdict on a terminal."""
+    lines = [f"Verdict: {verdict.verdict.replace('_', ' ')}"]
+    if verdict.verdict == "not_testable":
+        return [*lines, *(row.message for row in verdict.checks if row.level == "refuse")]
+    lines += [
+        f"  {effect.id} at {effect.location}: {name} = {_estimate(estimate)}"
+        for effect in verdict.shown_effects()
+        for name, estimate in effect.parameters.items()
+    ]
+    shares = {"nothing": verdict.probability_none}
+    shares |= {" + ".join(row.ids): row.probability for row in verdict.ranking}
+    shares["something else"] = verdict.probability_something_else
+    lines += [f"  {chance:6.1%}  {name}" for name, chance in shares.items() if chance]
+    apart = verdict.misfit.taking_no_part()
+    if apart is not None and apart.before_dB is not None and apart.after_dB is not None:
+        lines.append(
+            f"  held-out spectra: {apart.before_dB:.2f} dB off before, {apart.after_dB:.2f} dB"
+            f" after, {apart.floor_dB:.2f} dB by chance"
+        )
+    return lines
+
+
+def _estimate(estimate: Estimate) -> str:
+    """Return "1044 (1001 to 1090) N s/m"."""
+    unit = "" if estimate.unit == "1" else f" {estimate.unit}"
+    if estimate.value is None or estimate.low is None or estimate.high is None:
+        return "not known"
+    return f"{estimate.value:.4g} ({estimate.low:.4g} to {estimate.high:.4g}){unit}"
