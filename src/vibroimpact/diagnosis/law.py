@@ -37,7 +37,7 @@ BANDS = 12  # logarithmic, each with a variance of its own
 PASSES = 12  # of the variances
 LEAST_POWER = 1.0e-12  # of the largest: of the prior of a force
 SMOOTHED = 9  # lines over which the power of a sensor is averaged
-SEEN = 0.5  # resolution from which a force is known
+SEEN = 0.7  # resolution from which a force is known
 AXES = "xyz"
 
 

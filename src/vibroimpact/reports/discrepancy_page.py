@@ -18,7 +18,7 @@ from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 from vibroimpact.verdict.content import Misfit, Verdict
 
-from .explanations import best_places, explanations_of
+from .explanations import best_places, chance_text, explanations_of
 from .number_text import digits, percent
 from .page_style import STYLE
 from .verdict_words import (
@@ -60,7 +60,7 @@ MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6
 WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
 # Meanings of the floor of the misfit.
-FREE_RUNS = "that between two free runs of the completed model"
+FREE_RUNS = "that between two free runs of one model"
 NOISE = "the scatter of the measurement itself, between periods or averages"
 
 
@@ -141,7 +141,7 @@ def _ranking_rows(verdict):
             {
                 "ids": effects_in_words(row["ids"]),
                 "location": ", ".join(map(place_in_words, (row.get("location") or "").split("+"))),
-                "probability": percent(row.get("probability")),
+                "probability": chance_text(row.get("probability")),
                 "score": digits(row["heldout_score"]),
                 "closed": percent(row["closed_fraction"]),
                 "judgement": judgement(verdict, row, ids not in known),
@@ -156,7 +156,7 @@ def _probabilities(verdict):
     return [
         {
             "words": row.words,
-            "probability": percent(row.probability),
+            "probability": chance_text(row.probability),
             "width": round(BAR_PX * row.probability),
         }
         for row in explanations_of(verdict)[:MOST_ROWS]

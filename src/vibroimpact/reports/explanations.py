@@ -68,6 +68,15 @@ def _agree(verdict: Verdict, rows: list[Explanation]) -> bool:
     return first.words == (NOTHING if verdict.verdict == "none" else SOMETHING_ELSE)
 
 
+def chance_text(value: float | None) -> str:
+    """Return a probability in per cent: no small one is called 0, no large one 100; - for none."""
+    if value is None:
+        return "-"
+    if value < 0.01:
+        return "below 1 %"
+    return "over 99 %" if value > 0.99 else f"{100.0 * value:.0f} %"
+
+
 def best_places(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the rows of a ranking in plain values, best first, without those that were only
     screened and whose effects are in a row before at another place.

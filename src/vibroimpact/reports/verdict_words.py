@@ -10,7 +10,7 @@ from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict
 
-from .explanations import NOTHING, explanations_of
+from .explanations import NOTHING, chance_text, explanations_of
 from .number_text import digits, percent
 
 
@@ -72,9 +72,7 @@ def _how_sure(verdict):
     rows = [row for row in explanations_of(verdict) if row.words == wanted]
     if not rows:
         return ""
-    chance = rows[0].probability
-    told = "over 99 %" if chance > 0.99 else percent(chance)
-    return f" The probability of this is {told}."
+    return f" The probability of this is {chance_text(rows[0].probability)}."
 
 
 def _nothing_missing(chance):

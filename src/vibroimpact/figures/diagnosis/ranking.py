@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import BLUE, GREY, ORANGE, label_of
-from vibroimpact.reports.explanations import Explanation, explanations_of
+from vibroimpact.reports.explanations import Explanation, chance_text, explanations_of
 from vibroimpact.verdict.content import Verdict
 
 from .states import empty_sheet
@@ -33,7 +33,7 @@ def ranking_figure(verdict: Verdict) -> list[Sheet]:
     first = rows[0]
     sheet = Sheet(
         "diagnosis_ranking",
-        f"Most probable: {first.words}, {_percent(first.probability)}",
+        f"Most probable: {first.words}, {chance_text(first.probability)}",
         CAPTION.format(left_out=words),
         size=(WIDTH_IN, 1.2 + 0.3 * max(len(shown), 3)),
     )
@@ -52,7 +52,7 @@ def _bars(sheet, axes, rows: list[Explanation]):
         bar.set_gid(gid)
     for place, value in zip(places, values, strict=True):
         axes.annotate(
-            _percent(value),
+            chance_text(value),
             (100.0 * value, place),
             (3, 0),
             textcoords="offset points",
@@ -65,10 +65,3 @@ def _bars(sheet, axes, rows: list[Explanation]):
     axes.set_xticks(range(0, 101, 20))
     axes.grid(False, axis="y")
     axes.set_xlabel(label_of("probability"))
-
-
-def _percent(value):
-    """Return a probability in per cent; no small one is called 0, no large one 100."""
-    if value < 0.01:
-        return "below 1 %"
-    return "over 99 %" if value > 0.99 else f"{100.0 * value:.0f} %"
