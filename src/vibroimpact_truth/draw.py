@@ -59,7 +59,6 @@ STRANGERS = {
         "loose_mass",
         "hysteretic_root",
         "drifting_gap",
-        "one_sided_stop",
         "tilted_plate",
     ),
     "acceptance": (

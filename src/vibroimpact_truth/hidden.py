@@ -349,6 +349,7 @@ EFFECTS = {
         quadratic_drag,
         coulomb_friction,
         clearance,
+        one_sided_stop,
         force_misalignment,
     )
 }
@@ -380,7 +381,6 @@ STRANGERS = {
         loose_mass,
         hysteretic_root,
         drifting_gap,
-        one_sided_stop,
         unmeasured_force,
         tilted_plate,
     )
@@ -411,6 +411,7 @@ FAMILIES = {
         "quadratic_stiffness",
         "saturation_stiffness",
         "clearance",
+        "one_sided_stop",
     ),
     "mass": ("added_mass", "mode_frequency_error"),
     "damping": ("modal_damping", "fluid_added_mass_damping", "coulomb_friction"),

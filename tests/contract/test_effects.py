@@ -32,6 +32,7 @@ CATALOGUE = {
     "quadratic_drag",
     "coulomb_friction",
     "clearance",
+    "one_sided_stop",
     "force_misalignment",
     "shaker_interaction",
     "sensor_gain",
@@ -94,7 +95,7 @@ def test_variant_is_valid_at_the_ends_of_its_range(study_config, name, unit):
     check_config(with_term(values, term), name)
 
 
-@pytest.mark.parametrize("name", sorted(set(OF_THE_MODEL) - {"clearance"}))
+@pytest.mark.parametrize("name", sorted(set(OF_THE_MODEL) - {"clearance", "one_sided_stop"}))
 def test_an_effect_is_added_to_a_model_that_has_it(study_config, name):
     """As a second rod at the shaker, or a second mass. A second stop is refused as such."""
     values = study_config.model_dump(mode="json")

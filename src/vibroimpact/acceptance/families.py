@@ -33,6 +33,7 @@ FAMILIES = {
         "quadratic_stiffness",
         "saturation_stiffness",
         "clearance",
+        "one_sided_stop",
     ),
     "mass": ("added_mass", "mode_frequency_error"),
     "damping": ("modal_damping", "fluid_added_mass_damping", "coulomb_friction"),

@@ -56,6 +56,7 @@ SAME_QUANTITY = {
     "quadratic_drag": ("drag", "coefficient"),
     "coulomb_friction": ("force", "force"),
     "clearance": ("half_gap", "half_gap"),
+    "one_sided_stop": ("distance", "gap"),
     "force_misalignment": ("angle", "angle"),
     "sensor_gain": ("factor", "factor"),
 }

@@ -20,6 +20,7 @@ AT_A_POINT = (
     "saturation_stiffness",
     "coulomb_friction",
     "clearance",
+    "one_sided_stop",
 )
 PLACES = 8  # along a tube, for what acts at a point; the place is fitted from there
 ACROSS_DEG = 90.0
@@ -63,7 +64,8 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "plate_flexibility": [(0.05, 0.3), (0.2, 0.3), (0.7, 0.3), (2.5, 0.3)],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
     "saturation_stiffness": [(2.0, 1.0)],
-    "clearance": [(0.15, 10.0), (0.6, 10.0)],
+    "clearance": [(0.2, 4.0), (0.6, 4.0)],
+    "one_sided_stop": [(0.2, 4.0), (0.5, 4.0), (1.0, 4.0)],
     "foliate_lands": _turned(4),
     "foliate_obstacle": _turned(4, 0.6),
     "foliate_trefoil": _turned(3, 0.6),
@@ -81,14 +83,22 @@ def locations(effect: Effect, values: Values, channels: Sequence[str], across: b
         return in_the_chain(channels)
     length = on_structure.length_m(values)
     if effect.id in AT_A_POINT and length is not None:
-        turns = [None, ACROSS_DEG] if across and effect.id != "added_mass" else [None]
         return [
             on_structure.between(length * (number + 0.5) / count, turned)
-            for turned, count in zip(turns, (PLACES, PLACES // 2), strict=False)
+            for turned, count in _turns(effect.id, across)
             for number in range(count)
         ]
     found = effect.locations(values)
     return found[:1] if effect.id in ALL_FIRST else found
+
+
+def _turns(effect_id: str, across: bool) -> list[tuple[float | None, int]]:
+    """Return [(direction in degrees from that of the force, places along a tube)]."""
+    if effect_id == "one_sided_stop":
+        return [(0.0, PLACES), (180.0, PLACES)]
+    if across and effect_id != "added_mass":
+        return [(None, PLACES), (ACROSS_DEG, PLACES // 2)]
+    return [(None, PLACES)]
 
 
 def far_terms(effect: Effect, location: str, sizes: Mapping[str, float]) -> Iterator[Term]:

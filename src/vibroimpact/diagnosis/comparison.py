@@ -14,7 +14,7 @@ from .bench import Bench
 from .constants import SCREENED_S, SHARP, STRETCH_S, WIDE
 from .explanations import Structure
 from .sizes import sizes_of
-from .stretches import Rates, held_band, rates_of, stretches_of, valid_samples
+from .stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 
 FITTED, SCREENED, APART = 3, 2, 4  # stretches
 BEGIN = 0.2  # of a record: where its first stretch begins
@@ -98,6 +98,15 @@ class Comparison:
                 for record, _ in self._spread(self.signals.fit(), FITTED, STRETCH_S)
             ]
         return self._bench(places, STRETCH_S, SHARP)
+
+    def led(self, bench: Bench, lead_s: float) -> tuple[tuple[Stretch, ...], float]:
+        """Return (the stretches of a Bench with what came before them, seconds of that): lead_s, or
+        less where a record does not have so much before.
+        """
+        duration = bench.schedule.duration
+        lead = min(lead_s, *(stretch.start_s for stretch in bench.stretches))
+        places = [(stretch.record, stretch.start_s - lead) for stretch in bench.stretches]
+        return self._cut(places, duration + lead), lead
 
     def start(self, record: int, number: int, duration_s: float) -> float:
         """Return where the number-th stretch of a record begins, s."""

@@ -17,8 +17,10 @@ INDEPENDENT = 0.1
 FORGET_S = 0.7  # of a stretch: until its unknown start is forgotten
 STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that is screened
 
-# Gain in mean log power, on stretches that took no part, from which an effect is asked for.
-LEAST_GAIN = 0.05
+# Gain in mean log power, on stretches that took no part, that one more effect must bring: at least,
+# and as a share of what is gained without it.
+LEAST_GAIN, LEAST_SHARE = 0.05, 0.03
+
 
 # Decision: gains in mean log power on stretches that took no part.
 NULL_GAIN, NULL_WIDTH = 0.12, 0.02  # at which an effect is as likely as nothing, and how sharply
@@ -29,3 +31,8 @@ RIVAL, RIVAL_SHARE = (
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
+
+
+def needed_gain(gained: float) -> float:
+    """Return the gain that one more effect must bring beside what gains so much."""
+    return LEAST_GAIN + LEAST_SHARE * max(gained, 0.0)

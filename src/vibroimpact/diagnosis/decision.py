@@ -67,27 +67,26 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     """
     distinct: dict[tuple[str, ...], Hypothesis] = {}
     for each in sorted(search.hypotheses, key=worth, reverse=True):
-        distinct.setdefault(each.ids, each)
+        if not _superfluous(each, search.hypotheses):
+            distinct.setdefault(each.ids, each)
     hypotheses = list(distinct.values())[:SHOWN]
     gains = np.array([worth(each) for each in hypotheses])
-    if not gains.size:
-        return Decision("none", (), 1.0, 0.0, 0.0, 0.0)
-    best = float(gains[0])
-    nothing = float(expit((constants.NULL_GAIN - best) / constants.NULL_WIDTH))
+    best = float(gains[0]) if gains.size else 0.0
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
+    no_effect = float(expit((constants.NULL_GAIN - best) / constants.NULL_WIDTH))
+    nothing = no_effect * (1.0 - unexplained)
     share = best / max(best + max(rest, 0.0), 1.0e-12)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
     chance = np.exp((gains - best) / width)
-    chance *= (1.0 - nothing) * (1.0 - unexplained) / chance.sum()
+    chance *= (1.0 - no_effect) * (1.0 - unexplained) / chance.sum()
     ranked = tuple(
         (each, float(own))
         for each, own in zip(hypotheses, chance, strict=True)
         if own > LEAST_SHOWN
-    ) or ((hypotheses[0], float(chance[0])),)
-    something_else = (1.0 - nothing) * unexplained
+    ) or tuple(zip(hypotheses[:1], map(float, chance[:1]), strict=True))
     return Decision(
-        _verdict(nothing, unexplained, share, ranked), ranked, nothing, something_else, rest, share
+        _verdict(no_effect, unexplained, share, ranked), ranked, nothing, unexplained, rest, share
     )
 
 
@@ -98,14 +97,25 @@ def worth(hypothesis: Hypothesis) -> float:
     return min(hypothesis.apart, hypothesis.gain)
 
 
+def _superfluous(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+    """Return whether some effects of a hypothesis alone gain about as much."""
+    own = {term.effect_id for term in hypothesis.point.terms}
+    return any(
+        {term.effect_id for term in other.point.terms} < own
+        and worth(hypothesis) - worth(other) < constants.needed_gain(worth(other))
+        for other in others
+    )
+
+
 def _verdict(
-    nothing: float, unexplained: float, share: float, ranked: Sequence[tuple[Hypothesis, float]]
+    no_effect: float, unexplained: float, share: float, ranked: Sequence[tuple[Hypothesis, float]]
 ) -> Conclusion:
     """Return the conclusion from probabilities."""
-    if nothing >= 0.5:
-        return "none"
     if unexplained >= 0.5:
-        return "partly_explained" if share >= constants.PARTLY else "unknown"
+        part = share >= constants.PARTLY and no_effect < 0.5
+        return "partly_explained" if part else "unknown"
+    if no_effect >= 0.5:
+        return "none"
     total = sum(chance for _, chance in ranked)
     return "named" if ranked[0][1] >= constants.NAMED * total else "ambiguous"
 

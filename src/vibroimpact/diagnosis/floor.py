@@ -24,6 +24,7 @@ from .gauss_newton import fit
 from .search import Hypothesis
 from .stretches import Stretch
 
+LEAD_S = 2.0  # of a free run before its stretch
 WINDOW = ("kaiser", 9.0)  # of the interpolation: images 90 dB down
 PASSES = 2  # of the fit of the nuisances
 
@@ -42,7 +43,8 @@ def floor_of(comparison: Comparison, best: Hypothesis) -> tuple[float, float]:
         tuple(GAIN_SD * rng.standard_normal(channels)),
     )
     level = mean_log_power(bench, best.fit.lines)
-    stretches = _played(comparison, bench, played, rng)
+    filtered = comparison.structure.campaign.attrs.get("antialias") != "none"
+    stretches = _played(comparison, bench, played, rng) if filtered else None
     if stretches is None:
         return level, np.nan
     own = replace(bench, stretches=stretches)
@@ -70,23 +72,28 @@ def _noise(comparison: Comparison, samples: int, rng: np.random.Generator) -> np
 def _played(
     comparison: Comparison, bench: Bench, point: Point, rng: np.random.Generator
 ) -> tuple[Stretch, ...] | None:
-    """Return the stretches with the motion of a Point that runs free, None where it fails."""
+    """Return the stretches with the motion of a Point that runs free, None where it fails.
+
+    The run begins before the stretch, so that the held run does not know its start, as it does not
+    know that of the measurement.
+    """
     model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    led, lead = comparison.led(bench, LEAD_S)
+    schedule = replace(bench.schedule, duration=bench.schedule.duration + lead)
     free = np.zeros(len(chain.gain))
-    runs = [
-        HeldLane(model, each.gap, each.force, np.zeros_like(each.motion), free)
-        for each in bench.stretches
-    ]
-    up = round(bench.schedule.steps_per_second / bench.schedule.sampling_frequency)
-    motion = hold(runs, bench.schedule, bench.threads).motion
+    runs = [HeldLane(model, each.gap, each.force, np.zeros_like(each.motion), free) for each in led]
+    motion = hold(runs, schedule, bench.threads).motion
     if not np.isfinite(motion).all():
         return None
+    up = round(schedule.steps_per_second / schedule.sampling_frequency)
+    first = round(lead * schedule.sampling_frequency) * up
     held = measures_motion(bench)
     out = []
     for each, own in zip(bench.stretches, motion, strict=True):
         own = own * chain.gain[:, None] + _noise(comparison, own.shape[1], rng)
         fine = signal.resample_poly(own, up, 1, axis=-1, window=WINDOW, padtype="edge")
-        # the motion begins one step before the first sample
-        dense = np.pad(fine, ((0, 0), (1, len(each.motion))), mode="edge")[:, : len(each.motion)]
+        # the motion of a stretch begins one step before its first sample
+        count = len(each.motion)
+        dense = np.pad(fine, ((0, 0), (1, count)), mode="edge")[:, first : first + count]
         out.append(replace(each, motion=dense.T * held))
     return tuple(out)

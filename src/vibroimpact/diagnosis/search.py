@@ -21,7 +21,7 @@ from .bench import (
 )
 from .catalogue import within_priors
 from .comparison import Comparison
-from .constants import LEAST_GAIN
+from .constants import needed_gain
 from .coordinates import effect_coordinates, nuisance_coordinates
 from .explanations import Point
 from .gauss_newton import Fit, columns, fit
@@ -115,7 +115,7 @@ def search(
         best = max(new, key=lambda each: each.gain)
         for each in sorted(new, key=lambda each: -each.gain):
             log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
-        if best.apart - base.apart < LEAST_GAIN:
+        if best.apart - base.apart < needed_gain(base.apart):
             break
         if size > 1:
             found |= _exchanged(at, best, nothing, log)

@@ -23,6 +23,7 @@ from . import (
     lateral_stinger,
     modal_damping,
     mode_frequency_error,
+    one_sided_stop,
     plate_flexibility,
     preload,
     quadratic_drag,

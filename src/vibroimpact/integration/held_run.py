@@ -21,7 +21,7 @@ import numpy as np
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import Run, Schedule, start_amplitudes, start_state, to_lanes
-from .contact_convergence import IntegrationError, checked_contraction
+from .contact_convergence import CONTRACTION_LIMIT, IntegrationError, checked_contraction
 from .kernel_layout import MODE_COEFFICIENTS, ModalLayout
 from .kernels.lanes import LANES
 from .kernels.tables import Contact, Hold, Laws, Modal, Output, State
@@ -304,7 +304,7 @@ class HeldRun(Run):
             np.array([run.gap for run in runs]),
             np.stack([offset for offset, _ in self.places[: len(runs)]], axis=-1),
             self._drive,
-            max(prepared.contraction(run.model) for run in runs),
+            CONTRACTION_LIMIT,  # the same in every batch, so that neighbours do not matter
         )
 
     def _drive(self, first, count):

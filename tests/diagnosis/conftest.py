@@ -1,0 +1,33 @@
+"""A tube between two plates, and a campaign of its forces at three loads."""
+
+import numpy as np
+import pytest
+
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset
+from vibroimpact.diagnosis.comparison import Comparison
+from vibroimpact.diagnosis.explanations import Structure
+from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.observation.signals import signals_of
+
+RATE, SECONDS, GAP = 2048.0, 8.0, 2.8886e-4
+LOADS = (0.8, 6.0, 20.0)
+
+
+@pytest.fixture(scope="session")
+def comparison(study_config):
+    """The study's tube beside records of band-limited forces, in which sensors measure noise."""
+    rng, samples = np.random.default_rng(5), int(RATE * SECONDS)
+    points = {"apex": (0, 0, 1.0), "left": (-0.3, 0, 0.5), "right": (0.3, 0, 0.5)}
+    channels = [
+        Channel(f"{name}_{axis}", place, direction, "m s-2", "acceleration")
+        for name, place in points.items()
+        for axis, direction in (("x", (1, 0, 0)), ("y", (0, 1, 0)))
+    ]
+    drive = Channel("shaker", (-0.2121, 0.0, 0.9121), (0.0, 1.0, 0.0), "N", "generic")
+    force = np.stack(
+        [load * band_limited_noise(rng, samples, RATE, (5.0, 200.0))[None] for load in LOADS]
+    )
+    response = 1.0e-3 * rng.standard_normal((len(LOADS), len(channels), samples))
+    levels = [Level(f"load {load}", GAP) for load in LOADS]
+    campaign = campaign_dataset(force, response, channels, [drive], levels, RATE, start_up="rest")
+    return Comparison(signals_of(campaign), Structure(study_config, campaign))

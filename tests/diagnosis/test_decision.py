@@ -1,0 +1,85 @@
+"""Conclusions from gains, and that they never contradict themselves."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vibroimpact.diagnosis.decision import ambiguity, decide
+from vibroimpact.diagnosis.explanations import Point, Term
+from vibroimpact.diagnosis.search import Hypothesis, Search
+
+VALUES = {"support_offset": (1e-5, 1e-5)}
+
+
+def hypothesis(gain, *places):
+    """A Hypothesis of effects at places, with a gain."""
+    terms = tuple(
+        Term(effect, location, VALUES.get(effect, (1.5,)))
+        for effect, location in (place.split("@") for place in places)
+    )
+    return Hypothesis(SimpleNamespace(point=Point(terms)), gain, gain, 0.05)
+
+
+def decided(*hypotheses, rest=0.3):
+    nothing = Hypothesis(SimpleNamespace(point=Point()), 0.0, 0.0, 0.0)
+    return decide(Search(nothing, hypotheses), 5.0 + rest, 5.0)
+
+
+def test_no_gain_is_nothing_missing():
+    found = decided(hypothesis(0.01, "gap@all"), hypothesis(-0.2, "hertz@all"))
+    assert found.verdict == "none" and found.nothing > 0.95
+
+
+def test_a_clear_gain_is_named():
+    found = decided(hypothesis(1.5, "contact_damping@all"), hypothesis(0.7, "hunt_crossley@all"))
+    assert found.verdict == "named" and found.best.ids == ("contact_damping",)
+
+
+def test_rivals_are_ambiguous():
+    found = decided(hypothesis(1.0, "contact_damping@all"), hypothesis(0.99, "hunt_crossley@all"))
+    assert found.verdict == "ambiguous"
+    assert sorted(map(tuple, ambiguity(found)[0])) == [("contact_damping",), ("hunt_crossley",)]
+
+
+def test_a_gap_is_told_with_its_exact_alias():
+    sets, chances = ambiguity(decided(hypothesis(2.0, "gap@all")))
+    assert sets == [["gap"], ["sensor_gain"]] and sum(chances) <= 1.0 + 1e-9
+    assert ambiguity(decided(hypothesis(2.0, "gap@left")))[0] == [["gap"]]
+
+
+def test_a_second_effect_that_gains_nothing_is_left_out():
+    found = decided(
+        hypothesis(1.5, "contact_damping@all"),
+        hypothesis(1.51, "contact_damping@all", "support_offset@left"),
+    )
+    assert found.best.ids == ("contact_damping",)
+    pair = decided(
+        hypothesis(1.5, "contact_damping@all"),
+        hypothesis(2.5, "contact_damping@all", "support_offset@left"),
+    )
+    assert pair.best.ids == ("contact_damping", "support_offset")
+
+
+@pytest.mark.parametrize("gain", [0.0, 0.05, 0.3, 3.0])
+@pytest.mark.parametrize("rest", [0.0, 1.0, 2.0, 5.0])
+def test_probabilities_and_conclusion_agree(gain, rest):
+    found = decided(hypothesis(gain, "gap@left"), hypothesis(0.9 * gain, "hertz@all"), rest=rest)
+    total = found.nothing + found.something_else + sum(chance for _, chance in found.ranked)
+    assert total == pytest.approx(1.0, abs=0.02)
+    if found.verdict == "none":
+        assert found.something_else < 0.5
+    if found.verdict == "unknown":
+        assert all(chance < 0.5 for _, chance in found.ranked)
+    if found.verdict == "named":
+        assert found.ranked[0][1] > 0.3
+
+
+def test_what_stays_far_above_the_floor_is_something_else():
+    assert decided(hypothesis(0.01, "gap@left"), rest=4.0).verdict == "unknown"
+    assert decided(hypothesis(5.0, "gap@left"), rest=2.5).verdict == "partly_explained"
+
+
+def test_a_floor_that_is_not_known_decides_nothing():
+    search = Search(hypothesis(0.0), (hypothesis(1.0, "gap@left"),))
+    assert decide(search, 9.0, np.nan).verdict == "named"

@@ -1,0 +1,58 @@
+"""Coordinates, and Gauss-Newton on the holding force of a played measurement."""
+
+import numpy as np
+import pytest
+
+from tests.diagnosis.played import played
+from vibroimpact.diagnosis.coordinates import (
+    effect_coordinates,
+    nuisance_coordinates,
+    to_point,
+    to_vector,
+)
+from vibroimpact.diagnosis.explanations import Point, Term
+from vibroimpact.diagnosis.gauss_newton import fit
+
+
+def test_coordinates_come_back(comparison):
+    terms = (
+        Term("gap", "left", (0.8,)),
+        Term("support_offset", "right", (3e-5, -2e-5)),
+        Term("cubic_stiffness", "arc_355_6mm_turned_m9_5deg", (2e9,)),
+    )
+    point = Point(terms, (0.001, -0.002), (0.1,), (0.0, 0.01))
+    rows = [*effect_coordinates(terms, comparison.sizes), *nuisance_coordinates(2, 2)]
+    back = to_point(to_vector(point, rows), rows, point)
+    assert [term.location for term in back.terms] == [term.location for term in terms]
+    for one, other in zip(back.terms, terms, strict=True):
+        assert one.values == pytest.approx(other.values)
+    assert back.frequency == pytest.approx((0.001, -0.002)) and back.gain[1] == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    ("hidden", "start", "tolerance"),
+    [
+        (Term("gap", "all", (0.8,)), (1.0,), 0.01),
+        (Term("support_offset", "left", (4e-5, -6e-5)), (0.0, 0.0), 0.03),
+        (Term("contact_damping", "all", (400.0,)), (0.0,), 0.05),
+    ],
+    ids=["gap", "offset", "damping"],
+)
+def test_hidden_contact_is_measured_from_remote_sensors(comparison, hidden, start, tolerance):
+    """From the model as given; none of the sensors is at a support."""
+    bench = played(comparison.fitted(), Point((hidden,)))
+    begun = Point((Term(hidden.effect_id, hidden.location, start),))
+    found = fit(bench, begun, effect_coordinates(begun.terms, comparison.sizes), 8)
+    size = max(map(abs, hidden.values))
+    np.testing.assert_allclose(found.point.terms[0].values, hidden.values, atol=tolerance * size)
+
+
+def test_a_mass_is_found_where_it_sits(comparison):
+    bench = played(comparison.fitted(), Point((Term("added_mass", "arc_800_0mm", (0.06,)),)))
+    begun = Point((Term("added_mass", "arc_900_0mm", (0.02,)),))
+    found = fit(bench, begun, effect_coordinates(begun.terms, comparison.sizes), 12)
+    (term,) = found.point.terms
+    place = float(term.location.removeprefix("arc_").removesuffix("mm").replace("_", "."))
+    assert place == pytest.approx(800.0, abs=5.0) and term.values[0] == pytest.approx(
+        0.06, rel=0.02
+    )
