@@ -1,11 +1,12 @@
-# The figures and the report page of a discrepancy run.
+# The figures and the report page of a diagnosis.
 
-DISCREPANCY_FIGURES = (
-    "discrepancy_place",
-    "discrepancy_map",
-    "discrepancy_psd",
-    "discrepancy_ranking",
-    "discrepancy_profiles",
+DIAGNOSIS_FIGURES = (
+    "diagnosis_place",
+    "diagnosis_holding",
+    "diagnosis_law",
+    "diagnosis_ranking",
+    "diagnosis_free_sensor",
+    "diagnosis_psd",
 )
 
 
@@ -13,14 +14,13 @@ rule _discrepancy_report:
     input:
         template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
         verdict=f"{DISCREPANCY}/verdict.json",
-        map=f"{DISCREPANCY}/map.nc",
-        map_after=f"{DISCREPANCY}/map_after.nc",
-        ranking=f"{DISCREPANCY}/ranking.csv",
+        evidence=f"{DISCREPANCY}/evidence.nc",
+        spectra=f"{DISCREPANCY}/spectra.nc",
     output:
         page=f"{DISCREPANCY}/report.html",
         figures=[
             f"{DISCREPANCY}/figures/{name}.{suffix}"
-            for name in DISCREPANCY_FIGURES
+            for name in DIAGNOSIS_FIGURES
             for suffix in ("png", "pdf", "csv", "txt")
         ],
     log:
@@ -35,7 +35,6 @@ rule _discrepancy_report:
         library=library("discrepancy_report"),
         config=MODEL.model_dump(mode="json"),
         name=LOOKED_AT,
-        compared_s=EFFORTS[EFFORT].compared_s,
     message:
         f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"
     script:

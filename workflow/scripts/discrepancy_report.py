@@ -1,28 +1,29 @@
-"""Draw the figures of a discrepancy run and write its report page."""
+"""Draw the figures of a diagnosis and write its report page."""
 
 from pathlib import Path
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.discrepancy.results_folder import read_results
-from vibroimpact.figures.discrepancy.sheets import discrepancy_figures
+from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.job_log import redirect_output
-from vibroimpact.records import write_text
+from vibroimpact.records import read_record, write_text
 from vibroimpact.reports.discrepancy_page import discrepancy_page
+from vibroimpact.verdict.file import read_verdict
 
 redirect_output(snakemake.log[0])
-folder = Path(snakemake.output.page).parent
-results = read_results(folder)
-sheets = discrepancy_figures(results, check_config(snakemake.params.config, "model"))
+files, folder = snakemake.input, Path(snakemake.output.page).parent
+verdict = read_verdict(files.verdict)
+sheets = diagnosis_figures(
+    read_record(files.evidence),
+    read_record(files.spectra),
+    verdict,
+    check_config(snakemake.params.config, "model"),
+)
 for sheet in sheets:
     sheet.save(folder / "figures")
 shown = [folder / "figures" / f"{sheet.name}.png" for sheet in sheets if sheet.tables]
 write_text(
     discrepancy_page(
-        snakemake.params.name,
-        results.verdict,
-        shown,
-        compared_s=snakemake.params.compared_s,
-        model=str(folder / "model_updated.yaml"),
+        snakemake.params.name, verdict, shown, model=str(folder / "model_updated.yaml")
     ),
     snakemake.output.page,
 )

@@ -10,6 +10,8 @@ import numpy as np
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
+from vibroimpact.observation.sensor_chain import Measuring
+from vibroimpact.reduction.modal_model import ModalModel
 
 from .constants import FORGET_S, INDEPENDENT
 from .explanations import Point, Structure
@@ -17,6 +19,7 @@ from .stretches import Stretch
 
 BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
 FIRST_BAND = 4  # lines in the lowest
+END_S = 0.3  # of a run: before its end
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +53,8 @@ def held_records(
 
     The number is -1 where the values of a Point make no model. free: channels without a damper.
     """
-    runs, index = [], np.full((len(points), len(bench.stretches)), -1)
-    strength = np.where(measures_motion(bench), bench.strength, 0.0)
-    strength[list(free)] = 0.0
+    runs: list[HeldLane] = []
+    index = np.full((len(points), len(bench.stretches)), -1)
     for number, point in enumerate(points):
         try:
             model, chain = bench.structure.model(point), bench.structure.measuring(point)
@@ -60,18 +62,50 @@ def held_records(
             continue
         for place, stretch in enumerate(bench.stretches):
             index[number, place] = len(runs)
-            runs.append(
-                HeldLane(
-                    model,
-                    stretch.gap,
-                    stretch.force,
-                    undelayed(stretch.motion, chain.delay, bench.schedule.steps_per_second),
-                    strength,
-                    1.0 / chain.gain,
-                    1.0 / chain.force_gain,
-                )
-            )
+            runs.append(lane_of(bench, stretch, model, chain, free))
     return hold(runs, bench.schedule, bench.threads, bench.held_below_Hz), index
+
+
+def lane_of(
+    bench: Bench, stretch: Stretch, model: ModalModel, chain: Measuring, free: Sequence[int] = ()
+) -> HeldLane:
+    """Return the run of a model, as a Measuring chain sees it, on a stretch; free: channels without
+    a damper.
+    """
+    strength = np.where(measures_motion(bench), bench.strength, 0.0)
+    strength[list(free)] = 0.0
+    return HeldLane(
+        model,
+        stretch.gap,
+        stretch.force,
+        undelayed(stretch.motion, chain.delay, bench.schedule.steps_per_second),
+        strength,
+        1.0 / chain.gain,
+        1.0 / chain.force_gain,
+    )
+
+
+def settled(bench: Bench) -> np.ndarray:
+    """Return (sample,) numbers of the samples of a run between its unknown start and its end, near
+    which a filter knows less.
+    """
+    rate = bench.schedule.sampling_frequency
+    return np.arange(round(FORGET_S * rate), bench.schedule.samples - round(END_S * rate))
+
+
+def in_band(bench: Bench, series: np.ndarray, band: tuple[float, float], order: int) -> np.ndarray:
+    """Return (.., sample): the settled samples of a series (.., sample) of a run within a band in
+    Hz, differentiated so often in time.
+    """
+    rate, count = bench.schedule.sampling_frequency, series.shape[-1]
+    inside = settled(bench)
+    fade = np.interp(np.arange(count), [0, inside[0], inside[-1], count], [0.0, 1.0, 1.0, 0.0])
+    frequency = np.fft.rfftfreq(count, 1.0 / rate)
+    factor = (2j * np.pi * frequency) ** order
+    factor = factor * ((frequency >= band[0]) & (frequency <= band[1]))
+    smooth = np.sin(0.5 * np.pi * fade) ** 2
+    lines = np.fft.rfft((series - series.mean(axis=-1, keepdims=True)) * smooth, axis=-1)
+    return np.fft.irfft(lines * factor, count, axis=-1)[..., inside]
 
 
 def measures_motion(bench: Bench) -> np.ndarray:

@@ -1,7 +1,8 @@
 """The report of one campaign as a single HTML file with embedded figures.
 
-It tells one story: what is missing, how sure, where it shows, what adding it does on records that
-took no part, what was ruled out and why, and what to do next.
+It tells one story: what was concluded and how sure, where model and measurement part, the law that
+the records demand, the effect with its values, what adding it does on records that took no part,
+what was ruled out and why, and what would separate what is left.
 """
 
 from __future__ import annotations
@@ -12,12 +13,12 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from vibroimpact.discrepancy.results_folder import best_places
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 from vibroimpact.verdict.content import Misfit, Verdict
 
+from .explanations import best_places, chance_text, explanations_of
 from .number_text import digits, percent
 from .page_style import STYLE
 from .verdict_words import (
@@ -39,24 +40,27 @@ SPLITS = {
     "selection": "selection: the name was chosen with them",
     "fit": "fitted",
 }
+HEADINGS = {
+    "named": "What is missing",
+    "partly_explained": "What is missing, as far as it is known",
+    "ambiguous": "The most probable of them",
+}
 # Section of the page by the figure's name; others go to what adding the effect does.
 SECTIONS = {
-    "discrepancy_place": "what",
+    "diagnosis_ranking": "sure",
+    "diagnosis_holding": "where",
+    "where": "where",
+    "diagnosis_law": "law",
+    "diagnosis_place": "what",
     "mounting": "what",
     "restoring_force": "what",
-    "discrepancy_profiles": "sure",
-    "discrepancy_map": "where",
-    "where": "where",
-    "discrepancy_ranking": "ruled_out",
 }
 BAR_PX = 240  # of a probability of 1
-LEAST_SHOWN = 0.005  # of the probabilities of explanations
 MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6
 WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
-NOTHING_COMPARED = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
 # Meanings of the floor of the misfit.
-SEEDS = "that between two seeds of the completed model"
+FREE_RUNS = "that between two free runs of one model"
 NOISE = "the scatter of the measurement itself, between periods or averages"
 
 
@@ -64,8 +68,7 @@ def discrepancy_page(
     name: str,
     verdict: Verdict,
     figures: Iterable[Path],
-    floor: str = SEEDS,
-    compared_s: float | None = None,
+    floor: str = FREE_RUNS,
     model: str | None = None,
 ) -> str:
     """Return the HTML page.
@@ -73,8 +76,7 @@ def discrepancy_page(
     name: of the campaign.
     verdict: its Verdict.
     figures: PNG files in their order, each with its caption in a .txt file of the same name.
-    floor: meaning of the floor of the misfit, SEEDS or NOISE.
-    compared_s: s of each record that the search compared, None where the structure was identified.
+    floor: meaning of the floor of the misfit, FREE_RUNS or NOISE.
     model: path of the completed model, model_updated.yaml beside the page where None.
     """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
@@ -85,21 +87,22 @@ def discrepancy_page(
     ]
     shown = verdict.shown_effects()
     return template.render(
+        misfit=[*_misfit_rows(verdict)],
+        p_before=_chance(verdict.p_global_before),
+        p_after=_chance(verdict.p_global_after),
         style=STYLE,
         name=name,
         verdict=verdict,
         floor=floor,
-        compared_s=None if compared_s is None else digits(compared_s),
         sentence=verdict_sentence(verdict),
         withdrawn=withdrawn_sentence(verdict),
         effects=[*_effect_rows(verdict)],
         families=any(effect.family for effect in shown),
         laws=any(effect.law_fits for effect in shown),
         completed=bool(shown),
+        heading=HEADINGS.get(verdict.verdict, "The structure"),
+        separates=bool(verdict.next_measurement),
         probabilities=_probabilities(verdict),
-        misfit=[*_misfit_rows(verdict)],
-        p_before=probability_text(verdict.p_global_before),
-        p_after=probability_text(verdict.p_global_after),
         regions=[_region_row(region) for region in verdict.regions[:MOST_REGIONS]],
         where_it_shows=where_it_shows(verdict),
         broken="; ".join(tests),
@@ -115,10 +118,15 @@ def discrepancy_page(
     )
 
 
+def _chance(value):
+    """Return a p-value as text, None where there is none."""
+    return None if value is None else probability_text(value)
+
+
 def _by_section(figures):
     """Return {section: [{name, caption, data}]} of PNG files."""
     sections: dict[str, list] = {
-        section: [] for section in ("what", "sure", "where", "adding", "ruled_out")
+        section: [] for section in ("sure", "where", "law", "what", "adding", "ruled_out")
     }
     for figure in embedded(figures):
         sections[SECTIONS.get(figure["name"], "adding")].append(figure)
@@ -133,7 +141,7 @@ def _ranking_rows(verdict):
             {
                 "ids": effects_in_words(row["ids"]),
                 "location": ", ".join(map(place_in_words, (row.get("location") or "").split("+"))),
-                "probability": percent(row.get("probability")),
+                "probability": chance_text(row.get("probability")),
                 "score": digits(row["heldout_score"]),
                 "closed": percent(row["closed_fraction"]),
                 "judgement": judgement(verdict, row, ids not in known),
@@ -144,26 +152,14 @@ def _ranking_rows(verdict):
 
 
 def _probabilities(verdict):
-    """Return [{words, probability, width of its bar in pixels}] of nothing, something else and the
-    explanations that have a probability worth a row, at all places together, the most probable
-    first.
-    """
-    known: dict[tuple[str, ...], float] = {}
-    for row in verdict.ranking:
-        if row.probability is not None:
-            ids = tuple(sorted(row.ids))
-            known[ids] = known.get(ids, 0.0) + row.probability
-    sets = zip(verdict.ambiguity_set, verdict.ambiguity_probability, strict=False)
-    known |= {tuple(sorted(ids)): probability for ids, probability in sets}
-    rows = [
-        (effects_in_words(ids), chance) for ids, chance in known.items() if chance >= LEAST_SHOWN
-    ]
-    rows.append(("nothing is missing", verdict.probability_none))
-    rows.append(("something that is not in the catalogue", verdict.probability_something_else))
-    told = sorted([row for row in rows if row[1] is not None], key=lambda row: -row[1])
+    """Return [{words, probability, width of its bar in pixels}], the most probable first."""
     return [
-        {"words": words, "probability": percent(value), "width": round(BAR_PX * value)}
-        for words, value in told[:MOST_ROWS]
+        {
+            "words": row.words,
+            "probability": chance_text(row.probability),
+            "width": round(BAR_PX * row.probability),
+        }
+        for row in explanations_of(verdict)[:MOST_ROWS]
     ]
 
 
@@ -213,14 +209,21 @@ def _effect_rows(verdict):
         for name, value in [
             (name, for_reading(row)) for name, row in effect.parameters.items()
         ] or [("", None)]:
-            cells = {key: digits(value[key]) if value else "" for key in ("value", "low", "high")}
             yield {
                 **head,
                 "parameter": name.replace("_", " "),
-                **cells,
+                "value": digits(value["value"]) if value else "",
+                "interval": _interval(value) if value else "",
                 "unit": unit_text(value["unit"]).strip() or "-" if value else "",
             }
             head = dict.fromkeys(head, "")
+
+
+def _interval(value):
+    """Return "0.128 to 0.171", "not known" where an end is missing."""
+    if value["low"] is None or value["high"] is None:
+        return "not known"
+    return f"{digits(value['low'])} to {digits(value['high'])}"
 
 
 def _where(location, effect):
@@ -231,10 +234,9 @@ def _where(location, effect):
 
 def _misfit_rows(verdict):
     for split, words in SPLITS.items():
-        misfit = getattr(verdict.misfit, split)
-        if misfit is None and split in ("verification", "selection"):
+        misfit: Misfit | None = getattr(verdict.misfit, split)
+        if misfit is None or misfit.before_dB is None:
             continue
-        misfit = misfit or NOTHING_COMPARED
         yield {
             "records": words,
             "before": digits(misfit.before_dB),
@@ -250,10 +252,15 @@ def _region_row(region):
         "channel": region.channel,
         "load": digits(region.load_rms_N),
         "gap": digits(region.gap_m * 1e3) if region.gap_m is not None else "-",
-        "discrepancy": f"{region.discrepancy_dB:+.1f}",
-        "z": f"{region.z:+.1f}",
+        "discrepancy": _signed(region.discrepancy_dB),
+        "z": _signed(region.z),
         "modes": _modes(region.nearest_modes_Hz or ()),
     }
+
+
+def _signed(value):
+    """Return a number with its sign, - where there is none."""
+    return "-" if value is None else f"{value:+.1f}"
 
 
 def _modes(frequencies):

@@ -10,6 +10,7 @@ from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict
 
+from .explanations import NOTHING, chance_text, explanations_of
 from .number_text import digits, percent
 
 
@@ -23,6 +24,7 @@ def verdict_sentence(verdict: Verdict) -> str:
         else ""
     )
     named = "; and ".join(map(_with_parameters, verdict.effects))
+    sure = _how_sure(verdict)
     alternatives = [
         ids
         for ids in verdict.ambiguity_set
@@ -38,8 +40,8 @@ def verdict_sentence(verdict: Verdict) -> str:
     other = next((row.message for row in verdict.checks if row.check == "linear model"), "")
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
-        "none": _nothing_missing(verdict.p_global_before),
-        "named": f"The model lacks {named}.{shrinks}{others}",
+        "none": _nothing_missing(verdict.p_global_before) + sure,
+        "named": f"The model lacks {named}.{sure}{shrinks}{others}",
         "partly_explained": (
             f"The model lacks {named}, and something else that is not in the catalogue: the"
             f" remaining difference is significant.{shrinks}{others}"
@@ -51,7 +53,7 @@ def verdict_sentence(verdict: Verdict) -> str:
         ),
         "unknown": (
             "The model and the measurement disagree, and no effect of the catalogue explains it:"
-            f" the map says where to look.{nearest}"
+            f" the figures say where to look.{nearest}"
         )
         if not of_another_structure(verdict)
         else (
@@ -63,18 +65,32 @@ def verdict_sentence(verdict: Verdict) -> str:
     return sentences[verdict.verdict]
 
 
+def _how_sure(verdict):
+    """Return the probability of what a verdict says, as a sentence; empty where it is not known."""
+    ids = effects_in_words(sorted(effect.id for effect in verdict.effects))
+    wanted = NOTHING if verdict.verdict == "none" else ids
+    rows = [row for row in explanations_of(verdict) if row.words == wanted]
+    if not rows:
+        return ""
+    return f" The probability of this is {chance_text(rows[0].probability)}."
+
+
 def _nothing_missing(chance):
-    """Return the sentence of the verdict `none`; chance: p-value of all differences."""
-    told = f"(p-value of all differences: {probability_text(chance)})"
-    if chance is None or chance > BEYOND_CHANCE:
+    """Return the sentence of the verdict `none`; chance: p-value of all differences, None where it
+    was not computed.
+    """
+    if chance is None:
         return (
-            "No effect is missing: the model explains the campaign within the scatter of its seeds"
-            f" {told}."
+            "No effect is missing: none of the catalogue brings the model nearer to records that"
+            " took no part than small errors of a right model do."
         )
+    told = f"(p-value of all differences: {probability_text(chance)})"
+    if chance > BEYOND_CHANCE:
+        return f"No effect is missing: the model explains the campaign within chance {told}."
     return (
-        "No effect is found: the differences are beyond the scatter of seeds"
-        f" {told}, and no larger than those between two right models of one structure, which may"
-        " differ in what no record tells, such as damping."
+        f"No effect is found: the differences are beyond chance {told}, and no larger than those"
+        " between two right models of one structure, which may differ in what no record tells,"
+        " such as damping."
     )
 
 
@@ -127,23 +143,20 @@ def withdrawn_sentence(verdict: Verdict) -> str:
 
 
 def where_it_shows(verdict: Verdict) -> str:
-    """Return what the table of regions means, or why there is none."""
+    """Return what the table of regions means, or why there is none; empty where none was sought."""
     if verdict.regions:
         return (
-            f"{len(verdict.regions)} stretches of bands differ by more than chance, the strongest"
-            " first. z counts standard deviations of one record about the model's mean, with all"
-            " that the verdict allows for: seeds, what two codes of one physics differ by, and"
-            " damping that no record tells. Of bands marked so, one in a hundred is of chance."
+            f"{len(verdict.regions)} bands differ by more than chance, the strongest first. z"
+            " counts standard deviations, with all that the verdict allows for."
         )
+    if verdict.p_global_before is None:  # bands were not tested one by one
+        return ""
     if verdict.verdict == "none":
         return (
             "Nowhere: the records together are within chance, and no band is singled out. The"
             " largest differences of many are always of some size."
         )
-    return (
-        "No band is beyond chance by itself: what differs is spread over many, or lies in how"
-        " peaked or coherent the motion is, which the map of band powers does not show."
-    )
+    return "No band is beyond chance by itself: what differs is spread over many."
 
 
 def judgement(verdict: Verdict, row: dict, first: bool) -> str:
@@ -162,7 +175,7 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
         return "the same at another place, which explains less"
     if ids in [sorted(row) for row in verdict.ambiguity_set]:
         return "not told apart from it"
-    if row.get("probability") is not None:
+    if row.get("probability") is not None and shown:
         return "less probable, by the records that were fitted"
     if score is None:
         return "screened only: others came nearer"
@@ -171,7 +184,7 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     if score <= 0.0:
         return "gains nothing on records that it was not fitted to"
     if verdict.verdict == "none":
-        return "gains no more than chance does"
+        return "gains no more than small errors of a right model do"
     return "explains less" if shown else "leaves a difference beyond chance"
 
 
@@ -194,7 +207,7 @@ def next_steps(verdict: Verdict, model: str) -> list[dict]:
     if not verdict.shown_effects():
         return [
             _step(
-                "No completed model is offered. Look where the table and the map show the largest"
+                "No completed model is offered. Look where the figures show the largest"
                 " differences: at the supports, lengths and sensors there."
             ),
             _step("Ask what the records alone tell:", "discrepancy", "FILE model=identified"),
@@ -209,7 +222,7 @@ def next_steps(verdict: Verdict, model: str) -> list[dict]:
         ),
     ]
     if verdict.verdict == "partly_explained":
-        steps.insert(0, _step("Look at what the right half of the map still shows."))
+        steps.insert(0, _step("Look at what the completed model still leaves, by sensor and band."))
     return steps
 
 

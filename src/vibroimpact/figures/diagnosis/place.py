@@ -125,14 +125,14 @@ def place_figure(config, data, effects):
     places = None if data is None or "channel_point" not in data else places_of(config, data)
     size = 0.0 if places is None else np.ptp(places.known(), axis=0).max()
     if places is None or size == 0.0:
-        sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(WIDTH_IN, LEAST_IN))
+        sheet = Sheet("diagnosis_place", title, f"{caption}.", size=(WIDTH_IN, LEAST_IN))
         sheet.note(sheet.axes["main"], "no places are known", "x_m", "z_m")
         return [sheet]
     drawn = np.vstack([places.known(), places.tips(ARROW * size)])  # of a straight tube, the plane
     view = view_axes(drawn)[:2]  # that its channels point in
     across, up = np.ptp(drawn, axis=0)[list(view)]
     height = np.clip(AROUND_IN + WIDTH_IN * up / max(across, 1e-3 * size), LEAST_IN, MOST_IN)
-    sheet = Sheet("discrepancy_place", title, f"{caption}.", size=(WIDTH_IN, float(height)))
+    sheet = Sheet("diagnosis_place", title, f"{caption}.", size=(WIDTH_IN, float(height)))
     axes = sheet.axes["main"]
     columns = tuple("xyz"[axis] + "_m" for axis in view)
     _structure(sheet, axes, places, view, columns)

@@ -1,0 +1,263 @@
+"""The evidence of a diagnosis: where the holding force acts, the law that records demand beside the
+model's, and the prediction of a sensor that is left free.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from scipy.signal import resample_poly
+
+from vibroimpact.observation.strain import STRAIN
+
+from .bench import Bench, in_band, measures_motion, settled
+from .comparison import Comparison
+from .explanations import Point
+from .held_states import HeldState, held_state, measured_motion
+from .law import Demand, Places, demand_of
+from .stretches import Stretch
+
+STATES = ("before", "after")
+SERIES = ("measured", *STATES)
+HOLDING_BANDS = 10  # logarithmic, over the band of the lines
+MOST_FREE = 96  # runs with a sensor left free, of both states
+FREE_STRETCHES = 2
+LAW_STRETCHES = 3
+WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
+FINER = 4  # times the sampling of the runs, as a waveform is drawn
+PLACES = (  # of a campaign: where its channels and forces are
+    "channel_point",
+    "channel_direction",
+    "force_channel_name",
+    "force_channel_point",
+    "force_channel_direction",
+)
+ACTS = 0.3  # of the power of the sensors: beyond what the drive alone does
+
+
+def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Dataset:
+    """Return the evidence for two Points: the model as given, and the completed one.
+
+    holding_force (state, stretch, channel, band): RMS in N.
+    demanded_force, demanded_motion (law_stretch, place, sample) and model_force, model_motion
+        (state, ..): N and m in the band; resolution (law_stretch, place) and explained, beyond
+        (law_stretch,): see law.Demand. None where the structure has no support and no element.
+    free_error (state, free_stretch, channel): of a predicted velocity over its RMS.
+    waveform (series, moment): of the channel `waveform_channel` in the stretch `waveform_stretch`.
+        None where fewer than two channels measure a motion.
+
+    Raises ConfigError or ValueError for values that no structure can have.
+    """
+    fitted, apart = comparison.fitted(), comparison.apart()
+    bench = replace(fitted, stretches=(*fitted.stretches, *apart.stretches))
+    free = _left_free(bench, len(fitted.stretches))
+    states = [held_state(bench, point, free) for point in (before, after)]
+    labels = {"state": list(STATES), "series": list(SERIES)}
+    out = xr.Dataset(_names(comparison, bench, len(fitted.stretches)), coords=labels)
+    campaign = comparison.structure.campaign
+    out = out.assign({name: campaign[name].variable for name in PLACES if name in campaign})
+    out = out.assign(_holding(bench, states))
+    out = out.assign(_law(comparison, bench, states, after))
+    out = out.assign(_free(comparison, bench, states))
+    return out.assign_attrs(
+        before=before.name, after=after.name, strength_N_s_per_m=float(bench.strength)
+    )
+
+
+def _names(comparison, bench, fitted):
+    """Return the variables that name channels, stretches and bands."""
+    signals, rows = comparison.signals, bench.stretches
+    held_out = set(signals.holdout().tolist())
+    edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
+    split = ["holdout" if row.record in held_out else "fit" for row in rows]
+    part = ["fitted" if number < fitted else "apart" for number in range(len(rows))]
+    return {
+        "channel_name": ("channel", np.array(comparison.structure.names, object)),
+        "channel_kind": ("channel", np.array(signals.kinds, object)),
+        "record_name": (
+            "stretch",
+            np.array([str(signals.record_names[row.record]) for row in rows], object),
+        ),
+        "split": ("stretch", np.array(split, object)),
+        "part": ("stretch", np.array(part, object)),
+        "load": ("stretch", [row.load for row in rows], {"units": signals.load_unit}),
+        "start": ("stretch", [_start(bench, row) for row in rows], {"units": "s"}),
+        "band_low": ("band", edges[:-1], {"units": "Hz"}),
+        "band_high": ("band", edges[1:], {"units": "Hz"}),
+    }
+
+
+def _start(bench: Bench, stretch: Stretch) -> float:
+    """Return the time in s of the sample of its record at which a stretch begins."""
+    rate = bench.schedule.sampling_frequency
+    return round(stretch.start_s * rate) / rate
+
+
+def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
+    """Return [(stretch, channel)] to be left free: channels that move in the stretches of the
+    highest and the lowest load that took no part, as far as MOST_FREE runs go.
+    """
+    order = sorted(range(fitted, len(bench.stretches)), key=lambda at: -bench.stretches[at].load)
+    held = measures_motion(bench)
+    out: list[tuple[int, int]] = []
+    for number in list(dict.fromkeys([order[0], order[-1]]))[:FREE_STRETCHES]:
+        moving = np.flatnonzero(bench.stretches[number].moving & held)
+        if len(STATES) * (len(out) + len(moving)) <= MOST_FREE or not out:
+            out += [(number, int(channel)) for channel in moving]
+    return out if held.sum() > 1 else []
+
+
+def _holding(bench: Bench, states: list[HeldState]) -> dict:
+    """Return the RMS of the holding force by band."""
+    found = [
+        [_band_rms(state.holding(number), bench) for number in range(len(bench.stretches))]
+        for state in states
+    ]
+    dims = ("state", "stretch", "channel", "band")
+    return {"holding_force": (dims, np.array(found, np.float32), {"units": "N"})}
+
+
+def _band_rms(series: np.ndarray, bench: Bench) -> np.ndarray:
+    """Return (channel, band): the RMS of the settled samples of a series (channel, sample)."""
+    series, rate = series[:, settled(bench)], bench.schedule.sampling_frequency
+    count = series.shape[-1]
+    window = np.hanning(count)
+    power = 2.0 * np.abs(np.fft.rfft(series * window, axis=-1)) ** 2 / (count * np.sum(window**2))
+    edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
+    number = np.searchsorted(edges, np.fft.rfftfreq(count, 1.0 / rate), side="right") - 1
+    rows = [power[:, number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
+    return np.sqrt(np.stack(rows, axis=-1))
+
+
+def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: Point) -> dict:
+    """Return the law that is demanded, by the structure of a Point, and those of both states."""
+    places = states[-1].places
+    if not places.names:
+        return {}
+    demands = [demand_of(comparison, bench, stretch, point) for stretch in bench.stretches]
+    chosen = _acting(bench, demands)
+    shown = [demands[number] for number in chosen]
+    force, motion = (
+        np.array(rows, np.float32)
+        for rows in zip(
+            *(_modelled(comparison, bench, own, places, chosen) for own in states), strict=True
+        )
+    )
+    dims = ("law_stretch", "place", "sample")
+    newton, metre, share = {"units": "N"}, {"units": "m"}, {"units": "1"}
+    time = settled(bench) / bench.schedule.sampling_frequency
+    return {
+        "place_name": ("place", np.array(places.names, object)),
+        "owner_name": ("place", np.array(places.owners, object)),
+        "direction": ("place", places.direction),
+        "law_of_stretch": ("law_stretch", np.array(chosen, int)),
+        "sample_time": ("sample", time, {"units": "s"}),
+        "demanded_force": (dims, np.array([row.force for row in shown], np.float32), newton),
+        "demanded_motion": (dims, np.array([row.motion for row in shown], np.float32), metre),
+        "resolution": (dims[:2], np.array([row.resolution for row in shown]), share),
+        "explained": (dims[:1], np.array([row.explained for row in shown]), share),
+        "beyond": (dims[:1], np.array([row.beyond for row in shown]), share),
+        "model_force": (("state", *dims), force, newton),
+        "model_motion": (("state", *dims), motion, metre),
+    }
+
+
+def _acting(bench: Bench, demands: list[Demand]) -> list[int]:
+    """Return the stretches whose law is told: the lowest load at which forces act beside the drive,
+    where the law is sharpest, then a middle and the highest load; one per load.
+    """
+    order = sorted(range(len(demands)), key=lambda number: bench.stretches[number].load)
+    first = {bench.stretches[number].record: number for number in reversed(order)}
+    order = [number for number in order if first[bench.stretches[number].record] == number]
+    acting = [number for number in order if demands[number].beyond > ACTS] or order[-1:]
+    places = np.linspace(0, len(acting) - 1, min(LAW_STRETCHES, len(acting))).round().astype(int)
+    return [acting[place] for place in places]
+
+
+def _modelled(
+    comparison: Comparison, bench: Bench, state: HeldState, places: Places, chosen: list[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (force, motion) (law_stretch, place, sample) of a held model, in N and m; NaN at
+    places that it lacks.
+    """
+    samples = len(settled(bench))
+    out = np.full((2, len(chosen), len(places.names), samples), np.nan)
+    own = {name: number for number, name in enumerate(state.places.names)}
+    for row, number in enumerate(chosen):
+        both = state.at_places(number, bench.schedule.sampling_frequency)
+        for part, series in enumerate(both):
+            inside = in_band(bench, series, comparison.band, 0)
+            for place, name in enumerate(places.names):
+                if name in own:
+                    out[part, row, place] = inside[own[name]]
+    return out[0], out[1]
+
+
+def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict:
+    """Return the errors of predicted sensors, and the waveform of a telling one."""
+    keys = list(states[0].free)
+    if not keys:
+        return {}
+    stretches = sorted({number for number, _ in keys}, key=lambda at: -bench.stretches[at].load)
+    channels = len(comparison.structure.names)
+    error = np.full((len(states), len(stretches), channels), np.nan)
+    velocity = {}
+    for number, channel in keys:
+        series = [
+            in_band(bench, values, comparison.band, 1)
+            for values in _measured_and_free(bench, states, number, channel)
+        ]
+        velocity[number, channel] = np.array([series[0], *series[2:]])
+        rms = max(float(np.std(series[0])), np.finfo(float).tiny)
+        pairs = (series[0], series[2]), (series[1], series[3])
+        error[:, stretches.index(number), channel] = [np.std(a - b) / rms for a, b in pairs]
+    told = _most_telling(error, stretches)
+    unit = "1/s" if comparison.signals.kinds[told[1]] == STRAIN else "m/s"
+    return {
+        "free_error": (("state", "free_stretch", "channel"), error, {"units": "1"}),
+        "free_of_stretch": ("free_stretch", np.array(stretches, int)),
+        **_waveform(bench, velocity[told], told, unit, comparison.structure.scale[told[1]]),
+    }
+
+
+def _measured_and_free(bench, states, number, channel):
+    """Return [measured as each state's chain tells, then predicted by each] (sample,) in m."""
+    measured = [
+        measured_motion(bench, number, state.chain.delay[: state.channels])[channel]
+        for state in states
+    ]
+    return [*measured, *(state.left_free(number, channel) for state in states)]
+
+
+def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
+    """Return (stretch, channel) whose prediction gains most in the stretch of the highest load; the
+    largest error where none gains.
+
+    error (state, free_stretch, channel): NaN of what was not predicted.
+    """
+    before, after = np.nan_to_num(error[0, 0]), np.nan_to_num(error[1, 0])
+    gain = np.minimum(before, 2.0) - np.minimum(after, 2.0)
+    channel = int(np.argmax(gain if gain.max() > 0.0 else after))
+    return stretches[0], channel
+
+
+def _waveform(bench, series, told, unit, scale):
+    """Return the waveform where the response is largest: series (3, sample) in m/s."""
+    rate = FINER * bench.schedule.sampling_frequency
+    series = resample_poly(series, FINER, 1, axis=-1)
+    crossings = np.mean(np.diff(np.signbit(series[0])))  # per sample
+    cycles = round(2.0 * CYCLES / max(float(crossings), 1.0e-9))
+    count = min(round(WAVEFORM_S * rate), cycles, series.shape[-1])
+    power = np.convolve(series[0] ** 2, np.ones(count), "valid")
+    first = int(np.argmax(power))
+    inside = slice(first, first + count)
+    start = _start(bench, bench.stretches[told[0]]) + settled(bench)[0] * FINER / rate
+    time = start + np.arange(first, first + count) / rate
+    return {
+        "waveform": (("series", "moment"), series[:, inside] / scale, {"units": unit}),
+        "moment_time": ("moment", time, {"units": "s"}),
+        "waveform_stretch": ((), told[0]),
+        "waveform_channel": ((), told[1]),
+    }

@@ -1,0 +1,296 @@
+"""The page of a verdict: every kind has its sentence, and nothing on it speaks against it."""
+
+import re
+
+import numpy as np
+import pytest
+
+from tests.discrepancy_results import made_up_verdict
+from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.display_units import display_unit
+from vibroimpact.reports.discrepancy_page import discrepancy_page
+from vibroimpact.reports.explanations import best_places, explanations_of
+from vibroimpact.reports.verdict_words import next_steps, verdict_sentence
+from vibroimpact.verdict.content import CONCLUSIONS
+
+
+def test_closest_effect_is_shown_if_nothing_is_named():
+    told = verdict_sentence(
+        made_up_verdict(
+            "unknown",
+            most_probable=[
+                {"id": name, "location": "all", "parameters": {}}
+                for name in ("clearance", "support_offset")
+            ],
+        )
+    )
+    near = "stop behind a clearance and support offset"
+    assert told.endswith(f"The best candidate, {near}, does not explain it.")
+    assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
+
+
+def test_model_of_another_structure_is_told_first():
+    rows = [
+        check_row(
+            "linear model", "warn", "First look at the legs. Modes against the model's: 11 Hz."
+        ),
+        check_row("other structure", "warn", "Nothing was looked for beside this model."),
+    ]
+    verdict = made_up_verdict("unknown", checks=rows)
+    told = verdict_sentence(verdict)
+    assert "nothing was looked for beside it. First look at the legs" in told
+    assert "Modes against" not in told and "no effect of the catalogue" not in told
+    (step,) = next_steps(verdict, "model.yaml")
+    assert step["words"].startswith("Mend the model")
+
+
+def test_most_probable_of_several_is_shown():
+    named = made_up_verdict().to_values()["effects"]
+    page = discrepancy_page("campaign", made_up_verdict("ambiguous", most_probable=named), [])
+    assert (
+        "The most probable of them" in page
+        and "0.149" in page
+        and "Adding the most probable of them closes" in page
+    )
+    assert "The most probable of them" not in discrepancy_page(
+        "campaign", made_up_verdict("ambiguous"), []
+    )
+    assert "0.149" not in discrepancy_page(
+        "campaign", made_up_verdict("unknown", most_probable=named), []
+    )
+
+
+def test_effect_is_shown_at_its_best_place():
+    rows = [
+        {"ids": [ids], "location": place, "heldout_score": score}
+        for ids, place, score in (
+            ("clearance", "leg", 40.0),
+            ("clearance", "apex", 20.0),
+            ("clearance", "shaker", None),
+            ("gap", "all", None),
+            ("gap", "left", None),
+        )
+    ]
+    assert [row["location"] for row in best_places(rows)] == [
+        "leg",
+        "apex",
+        "all",
+    ]  # what was looked at closely stays
+
+
+@pytest.mark.parametrize("kind", CONCLUSIONS)
+def test_every_verdict_has_its_sentence_and_page(kind):
+    verdict = made_up_verdict(kind)
+    sentence = verdict_sentence(verdict)
+    assert (
+        sentence.endswith(".")
+        and {
+            "none": "No effect",
+            "named": "lacks dry friction",
+            "ambiguous": "dry friction, or lobed hole",
+            "unknown": "no effect of the catalogue",
+            "partly_explained": "something else",
+            "not_testable": "can not be judged",
+        }[kind]
+        in sentence
+    )
+    page = discrepancy_page(kind, verdict, [])
+    assert sentence.split(" (")[0] in page and ("Measure next" in page) == (kind == "ambiguous")
+
+
+def test_region_names_each_nearby_mode_once():
+    region = made_up_verdict().to_values()["regions"][0]
+    page = discrepancy_page(
+        "campaign",
+        made_up_verdict(regions=[region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]),
+        [],
+    )
+    assert "<td>104, 105, 171, 172</td>" in page
+    assert "<td>104, 171</td>" in discrepancy_page(
+        "campaign",
+        made_up_verdict(regions=[region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]),
+        [],
+    )
+    without = {
+        key: region[key] for key in region if key != "nearest_modes_Hz"
+    }  # a structure that is known by its measured responses alone
+    assert "nearest modes" not in discrepancy_page(
+        "campaign", made_up_verdict(regions=[without]), []
+    )
+
+
+STORY = (
+    "The model lacks",
+    "How sure",
+    "Where model and measurement part",
+    "What is missing",
+    "What adding it does",
+    "What was ruled out, and why",
+    "What would separate what is left",
+    "Checks of the campaign",
+)
+
+
+def test_page_tells_one_story_in_order():
+    page = discrepancy_page(
+        "campaign",
+        made_up_verdict(next_measurement="Measure at 3 N."),
+        [],
+        model="results/a/model_updated.yaml",
+    )
+    places = [page.index(f"{part}\n") if "?" in part else page.index(part) for part in STORY]
+    assert places == sorted(places)
+    assert "snakemake -j2 --configfile results/a/model_updated.yaml" in page
+    assert "campaign=FILE model=results/a/model_updated.yaml" in page
+    assert "screened" not in page and "explains less" in page
+
+
+def test_closed_share_is_one_number_on_the_page():
+    rows = made_up_verdict().to_values()["ranking"]
+    assert rows[0]["closed_fraction"] == 0.87  # of what is named: that of its misfit
+    page = discrepancy_page("campaign", made_up_verdict(ranking=rows[:1]), [])
+    held_out = page.index("held out: not fitted"), page.index("<td>fitted</td>")
+    assert "closes 87 % of the excess misfit on records that took no part" in page
+    assert "87 %" in page[held_out[0] : held_out[1]]
+    assert set(re.findall(r"\d+ %(?= ?</td>)", page)) == {"87 %"}
+
+
+def test_no_region_is_shown_where_nothing_is_missing():
+    page = discrepancy_page("campaign", made_up_verdict("none", regions=[]), [])
+    assert "no band is singled out" in page and "<th>nearest modes" not in page
+    open_page = discrepancy_page("campaign", made_up_verdict("unknown", regions=[]), [])
+    assert "No band is beyond chance by itself" in open_page
+    untested = made_up_verdict("none", regions=[], p_global_before=None, broken_invariances=[])
+    assert "Where model and measurement part" not in discrepancy_page("campaign", untested, [])
+
+
+def test_probabilities_are_bars_and_are_explained():
+    values = made_up_verdict().to_values()
+    values["ranking"][0]["probability"] = 0.93
+    values["ranking"][2]["probability"] = 0.02
+    friction = values["effects"][0] | {"family": "friction", "law_fits": "no"}
+    verdict = made_up_verdict(
+        ranking=values["ranking"],
+        effects=[friction],
+        probability_none=0.0,
+        probability_something_else=0.05,
+        ambiguity_probability=[0.93],
+    )
+    page = discrepancy_page("campaign", verdict, [])
+    bars = [int(width) for width in re.findall(r'class="bar" style="width: (\d+)px', page)]
+    assert bars == [223, 12, 5, 0]  # of 240 pixels, the most probable first
+    for part in (
+        "93 %",
+        "something that is not in the catalogue",
+        "nine in ten",
+        "than chance does",
+    ):
+        assert part in page, part
+    without = discrepancy_page("campaign", made_up_verdict(), [])
+    assert "nine in ten" not in without and 'class="bar"' not in without
+
+
+def test_a_model_that_makes_others_worse_is_told_not_offered():
+    values = made_up_verdict().to_values()
+    worse = values["misfit"]["holdout"] | {"before_dB": 8.9, "after_dB": 10.5}
+    withdrawn = {"effects": values["effects"], "misfit": {"fit": None, "holdout": worse}}
+    verdict = made_up_verdict("unknown", withdrawn=withdrawn, most_probable=values["effects"])
+    page = discrepancy_page("campaign", verdict, [])
+    assert "Tried and not offered: dry friction" in page
+    assert "8.9 dB before, 10.5 dB after" in page and "configfile" not in page
+    assert "makes records worse" in page  # its row among those ruled out
+
+
+@pytest.mark.parametrize(
+    ("chance", "words"),
+    [(0.2, "within chance"), (1.0e-9, "two right models"), (None, "nearer to records")],
+)
+def test_nothing_missing_is_said_with_its_chance(chance, words):
+    assert words in verdict_sentence(made_up_verdict("none", p_global_before=chance))
+
+
+def test_cost_of_all_stages_is_on_the_page():
+    stages = {"null": {"cpu_seconds": 10.0, "simulations": 72}}
+    cost = {"cpu_seconds": 10.0, "simulations": 72, "by_stage": stages}
+    page = discrepancy_page("campaign", made_up_verdict(cost=cost), [])
+    assert '<td>null</td><td class="number">10</td>' in page
+
+
+@pytest.mark.parametrize(
+    ("unit", "values", "shown", "number"),
+    [
+        ("m", [2.5e-4, 4e-4], "mm", 0.4),
+        ("m", [3.0e-5], "µm", 30.0),
+        ("m", [1.2], "m", 1.2),
+        ("N/m", [8.0e3], "kN/m", 8.0),
+        ("N/m", [8.0e5, np.nan], "kN/m", 800.0),
+        ("N/m", [4.0e6, None], "MN/m", 4.0),
+        ("N/m", [820.0], "N/m", 820.0),
+        ("N/m^1.5", [1.0e9], "GN/m^1.5", 1.0),
+        ("N/m^2", [np.nan, 1.03e6], "MN/m²", 1.03),
+        ("N/m3", [7.0e5], "kN/m³", 700.0),
+        ("N/m^3", [-7e11, None], "GN/m³", 700.0),
+        ("N s/m", [1291.0], "kN s/m", 1.291),
+        ("kg", [0.298], "g", 298.0),
+        ("rad", [np.pi], "deg", 180.0),
+        ("1", [0.15], "1", 0.15),
+        ("N", [0.0, None], "N", 0.0),
+    ],
+)
+def test_prefix_of_a_unit_follows_from_the_value(unit, values, shown, number):
+    name, factor = display_unit(unit, values)
+    largest = max(abs(value) for value in values if value is not None and value == value)
+    assert name == shown and factor * largest == pytest.approx(number)
+
+
+def with_probabilities(kind, effect, nothing, other):
+    """A verdict of a kind with the probabilities of friction, of nothing and of something else."""
+    ranking = [
+        {
+            "ids": ["dry_friction"],
+            "heldout_score": 2.0,
+            "closed_fraction": 0.8,
+            "probability": effect,
+        }
+    ]
+    return made_up_verdict(
+        kind,
+        ranking=ranking,
+        probability_none=nothing,
+        probability_something_else=other,
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "chances", "told"),
+    [
+        ("named", (0.95, 0.0, 0.05), True),
+        ("named", (0.05, 0.0, 0.95), False),
+        ("none", (0.01, 0.98, 0.01), True),
+        ("none", (0.99, 0.0, 0.01), False),
+        ("unknown", (0.1, 0.0, 0.9), True),
+        ("unknown", (1.0, 0.0, 0.0), False),
+        ("ambiguous", (0.6, 0.0, 0.1), True),
+        ("partly_explained", (0.2, 0.0, 0.8), True),
+    ],
+)
+def test_probabilities_never_speak_against_the_verdict(kind, chances, told):
+    verdict = with_probabilities(kind, *chances)
+    assert bool(explanations_of(verdict)) == told
+    page = discrepancy_page("campaign", verdict, [])
+    assert ("nine in ten" in page) == told
+    assert told or not re.search(r"(?:100|99|95) %", page)
+
+
+def test_headline_says_how_sure_it_is():
+    assert "probability of this is 95 %" in verdict_sentence(
+        with_probabilities("named", 0.95, 0.0, 0.05)
+    )
+    none = with_probabilities("none", 0.001, 0.995, 0.002)
+    assert "No effect" in verdict_sentence(none) and "over 99 %" in verdict_sentence(none)
+
+
+def test_nothing_is_said_of_after_where_nothing_was_added():
+    page = discrepancy_page("campaign", made_up_verdict("unknown"), [])
+    assert "How far off the model is" in page and "after (dB)" not in page
+    assert "after (dB)" in discrepancy_page("campaign", made_up_verdict("named"), [])
