@@ -128,7 +128,8 @@ def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bo
         return value < NO_CONTACT_DAMPING * sizes["contact_stiffness"]
     if term.effect_id == "contact_stiffness":
         value /= sizes["contact_stiffness"]
-    return abs(np.log(value)) < NO_EFFECT.get(term.effect_id, 0.0)
+    known = NO_EFFECT.get(term.effect_id)
+    return known is not None and abs(np.log(value)) < known
 
 
 def neutral_term(effect: Effect, location: str, sizes: Mapping[str, float]) -> Term | None:

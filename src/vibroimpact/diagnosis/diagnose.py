@@ -32,6 +32,7 @@ from vibroimpact.verdict.misfit import makes_worse, not_offered
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
 from .decision import Decision, ambiguity, decide
+from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
 from .free_runs import FreeRuns, distance, free_runs, regions
@@ -135,11 +136,14 @@ class _Found:
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
-    """Write verdict.json, ranking.csv, spectra.nc and model_updated.yaml into a folder."""
+    """Write verdict.json, ranking.csv, spectra.nc, evidence.nc and model_updated.yaml into a
+    folder.
+    """
     folder = Path(folder)
     write_verdict(diagnosis.verdict, folder / "verdict.json")
     write_table(_ranking_table(diagnosis.decision), folder / "ranking.csv", columns=RANKING)
     write_record(spectra(diagnosis), folder / "spectra.nc")
+    write_record(evidence(diagnosis), folder / "evidence.nc")
     write_text(diagnosis.completed, folder / "model_updated.yaml")
 
 
@@ -170,6 +174,15 @@ def spectra(diagnosis: Diagnosis) -> xr.Dataset:
             "frequency": ("frequency", runs.frequency, {"units": "Hz"}),
         },
     )
+
+
+def evidence(diagnosis: Diagnosis) -> xr.Dataset:
+    """Return what is shown of a diagnosis beside its spectra, see evidence.evidence_of."""
+    if diagnosis.comparison is None or diagnosis.search is None:
+        return xr.Dataset(attrs={"title": "no evidence: the campaign can not be tested"})
+    chosen = diagnosis.chosen
+    after = diagnosis.search.nothing.point if chosen is None else chosen.point
+    return evidence_of(diagnosis.comparison, Point(), after)
 
 
 def _refused(refusal: Refused, provenance, watch) -> Verdict:

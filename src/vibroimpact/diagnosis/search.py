@@ -97,6 +97,7 @@ def search(
         list(EFFECTS.values()) if effects is None else effects,
     )
     nothing = _finals(at, [Point()], None)[0]
+    log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
     found: dict[str, Hypothesis] = {}
     base, screened = nothing, []
     for size in range(1, most + 1):
