@@ -10,7 +10,7 @@ import xarray as xr
 from tests.discrepancy_results import made_up_verdict
 from tests.figure_layout import layout_faults
 from vibroimpact.figures.diagnosis.holding import chosen_channels, chosen_levels
-from vibroimpact.figures.diagnosis.law import force_error, median_law, pressed
+from vibroimpact.figures.diagnosis.law import force_error, median_law, pressed, telling_level
 from vibroimpact.figures.diagnosis.place import place_figure
 from vibroimpact.figures.diagnosis.psd import chosen_channels as channels_of_psd
 from vibroimpact.figures.diagnosis.psd import chosen_records
@@ -178,6 +178,15 @@ def test_force_error_is_that_of_the_law():
     assert force_error(evidence, 0, [1, 3]) == pytest.approx(1.0, abs=0.05)  # it never touches
     noise = 2.0 * np.sqrt(force[[1, 3]].size / np.sum(force[[1, 3]] ** 2))
     assert force_error(evidence, 1, [1, 3]) == pytest.approx(noise, rel=0.05)
+
+
+def test_level_is_shown_where_the_completed_model_gains_most():
+    evidence = made_up_evidence()
+    assert telling_level(evidence) == 0
+    levels = xr.concat([evidence.isel(law_stretch=[0])] * 2, "law_stretch", data_vars="minimal")
+    levels = levels.assign(model_force=levels["model_force"].copy())
+    levels["model_force"].values[0, 0] = levels["model_force"].values[1, 0]  # no gain at the first
+    assert telling_level(levels) == 1
 
 
 def test_median_law_has_the_gap_and_the_stiffness():
