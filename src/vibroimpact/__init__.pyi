@@ -57,6 +57,7 @@ from .study.statistics_table import statistics_rows as statistics_rows
 from .study.support_estimates import SupportEstimates as SupportEstimates
 from .study_folder.shared_files import configurations as configurations
 from .study_folder.shared_files import workflow_snakefile as workflow_snakefile
+from .verdict.content import Verdict as Verdict
 
 __version__: str
 PUBLIC: dict[str, str]

@@ -86,8 +86,8 @@ def _of_parameter(parameter: Parameter, number: int, index: int, unit: float) ->
         return Coordinate("term", number, size, index, False, 0.0, high / size, STEPS["amount"])
     if parameter.log:
         size = parameter.neutral or float(np.sqrt(low * high))
-        ends = np.log(low / size), np.log(high / size)
-        return Coordinate("term", number, size, index, True, *map(float, ends), STEPS["log"])
+        first, last = float(np.log(low / size)), float(np.log(high / size))
+        return Coordinate("term", number, size, index, True, first, last, STEPS["log"])
     size = 0.2 * max(abs(low), abs(high))
     return Coordinate("term", number, size, index, False, low / size, high / size, STEPS["signed"])
 
@@ -116,8 +116,9 @@ def to_vector(point: Point, rows: Sequence[Coordinate]) -> np.ndarray:
             out.append((own[row.index] if row.index < len(own) else 0.0) / row.size)
             continue
         term = point.terms[row.index]
-        value = {"place": arc_length_m, "direction": turned_deg}.get(row.kind)
-        out.append(row.from_value(value(term.location) if value else term.values[row.parameter]))
+        places = {"place": arc_length_m, "direction": turned_deg}
+        told = places[row.kind](term.location) if row.kind in places else None
+        out.append(row.from_value(term.values[row.parameter] if told is None else told))
     return np.array(out, float)
 
 

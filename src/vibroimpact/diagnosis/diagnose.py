@@ -119,8 +119,7 @@ def run_diagnosis(
         runs = free_runs(
             comparison.structure, comparison.signals, None if chosen is None else chosen.point
         )
-    found = _Found(comparison, searched, decision, runs, checks, provenance or {})
-    return _concluded(found, watch)
+    return _concluded(_Found(comparison, searched, decision, runs, checks, provenance or {}), watch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +181,7 @@ def evidence(diagnosis: Diagnosis) -> xr.Dataset:
         return xr.Dataset(attrs={"title": "no evidence: the campaign can not be tested"})
     chosen = diagnosis.chosen
     after = diagnosis.search.nothing.point if chosen is None else chosen.point
-    return evidence_of(diagnosis.comparison, Point(), after)
+    return evidence_of(diagnosis.comparison, diagnosis.search.nothing.point, after)
 
 
 def _refused(refusal: Refused, provenance, watch) -> Verdict:

@@ -127,7 +127,7 @@ def distance(
         "before_dB": away[0],
         "after_dB": away[1],
         "floor_dB": floors[1],
-        "closed_fraction": closed_fraction(*away, floors[1], floors[0]),
+        "closed_fraction": closed_fraction(away[0], away[1], floors[1], floors[0]),
     }
 
 

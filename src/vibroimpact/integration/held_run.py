@@ -194,16 +194,15 @@ class _Prepared:
         return tuple((table.shape, table.tobytes()) for table in map(np.ascontiguousarray, tables))
 
 
-class _LaneLayout:
-    """The tables of a batch in which each lane has a ModalLayout of its own."""
+class _LaneLayout(ModalLayout):
+    """The tables of a batch in which each lane has a ModalLayout of its own: the layout of the
+    first one, with the numbers of every lane.
+    """
 
     def __init__(self, lanes: list[ModalLayout], strength: np.ndarray, sensors: int):
+        self.__dict__.update(lanes[0].__dict__)
         self.lanes, self.strength, self.sensors = lanes, strength, sensors
-        self.first = lanes[0]
-        self.model, self.drive_shapes = self.first.model, self.first.drive_shapes
-        self.alike = all(lane is self.first for lane in lanes)
-        for name in ("state", "tally", "work", "trace", "contact_rows", "element_rows"):
-            setattr(self, name, getattr(self.first, name))
+        self.alike = all(lane is lanes[0] for lane in lanes)
 
     def modal(self, dt: float) -> Modal:
         """The kernel's Modal, by lane where the models differ."""
