@@ -12,6 +12,7 @@ from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
 from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.run_cost import count_simulated
 
 from .constants import FORGET_S, INDEPENDENT
 from .explanations import Point, Structure
@@ -63,6 +64,7 @@ def held_records(
         for place, stretch in enumerate(bench.stretches):
             index[number, place] = len(runs)
             runs.append(lane_of(bench, stretch, model, chain, free))
+    count_simulated(len(runs))
     return hold(runs, bench.schedule, bench.threads, bench.held_below_Hz), index
 
 

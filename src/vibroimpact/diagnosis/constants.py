@@ -29,6 +29,7 @@ RIVAL, RIVAL_SHARE = (
     0.04,
 )  # difference of rivals that counts e-fold, and its share of the gain
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
+NOTHING_LEFT = 0.7  # log power over the floor, below which no further effect is looked for
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
 

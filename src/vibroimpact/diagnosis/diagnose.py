@@ -17,6 +17,7 @@ from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.observation.attached_model import with_channel_points
 from vibroimpact.observation.signals import signals_of
 from vibroimpact.records import write_record, write_table, write_text
+from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
@@ -98,7 +99,7 @@ def run_diagnosis(
     if effort not in EFFORTS:
         raise ValueError(f"effort = '{effort}': give one of {', '.join(EFFORTS)}")
     config = model if isinstance(model, Config) else load_config(model)
-    watch = Stopwatch()
+    watch, known = Stopwatch(), SIMULATED["records"]
     try:
         with watch("reading and checks"):
             found, checks = usable(campaign, config)
@@ -112,7 +113,8 @@ def run_diagnosis(
         searched = search(comparison, EFFORTS[effort], effects, log)
     with watch("floor"):
         best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
-        level, floor = floor_of(comparison, best)
+        played = searched.floors.get(best.point.name)
+        level, floor = played or floor_of(comparison, best.fit)
     decision = decide(searched, level, floor)
     with watch("free runs"):
         chosen = None if decision.verdict in ("none", "unknown") else decision.best
@@ -202,7 +204,7 @@ def _contract(checks):
     return [{key: row.get(key) for key in keys} for row in checks]
 
 
-def _concluded(found: _Found, watch: Stopwatch) -> Diagnosis:
+def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     """Return the Diagnosis of a campaign that was compared.
 
     What makes held-out records worse is not offered: it is withdrawn, and the verdict is unknown.
@@ -215,7 +217,6 @@ def _concluded(found: _Found, watch: Stopwatch) -> Diagnosis:
     ):
         withdrawn = {"effects": effects, "misfit": misfits}
         decision = replace(decision, verdict="unknown", **_without_best(decision))
-    cost = _cost(watch, found.searched.runs)
     content = {
         **_decided(decision, effects),
         "regions": (

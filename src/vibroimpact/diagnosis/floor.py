@@ -20,8 +20,7 @@ from .comparison import Comparison
 from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
 from .coordinates import nuisance_coordinates
 from .explanations import Point
-from .gauss_newton import fit
-from .search import Hypothesis
+from .gauss_newton import Fit, fit
 from .stretches import Stretch
 
 LEAD_S = 2.0  # of a free run before its stretch
@@ -29,8 +28,8 @@ WINDOW = ("kaiser", 9.0)  # of the interpolation: images 90 dB down
 PASSES = 2  # of the fit of the nuisances
 
 
-def floor_of(comparison: Comparison, best: Hypothesis) -> tuple[float, float]:
-    """Return (mean log power of the holding force with a hypothesis, the same where nothing else is
+def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
+    """Return (mean log power of the holding force of a Fit, the same where nothing else is
     missing), on the fitted stretches; the second NaN where the model can not be run free.
     """
     bench = comparison.fitted()
@@ -42,7 +41,7 @@ def floor_of(comparison: Comparison, best: Hypothesis) -> tuple[float, float]:
         tuple(DAMPING_SD * rng.standard_normal(modes)),
         tuple(GAIN_SD * rng.standard_normal(channels)),
     )
-    level = mean_log_power(bench, best.fit.lines)
+    level = mean_log_power(bench, best.lines)
     filtered = comparison.structure.campaign.attrs.get("antialias") != "none"
     stretches = _played(comparison, bench, played, rng) if filtered else None
     if stretches is None:

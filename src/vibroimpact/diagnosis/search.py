@@ -4,8 +4,8 @@ part.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -21,9 +21,10 @@ from .bench import (
 )
 from .catalogue import within_priors
 from .comparison import Comparison
-from .constants import needed_gain
+from .constants import NOTHING_LEFT, needed_gain
 from .coordinates import effect_coordinates, nuisance_coordinates
 from .explanations import Point
+from .floor import floor_of
 from .gauss_newton import Fit, columns, fit
 from .screening import Screened, screen
 
@@ -60,15 +61,16 @@ class Hypothesis:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What was found: nothing, and hypotheses, best first; screened: gains of single effects beside
-    nothing.
+    """What was found: nothing, and hypotheses, best first.
+
+    floors {name of a Point: (mean log power, that of a model in which nothing else is missing)},
+    where known. failed: effects of which no value could be run.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
-    screened: tuple[tuple[str, float], ...] = ()
+    floors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     failed: tuple[str, ...] = ()
-    runs: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,15 +101,13 @@ def search(
     nothing = _finals(at, [Point()], None)[0]
     log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
     found: dict[str, Hypothesis] = {}
-    base, screened = nothing, []
+    base = nothing
+    failed: tuple[str, ...] = ()
+    floors: dict[str, tuple[float, float]] = {}
     for size in range(1, most + 1):
         beside = replace(Point(), terms=base.point.terms)
         ranked = screen(at.screened, beside, at.effects, comparison.sizes, comparison.across)
-        if size == 1:
-            screened = [
-                (each.point.name, each.gain / effective_lines(at.screened, nothing.fit.lines))
-                for each in ranked
-            ]
+        failed = failed or _never_run(ranked)
         raced = _race(at, ranked)
         new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
         found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
@@ -122,8 +122,19 @@ def search(
             found |= _exchanged(at, best, nothing, log)
             best = max(found.values(), key=lambda each: each.gain)
         base = best
+        if size < most:
+            floors[best.point.name] = level, floor = floor_of(comparison, best.fit)
+            if level - floor < NOTHING_LEFT:
+                break
     ranked_found = sorted(found.values(), key=lambda each: -each.gain)
-    return Search(nothing, tuple(ranked_found), tuple(screened))
+    return Search(nothing, tuple(ranked_found), floors, failed)
+
+
+def _never_run(ranked: Sequence[Screened]) -> tuple[str, ...]:
+    """Return the ids of effects of which no screened point could be run."""
+    tried = {each.point.terms[-1].effect_id for each in ranked}
+    ran = {each.point.terms[-1].effect_id for each in ranked if np.isfinite(each.gain)}
+    return tuple(sorted(tried - ran))
 
 
 def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
