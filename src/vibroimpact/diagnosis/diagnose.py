@@ -121,7 +121,10 @@ def run_diagnosis(
         runs = free_runs(
             comparison.structure, comparison.signals, None if chosen is None else chosen.point
         )
-    return _concluded(_Found(comparison, searched, decision, runs, checks, provenance or {}), watch)
+    return _concluded(
+        _Found(comparison, searched, decision, runs, checks, provenance or {}),
+        _cost(watch, SIMULATED["records"] - known),
+    )
 
 
 @dataclass(frozen=True, eq=False)

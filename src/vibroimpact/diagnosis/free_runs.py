@@ -142,7 +142,12 @@ def _in_bands(runs, signals):
         mean = np.stack([psd[..., low:high].mean(axis=-1) for low, high in bands], axis=-1)
         return 10.0 * np.log10(np.maximum(mean, np.finfo(float).tiny))
 
-    out = {name: power(getattr(runs, name)) for name in ("measured", "before", "after")}
+    sensed = runs.noise[:, None]  # the sensors would add it to what is simulated
+    out = {
+        "measured": power(runs.measured),
+        "before": power(runs.before + sensed),
+        "after": power(runs.after + sensed),
+    }
     noise = 10.0 * np.log10(np.maximum(runs.noise, np.finfo(float).tiny))[:, None]
     known = out["measured"] > noise + ABOVE_NOISE_DB
     for name in ("before", "after"):

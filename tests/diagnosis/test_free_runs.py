@@ -1,0 +1,40 @@
+"""Spectra of free runs beside measured ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vibroimpact.diagnosis.free_runs import distance, free_runs, regions
+
+
+@pytest.fixture(scope="module")
+def compared(comparison):
+    """The model's own free runs as the measurement, ten times louder in one channel."""
+    signals = comparison.signals
+    runs = free_runs(comparison.structure, signals, None)
+    measured = runs.before[:, 0].copy()
+    measured[:, 1] *= 10.0
+    return signals, replace(runs, measured=measured, noise=1.0e-12 + 0.0 * runs.noise)
+
+
+def test_a_channel_ten_times_louder_is_ten_decibels_off(compared):
+    signals, runs = compared
+    rows = regions(runs, signals, 5)
+    assert {row["channel"] for row in rows} == {signals.names[1]}
+    assert np.median([row["discrepancy_dB"] for row in rows]) == pytest.approx(10.0, abs=3.0)
+
+
+def test_nothing_added_closes_nothing(compared):
+    signals, runs = compared
+    row = distance(runs, signals, np.arange(len(signals.load)))
+    assert row["before_dB"] == row["after_dB"]
+    assert row["closed_fraction"] in (None, pytest.approx(0.0, abs=1e-9))
+
+
+def test_what_the_model_does_not_move_is_compared_with_noise(compared):
+    """A channel that a symmetric model leaves at rest is off by its motion over its noise."""
+    signals, runs = compared
+    still = replace(runs, before=0.0 * runs.before, after=0.0 * runs.after)
+    row = distance(still, signals, np.arange(len(signals.load)))
+    assert row["before_dB"] is not None and row["before_dB"] < 200.0
