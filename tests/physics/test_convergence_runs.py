@@ -24,18 +24,18 @@ SHORT = {
     "record.duration_s": 5.0,
     "integration.start_up_s": 1.0,
     "spectra.segment_s": 2.0,
-    "grid.seeds": 8,
+    "grid.seeds": 16,
 }
 
 
 @pytest.fixture(scope="module")
 def rows(study_config):
-    """Return short runs at two steps, 8 seeds, 20 N, and one on few modes alone."""
+    """Return short runs at two steps, 16 seeds, 20 N, and one on few modes alone."""
     patch = pytest.MonkeyPatch()
     for key, value in SHORT.items():
         patch.setitem(convergence_runs.RUN, key, value)
     found = convergence_runs.run_rows(
-        study_config, "step", values=(25600, 51200), loads=(20.0,), seeds=8
+        study_config, "step", values=(25600, 51200), loads=(20.0,), seeds=16
     )
     patch.undo()
     return found

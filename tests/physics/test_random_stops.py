@@ -90,7 +90,7 @@ def records(case, damping_ratio, batches=1):
         for lane in range(LANES):
             values = {
                 name: ([f"{name}_{axis}" for axis in range(np.ndim(value))], value)
-                for name, value in statistics(lanes, lane, schedule).items()
+                for name, value in statistics(lanes, lane, schedule.steps_per_second).items()
             }
             found.append(xr.Dataset(values, attrs={"steps_per_second": RATE, "gap_m": GAP}))
     return model, found

@@ -444,7 +444,7 @@ def test_search_is_one_job_of_standard_effort(study, tmp_path):
     for more, effort in (([], "standard"), (["effort=quick"], "quick")):
         run = study.snakemake(*asked, *more)
         planned = set(jobs_of(run)) - {"total"}
-        assert planned == {"missing_effect", "discrepancy_report", "discrepancy"}
+        assert planned == {"diagnosis", "discrepancy_report", "discrepancy"}
         assert f"effort {effort}" in run.stdout + run.stderr
     for more, told in (
         (["effort=much"], "effort = 'much': give one of quick, standard, thorough"),
