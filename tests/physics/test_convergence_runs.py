@@ -99,7 +99,7 @@ def test_shifted_statistic_is_detected(rows):
 
 
 def test_seeds_are_paired_by_their_number(rows):
-    assert np.array_equal(seeds_of(rows, "step", 51200, 20.0, "seed"), np.arange(8))
+    assert np.array_equal(seeds_of(rows, "step", 51200, 20.0, "seed"), np.arange(16))
     assert np.array_equal(
         seeds_of(rows[::-1], "step", 51200, 20.0, "rms_force_N"),
         seeds_of(rows, "step", 51200, 20.0, "rms_force_N"),
