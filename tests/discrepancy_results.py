@@ -3,7 +3,6 @@ in a tube that has none in its model.
 """
 
 import numpy as np
-import xarray as xr
 
 from vibroimpact.verdict.content import Verdict
 
@@ -25,78 +24,6 @@ RECORDS = [
 EDGES = np.geomspace(5.0, 200.0, 25)
 STRENGTH = 9.0  # dB
 MODES = (16.0, 45.0, 101.0, 173.0)
-
-
-def made_up_map(strength, seed=1):
-    """A map Dataset whose discrepancy grows with load near 28 and 70 Hz, by strength dB at most."""
-    draw = np.random.default_rng(seed)
-    frequency = np.arange(2.0, 260.0, 0.25)
-    centre = np.sqrt(EDGES[:-1] * EDGES[1:])
-    bump = np.exp(-0.5 * (np.log(centre / 28.0) / 0.18) ** 2) - 0.8 * np.exp(
-        -0.5 * (np.log(centre / 70.0) / 0.15) ** 2
-    )
-    weight = (
-        np.array([0.0, 0.5, 1.0, 0.9])[:, None, None]
-        * np.array([1.0, 0.3, 0.9, 0.8, 0.3, 0.8, 0.5])[None, :, None]
-    )
-    seed_sd = np.full((4, 7, 24), 0.6) + 0.3 * draw.random((4, 7, 24))
-    discrepancy = strength * weight * bump + seed_sd * draw.standard_normal((4, 7, 24))
-    counted = np.ones((4, 7, 24), bool)
-    counted[:2, [1, 4]] = False  # in the plane nothing moves at low levels
-    hidden = np.interp(np.log(frequency), np.log(centre), bump) * weight  # per dB of strength
-    response = sum(
-        1.0 / ((1.0 - (frequency / mode) ** 2) ** 2 + (0.05 * frequency / mode) ** 2) / (1 + index)
-        for index, mode in enumerate(MODES)
-    )
-    amplitude = 0.3 + np.random.default_rng(5).random(7)
-    psd = (
-        np.array([load for _, load, _, _ in RECORDS])[:, None, None] ** 2
-        * amplitude[None, :, None]
-        * frequency**2
-        * 1e-4
-        * response
-    )
-    psd = psd * 10.0 ** (
-        0.1 * (STRENGTH - strength) * hidden
-    )  # what the model, as given or completed, knows of it
-    turned = 10.0 ** (0.1 * strength * hidden)
-    scatter = np.exp(0.15 * draw.standard_normal(psd.shape))
-    level = 10.0 * np.log10(
-        np.array(
-            [
-                [
-                    [
-                        np.mean(psd[r, c][(frequency >= low) & (frequency < high)]) * (high - low)
-                        for low, high in zip(EDGES[:-1], EDGES[1:], strict=True)
-                    ]
-                    for c in range(7)
-                ]
-                for r in range(4)
-            ]
-        )
-    )
-    dims = ("record", "channel", "band")
-    return xr.Dataset(
-        {
-            "measured_dB": (dims, level + discrepancy),
-            "simulated_dB": (dims, level),
-            "sd_dB": (dims, 1.3 * seed_sd),
-            "D": (dims, discrepancy),
-            "z": (dims, discrepancy / (1.3 * seed_sd)),
-            "band_Hz": (("band", "edge"), np.stack([EDGES[:-1], EDGES[1:]], axis=1)),
-            "counted": (dims, counted.astype(np.int8)),
-            "record_name": ("record", np.array([record[0] for record in RECORDS], dtype=object)),
-            "load_rms": ("record", np.array([record[1] for record in RECORDS])),
-            "gap": ("record", np.array([record[2] for record in RECORDS])),
-            "split": ("record", np.array([record[3] for record in RECORDS], dtype=object)),
-            "channel_name": ("channel", np.array(CHANNELS, dtype=object)),
-            "psd_frequency": ("frequency", frequency),
-            "psd_measured": (("record", "channel", "frequency"), psd * turned * scatter),
-            "psd_simulated_mean": (("record", "channel", "frequency"), psd),
-            "psd_simulated_low": (("record", "channel", "frequency"), psd * 0.7),
-            "psd_simulated_high": (("record", "channel", "frequency"), psd * 1.4),
-        }
-    )
 
 
 HELD_OUT = [84.0, 82.0, 61.0, 35.0, 29.0, 24.0, 8.0, 3.0, -6.0, -14.0]
@@ -127,37 +54,6 @@ def made_up_ranking():
             "probability": None if index > 1 else (0.95, 0.04)[index],
         }
         for index, (name, one) in enumerate(zip(ids, fit, strict=True))
-    ]
-
-
-def made_up_candidates():
-    """Contents of candidates/*.json, best first."""
-    mu = np.geomspace(0.02, 0.6, 13)
-    gap = np.linspace(1.5e-4, 4e-4, 9)
-    return [
-        {
-            "ids": ["dry_friction"],
-            "profile": [
-                {
-                    "parameter": "mu",
-                    "unit": "1",
-                    "values": mu.tolist(),
-                    "left": (1.1 + 9.0 * np.log(mu / 0.15) ** 2).tolist(),
-                    "simulated": [0.1, 0.15, 0.3],
-                }
-            ],
-        },
-        {
-            "ids": ["gap"],
-            "profile": [
-                {
-                    "parameter": "gap",
-                    "unit": "m",
-                    "values": gap.tolist(),
-                    "left": (1.3 + 9e8 * (gap - 2.6e-4) ** 2).tolist(),
-                }
-            ],
-        },
     ]
 
 

@@ -47,6 +47,6 @@ def test_what_needs_no_model_of_the_study_checks_none(tmp_path):
     model = ROOT / "config" / "smoke.yaml"
     write_campaign(sound_campaign(), tmp_path / "bench.nc")
     values = ("--config", f"model={model}", f"campaign={tmp_path}/bench.nc")
-    run = dry_run(tmp_path, SMOKE.replace("4.0e+6", "1.0e+12"), "_missing_effect", *values)
+    run = dry_run(tmp_path, SMOKE.replace("4.0e+6", "1.0e+12"), "_diagnosis", *values)
     assert run.returncode == 0, run.stderr
     assert "too stiff" not in run.stderr + run.stdout

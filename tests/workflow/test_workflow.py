@@ -419,7 +419,7 @@ def test_a_campaign_with_modes_to_be_identified_is_completed(study, tmp_path):
         assert run.returncode == 0, run.stdout + run.stderr
         planned = set(jobs_of(run))
         assert {"completion_prepare", "completion_outcome", "completion_report"} <= planned
-        assert "missing_effect" not in planned
+        assert "diagnosis" not in planned
 
 
 def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
