@@ -8,6 +8,8 @@ import numpy as np
 import yaml
 
 from vibroimpact.effects.effect import Values
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.step_stability import require_stable_step
 from vibroimpact.observation.signals import Signals
 from vibroimpact.records import plain_values
 
@@ -85,6 +87,7 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
         f"{name} {gain:.4f}" for name, gain in zip(structure.names, gains, strict=True)
     )
     values |= {"damping": damping, "study": f"{values['study']}_updated"}
+    values["integration"] |= {"scheme": _scheme(structure, point)}
     return "\n".join(
         [
             f"# {what}",
@@ -92,3 +95,15 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
             yaml.safe_dump(plain_values(values), sort_keys=False, width=140),
         ]
     )
+
+
+def _scheme(structure: Structure, point: Point) -> str:
+    """Return the scheme of the model, or Newmark's where a damped contact would grow by it."""
+    integration = structure.config.integration
+    try:
+        require_stable_step(
+            structure.model(point), integration.steps_per_second, integration.scheme
+        )
+    except IntegrationError:
+        return "newmark"
+    return str(integration.scheme)

@@ -30,7 +30,7 @@ from .screening import Screened, screen
 
 RACED, FINALISTS = 8, 3
 PER_EFFECT = 2  # places of one effect in a race
-RACE_PASSES, FINAL_PASSES = 3, 4
+RACE_PASSES, FINAL_PASSES = 3, 12  # at most
 MOST_EFFECTS = 2
 
 
