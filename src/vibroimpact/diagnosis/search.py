@@ -106,7 +106,7 @@ def search(
     floors: dict[str, tuple[float, float]] = {}
     for size in range(1, most + 1):
         beside = replace(Point(), terms=base.point.terms)
-        ranked = screen(at.screened, beside, at.effects, comparison.sizes, comparison.across)
+        ranked = _screened(at, beside)
         failed = failed or _never_run(ranked)
         raced = _race(at, ranked)
         new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
@@ -128,6 +128,15 @@ def search(
                 break
     ranked_found = sorted(found.values(), key=lambda each: -each.gain)
     return Search(nothing, tuple(ranked_found), floors, failed)
+
+
+def _screened(at: _Benches, base: Point) -> list[Screened]:
+    """Return the Screened effects beside those of a Point, none of them twice: two of one kind at
+    neighbouring places are one that is not where it was looked for.
+    """
+    known = {term.effect_id for term in base.terms}
+    others = [effect for effect in at.effects if effect.id not in known]
+    return screen(at.screened, base, others, at.comparison.sizes, at.comparison.across)
 
 
 def _never_run(ranked: Sequence[Screened]) -> tuple[str, ...]:
@@ -208,7 +217,7 @@ def _exchanged(at, best, nothing, log):
     out = {}
     for kept in best.point.terms[1:]:
         base = replace(Point(), terms=(kept,))
-        ranked = screen(at.screened, base, at.effects, at.comparison.sizes, at.comparison.across)
+        ranked = _screened(at, base)
         raced = [each for each in _race(at, ranked)[:2] if each.point.name not in out]
         for each in _finals(at, [each.point for each in raced], nothing):
             out[each.point.name] = each
