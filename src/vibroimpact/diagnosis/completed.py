@@ -9,6 +9,7 @@ import yaml
 
 from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.step_stability import require_stable_step
 from vibroimpact.observation.signals import Signals
 from vibroimpact.records import plain_values
@@ -87,7 +88,7 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
         f"{name} {gain:.4f}" for name, gain in zip(structure.names, gains, strict=True)
     )
     values |= {"damping": damping, "study": f"{values['study']}_updated"}
-    values["integration"] |= {"scheme": _scheme(structure, point)}
+    values["integration"] |= _integration(structure, point)
     return "\n".join(
         [
             f"# {what}",
@@ -97,13 +98,17 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
     )
 
 
-def _scheme(structure: Structure, point: Point) -> str:
-    """Return the scheme of the model, or Newmark's where a damped contact would grow by it."""
-    integration = structure.config.integration
+def _integration(structure: Structure, point: Point) -> Values:
+    """Return the keys of `integration` that change: none, or, where a damped contact would grow by
+    the exact step, Newmark's with the steps that the free modes need.
+    """
+    config = structure.config
+    own = config.integration
     try:
-        require_stable_step(
-            structure.model(point), integration.steps_per_second, integration.scheme
-        )
+        require_stable_step(structure.model(point), own.steps_per_second, own.scheme)
     except IntegrationError:
-        return "newmark"
-    return str(integration.scheme)
+        tick = RATIO * config.record.sampling_frequency_Hz
+        needed = 2.0 * np.pi * config.basis.free_modes_to_Hz
+        steps = tick * int(np.ceil(max(needed, own.steps_per_second) / tick))
+        return {"scheme": "newmark", "steps_per_second": steps}
+    return {}
