@@ -16,23 +16,15 @@ from vibroimpact.config.schema import Config
 from vibroimpact.effects.effect import Effect, Values
 from vibroimpact.effects.places import with_place
 from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.excitation.force_vectors import MODE_FIELDS
 from vibroimpact.observation.attached_model import attach, attached_basis
 from vibroimpact.observation.sensor_chain import Measuring, measuring_of
 from vibroimpact.observation.strain import as_displacements
 from vibroimpact.reduction.modal_model import ModalModel
 
 KEPT_MODELS = 256
-BY_MODE = (  # arrays of a ModalModel whose first axis is the mode, beside omega and damping
-    "contact_shapes",
-    "drive_shapes",
-    "sensor_shapes",
-    "line_shapes",
-    "stress_shapes",
-    "element_shapes",
-    "initial_displacement",
-    "initial_velocity",
-    "constant_force",
-)
+# Arrays of a ModalModel whose first axis is the mode, beside omega and damping.
+BY_MODE = tuple(name for name in MODE_FIELDS if name not in ("omega", "damping"))
 
 
 @dataclass(frozen=True)
