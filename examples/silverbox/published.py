@@ -1,11 +1,14 @@
 """The coefficients of the Silverbox beside those that the benchmark's authors publish.
 
-python examples/silverbox/published.py TABLE.csv VERDICT.json COMPLETED.json
+    python examples/silverbox/published.py TABLE.csv RESULTS
+
+RESULTS: the folder of results of the campaign, with verdict.json and model_updated.yaml.
 """
 
 import sys
+from pathlib import Path
 
-from vibroimpact.completion.store import read_values
+from vibroimpact.config.reading import read_yaml
 from vibroimpact.records import write_table
 from vibroimpact.verdict.file import read_verdict
 
@@ -14,15 +17,12 @@ from vibroimpact.verdict.file import read_verdict
 PUBLISHED = {"cubic": 3.97, "quadratic": -0.26, "frequency_Hz": 68.58, "damping_ratio": 0.0468}
 
 
-def silverbox_table(verdict, completed):
+def silverbox_table(verdict, model):
     """Return rows {quantity, identified, low, high, published, relative_difference} from a Verdict
     and the values of its completed model.
     """
-    modes = completed["trial"]["modes"]
-    found = {
-        "frequency_Hz": (modes["frequency"][0],) * 3,
-        "damping_ratio": (modes["damping_ratio"][0],) * 3,
-    }
+    mode = model["structure"]["modes"][0]
+    found = {name: (mode[name],) * 3 for name in ("frequency_Hz", "damping_ratio")}
     for effect in verdict.effects:
         for name, each in effect.parameters.items():
             found[name.removesuffix("_stiffness")] = each.value, each.low, each.high
@@ -42,6 +42,7 @@ def silverbox_table(verdict, completed):
 
 
 if __name__ == "__main__":
-    table_file, verdict_file, completed_file = sys.argv[1:]
-    rows = silverbox_table(read_verdict(verdict_file), read_values(completed_file))
-    write_table(rows, table_file)
+    table_file, results = sys.argv[1:]
+    folder = Path(results)
+    completed = read_yaml(str(folder / "model_updated.yaml"))
+    write_table(silverbox_table(read_verdict(folder / "verdict.json"), completed), table_file)

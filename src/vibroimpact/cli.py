@@ -319,10 +319,11 @@ def _sidecar(path: str) -> tuple[str | None, list[str]]:
 
 def _structure_file(path: str) -> tuple[str | None, list[str]]:
     """Return (what a file without modes asks for, its problems). Raises ConfigError."""
-    from vibroimpact.completion.structure_file import read_structure
+    from vibroimpact.diagnosis.identified.structure_file import read_structure
 
     stated = read_structure(path)
-    band = f"{stated.band_Hz[0]:g} to {stated.band_Hz[1]:g} Hz" if stated.band_Hz else "any band"
+    asked = stated.band_Hz if stated is not None else None
+    band = f"{asked[0]:g} to {asked[1]:g} Hz" if asked else "any band"
     return f"a structure to be identified from its campaign, {band}", []
 
 

@@ -6,12 +6,12 @@ import pytest
 from tests.sound_campaign import sound_campaign
 from vibroimpact.campaign.base_motion import base_motion_rows
 from vibroimpact.campaign.checks.file_checks import check_campaign
-from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.force_kinds import base_channels, shown_load_unit
 from vibroimpact.campaign.signals import campaign_signals
-from vibroimpact.completion.own_records import Unusable, own_records
 from vibroimpact.config.reading import check_config
-from vibroimpact.diagnosis.usable import not_testable
+from vibroimpact.diagnosis.identified.records import usable_records
+from vibroimpact.diagnosis.usable import Refused, not_testable
 from vibroimpact.observation.attached_model import attach
 from vibroimpact.observation.comparable import comparison_problems
 from vibroimpact.observation.signals import signals_of
@@ -95,16 +95,15 @@ def test_obstacles_fixed_in_space_are_refused(study_config):
     assert "obstacles: moving" in sentence
 
 
-def test_structure_without_a_model_needs_a_force(tmp_path):
+def test_structure_without_a_model_needs_a_force():
     campaign = sound_campaign()
     kinds = np.array(["base_acceleration"], dtype=object)
     campaign = campaign.assign(
         force_channel_kind=("force_channel", kinds),
         force_channel_units=("force_channel", np.array(["m s-2"], dtype=object)),
     )
-    write_campaign(campaign, tmp_path / "campaign.nc")
-    with pytest.raises(Unusable, match=r"force_channel_kind\[0\] = 'base_acceleration'"):
-        own_records(tmp_path / "campaign.nc")
+    with pytest.raises(Refused, match=r"force_channel_kind\[0\] = 'base_acceleration'"):
+        usable_records(campaign)
 
 
 def test_checks_tell_what_was_taken_out():

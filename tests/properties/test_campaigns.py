@@ -12,8 +12,8 @@ from tests.sound_campaign import sound_campaign
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
 from vibroimpact.campaign.file import CampaignError, checked_description, measured_values
 from vibroimpact.campaign.signals import campaign_signals
-from vibroimpact.completion.own_records import Unusable, own_records
 from vibroimpact.config.reading import load_config
+from vibroimpact.diagnosis.identified.records import usable_records
 from vibroimpact.diagnosis.usable import Refused, usable
 from vibroimpact.observation.comparable import comparison_problems
 from vibroimpact.observation.signals import signals_of
@@ -168,7 +168,7 @@ CHANGES = {
 
 
 def read(path):
-    """Do what `vibroimpact check`, a comparison and a completion do before the first simulation.
+    """Do what `vibroimpact check` and both kinds of diagnosis do before the first simulation.
 
     Returns (campaign, rows of checks). Raises CampaignError with the sentences of a refusal.
     """
@@ -182,8 +182,8 @@ def read(path):
         except Refused as refusal:
             assert str(refusal)
     try:
-        own_records(path)
-    except Unusable as problem:
+        usable_records(path)
+    except Refused as problem:
         assert str(problem).endswith(".")
     return campaign, rows
 

@@ -13,14 +13,12 @@ from examples.f16.records import f16_campaign
 from examples.silverbox.published import silverbox_table
 from examples.silverbox.records import silverbox_campaign
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
-from vibroimpact.completion.candidate import run_candidate
-from vibroimpact.completion.levels import levels_of, naming_split
-from vibroimpact.completion.linear_models import linear_errors, linear_models
-from vibroimpact.completion.mounting import mounting_table
-from vibroimpact.completion.own_records import own_records
-from vibroimpact.completion.own_study import own_study
-from vibroimpact.completion.store import modes_of, trial_of
-from vibroimpact.completion.structure_file import StructureFile, read_structure
+from vibroimpact.diagnosis.diagnose import run_diagnosis
+from vibroimpact.diagnosis.identified.identified import identified
+from vibroimpact.diagnosis.identified.levels import levels_of, naming_split
+from vibroimpact.diagnosis.identified.records import usable_records
+from vibroimpact.diagnosis.identified.stated import own_units
+from vibroimpact.diagnosis.identified.structure_file import model_of
 from vibroimpact.verdict.content import Estimate, FoundEffect
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -57,7 +55,8 @@ def test_validation_levels_are_held_out(tmp_path):
         ("Level5_Validation", 2),
     ):
         write_f16(tmp_path, name, count)
-    levels, names, kinds = levels_of(f16_campaign(tmp_path.glob("*.mat")))
+    campaign = f16_campaign(tmp_path.glob("*.mat"))
+    levels = levels_of(campaign)
     assert {level.name: (level.split, level.periods) for level in levels} == {
         "level 1": ("fit", 8),
         "level 2": ("holdout", 8),
@@ -66,10 +65,7 @@ def test_validation_levels_are_held_out(tmp_path):
         "level 5": ("holdout", 1),
         "level 7": ("fit", 8),
     }
-    assert (
-        names == ["acceleration 1", "acceleration 2", "acceleration 3"]
-        and kinds == ["acceleration"] * 3
-    )
+    assert campaign["channel_name"].values.tolist() == [f"acceleration {at}" for at in (1, 2, 3)]
     fitted, tried = naming_split(levels)
     assert {level.name for level in fitted} == {"level 1", "level 3", "level 7"} and len(tried) == 3
 
@@ -77,7 +73,7 @@ def test_validation_levels_are_held_out(tmp_path):
 def test_a_level_given_twice_has_two_names(tmp_path):
     write_f16(tmp_path, "Level1", 3)
     write_f16(tmp_path, "Level1_Validation", 3)
-    levels, _, _ = levels_of(f16_campaign(tmp_path.glob("*.mat")))
+    levels = levels_of(f16_campaign(tmp_path.glob("*.mat")))
     assert {(level.name, level.split) for level in levels} == {
         ("level 1", "fit"),
         ("level 1 validation", "holdout"),
@@ -87,7 +83,7 @@ def test_a_level_given_twice_has_two_names(tmp_path):
 def test_held_out_record_may_have_another_period(tmp_path):
     write_f16(tmp_path, "Level1", 9)
     write_f16(tmp_path, "Level2_Validation", 4, period=16384)
-    levels, _, _ = levels_of(f16_campaign(tmp_path.glob("*.mat")))
+    levels = levels_of(f16_campaign(tmp_path.glob("*.mat")))
     assert sorted((level.frequency[1], level.periods) for level in levels) == [
         (400.0 / 16384, 3),
         (400.0 / 8192, 8),
@@ -107,7 +103,7 @@ def test_silverbox_input_and_output_are_paired(tmp_path):
         "50 mV": "holdout",
         "100 mV": "fit",
     }
-    levels, _, _ = levels_of(campaign)
+    levels = levels_of(campaign)
     assert all(
         level.periods == 25 and level.response[0] == pytest.approx(2.0 * level.force, abs=1.0e-6)
         for level in levels
@@ -127,59 +123,68 @@ def test_foreign_files_are_named(tmp_path):
 
 
 def real(name, folder, campaign_of):
-    """(campaign, Study) of the real records by the example's file, or a skip that says where to get
-    them.
+    """(campaign, MeasuredStructure) of the real records by the example's file, or a skip that says
+    where to get them.
     """
     files = sorted((DATA / folder).glob("*.mat"))
     if not files:
         pytest.skip(f"no records in {DATA / folder}: download them from nonlinearbenchmark.org")
-    campaign = campaign_of(files)
-    asked = read_structure(str(ROOT / "examples" / name / "structure.yaml"))
-    return campaign, own_study(name, asked, campaign, 0, asked.band_Hz)
+    return campaign_of(files), model_of(ROOT / "examples" / name / "structure.yaml")
+
+
+def errors_of(found, channel):
+    """{level: (linear, identified again, completed)} of a channel of a Diagnosis."""
+    rows = found.identified.prediction(found.chosen)
+    names = ("error_linear", "error_refitted", "error_completed")
+    return {
+        row["level"]: tuple(row[name] for name in names)
+        for row in rows
+        if row["channel"] == channel
+    }
 
 
 @pytest.mark.slow
-def test_f16_mounting_softens_and_methods_agree():
-    campaign, study = real("f16", "f16_ground_vibration", f16_campaign)
-    linear = linear_models(campaign, study)
-    base, levels = modes_of(linear["base"]), levels_of(campaign)[0]
+def test_f16_mounting_softens():
+    own, _ = identified(*real("f16", "f16_ground_vibration", f16_campaign))
+    base = own.linear.base
     assert base.frequency[~base.residual][:6] == pytest.approx(
         [3.47, 3.97, 5.19, 6.61, 7.32, 9.17], abs=0.02
     )
-    assert (
-        np.max(linear_errors(base, levels[0], study.band_Hz)) < 0.11
-        and np.min(linear_errors(base, levels[-1], study.band_Hz)) > 0.8
-    )
-    rows, _ = mounting_table(levels, study, linear)
-    found = {
-        method: [row["k_N_per_m"] for row in rows if row["method"] == method]
-        for method in ("peak", "broadband")
-    }
-    assert np.all(np.diff(found["peak"]) < 0.0) and found["broadband"] == pytest.approx(
-        found["peak"], abs=0.1 * abs(found["peak"][-1])
-    )
+    change = own.setting.ranking["mounting"].k / 1.0e6
+    assert change == pytest.approx([0.0, -0.52, -1.44], rel=0.1, abs=0.01)
+
+
+@pytest.mark.slow
+def test_f16_friction_in_the_mounting_is_named():
+    found = run_diagnosis(*real("f16", "f16_ground_vibration", f16_campaign))
+    verdict = found.verdict
+    assert (verdict.verdict, verdict.ambiguity_set) == ("named", [["coulomb_friction"]])
+    assert verdict.effects[0].location.startswith("mounting")
+    errors = errors_of(found, "acceleration 3")
+    assert errors[1][2] < 1.2 * errors[1][0]
+    for level, most in ((3, 1.0), (5, 0.6), (7, 0.75)):
+        assert errors[level][2] < most * errors[level][1], level
 
 
 @pytest.mark.slow
 def test_published_silverbox_coefficients_are_recovered():
-    campaign, study = real("silverbox", "silverbox", silverbox_campaign)
-    linear = linear_models(campaign, study)
-    assert modes_of(linear["base"]).frequency == pytest.approx([68.58], abs=0.02)
-    cubic = run_candidate(campaign, study, linear, "cubic_stiffness.ground", told=lambda text: None)
-    both = run_candidate(
-        campaign, study, linear, "quadratic_stiffness.ground", cubic, told=lambda text: None
-    )
-    third, second = (float(term.values[0]) for term in trial_of(both["trial"]).terms)
-    assert third == pytest.approx(3.97, rel=0.02) and second == pytest.approx(-0.26, rel=0.06)
-    assert both["errors"]["100 mV"][0] < 0.01 and both["errors"]["20 mV"][0] < 0.03
+    found = run_diagnosis(*real("silverbox", "silverbox", silverbox_campaign))
+    assert found.identified.linear.base.frequency == pytest.approx([68.58], abs=0.02)
+    values = {
+        name: each.value
+        for effect in found.verdict.effects
+        for name, each in effect.parameters.items()
+    }
+    assert values["cubic_stiffness"] == pytest.approx(3.97, rel=0.01)
+    assert values["quadratic_stiffness"] == pytest.approx(-0.26, rel=0.05)
+    errors = errors_of(found, "output")
+    assert errors[5][2] < 2.0 * errors[5][0] and errors[20][2] < 0.006 and errors[100][2] < 0.004
 
 
 def test_units_of_an_electronic_law_are_powers_of_volts():
-    campaign = electronic("V", "V")
-    found = own_study("circuit", StructureFile(), campaign, 0, (1.0, 2.0))
-    assert [found.unit(unit) for unit in ("N", "N/m", "N/m3", "kg")] == ["V", "1", "V-2", "kg"]
-    mixed = own_study("circuit", StructureFile(), electronic("mV", "A"), 0, (1.0, 2.0))
-    assert mixed.unit("N/m2") == "V/(A)2"  # laws are fitted in SI
+    volts = own_units(electronic("V", "V"), 0)
+    assert [volts[unit] for unit in ("N", "N/m", "N/m3")] == ["V", "1", "V-2"]
+    assert own_units(electronic("mV", "A"), 0)["N/m2"] == "V/(A)2"  # laws are fitted in SI
 
 
 def electronic(force, response):
@@ -197,13 +202,13 @@ def electronic(force, response):
 
 
 def test_coefficients_stand_beside_the_published_ones():
-    modes = {"frequency": [68.58], "damping_ratio": [0.05]}
+    modes = [{"frequency_Hz": 68.58, "damping_ratio": 0.05}]
     cubic = FoundEffect(
         id="cubic_stiffness",
         location="ground",
         parameters={"cubic_stiffness": Estimate(value=4.0, unit="V-2", low=3.9, high=4.1)},
     )
-    rows = silverbox_table(SimpleNamespace(effects=[cubic]), {"trial": {"modes": modes}})
+    rows = silverbox_table(SimpleNamespace(effects=[cubic]), {"structure": {"modes": modes}})
     found = {row["quantity"]: row for row in rows}
     assert list(found) == ["frequency_Hz", "damping_ratio", "cubic"]
     assert found["cubic"]["published"] == 3.97
@@ -220,6 +225,6 @@ def test_records_with_periods_of_their_own_reach_the_levels(tmp_path):
     campaign["response"].values[1] *= 2.0
     campaign["load_rms"].values[1] *= 2.0
     write_campaign(campaign, tmp_path / "f16.nc")
-    usable, _, measured = own_records(str(tmp_path / "f16.nc"))
+    usable, _, measured = usable_records(tmp_path / "f16.nc")
     assert measured.period_samples == 0 and "whole_records" not in usable.attrs
-    assert sorted(level.periods for level in levels_of(usable)[0]) == [3, 8, 8]
+    assert sorted(level.periods for level in levels_of(usable)) == [3, 8, 8]

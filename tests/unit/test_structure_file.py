@@ -3,16 +3,20 @@ is told with place, value and remedy.
 """
 
 import re
-from dataclasses import fields
 
 import pytest
 
-from vibroimpact.completion.local_laws import LAWS
-from vibroimpact.completion.own_study import check_names, default_places
-from vibroimpact.completion.structure_file import StructureFile, read_structure
-from vibroimpact.completion.study import laws_to_fit
+from tests import two_masses
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import ConfigError
+from vibroimpact.diagnosis.identified.local_laws import LAWS
+from vibroimpact.diagnosis.identified.stated import default_places, with_laws, with_places
+from vibroimpact.diagnosis.identified.structure_file import (
+    model_from,
+    model_of,
+    read_structure,
+    values_of,
+)
 
 
 def written(folder, text):
@@ -25,7 +29,7 @@ def written(folder, text):
 def test_everything_may_be_left_out(tmp_path):
     assert (
         read_structure(written(tmp_path, "structure: {kind: identified}"))
-        == StructureFile()
+        == MeasuredStructure(kind="identified")
         == read_structure("identified")
     )
 
@@ -46,9 +50,10 @@ structure:
 """,
         )
     )
-    assert found == StructureFile(
-        (5, 60), "a1", {"joint": {"a1": -1, "a2": 1}}, ("cubic_stiffness.joint",), (), (True, False)
-    )
+    assert (found.band_Hz, found.drive, found.residual_modes) == ((5, 60), "a1", (True, False))
+    assert found.places == {"joint": {"a1": -1, "a2": 1}}
+    assert (found.candidates, found.additions) == (("cubic_stiffness.joint",), ())
+    assert model_from(values_of(found)) == model_of(found) == found
 
 
 @pytest.mark.parametrize(
@@ -82,8 +87,6 @@ def test_other_models_are_left_to_the_study(tmp_path, text):
             "structure.residual_modes = 'yes please' must be two of true and false",
         ),
         ("emphasis: -1", "structure.emphasis = -1 must be between 0"),
-        ("mounting: [joint]", "structure.mounting = ['joint'] must be the name of a place"),
-        ("peak_Hz: 20", "structure.peak_Hz = 20 must be two frequencies in Hz"),
         ("places: {joint: 3}", "structure.places.joint = 3 must give a coefficient"),
         ("places: [joint]", "structure.places = ['joint'] must be a block of places"),
         ("additions: {}", "structure.additions = {} must be a list of names law.place"),
@@ -132,9 +135,8 @@ structure:
     ]
 
 
-def test_every_declared_key_is_used_and_has_an_example():
+def test_every_declared_key_has_an_example():
     keys = MeasuredStructure.model_fields
-    assert set(keys) - {"kind"} == {each.name for each in fields(StructureFile)} - {"source"}
     for name, key in keys.items():
         assert key.description.endswith(".") and len(key.examples) == 1, name
     examples = {name: key.examples[0] for name, key in keys.items()}
@@ -142,26 +144,31 @@ def test_every_declared_key_is_used_and_has_an_example():
 
 
 def test_unknown_channel_names_are_listed_with_known_ones():
-    asked = StructureFile(
+    stated = MeasuredStructure(
+        kind="identified",
         drive="b",
-        places={"joint": {"a1": -1, "c": 1}},
-        candidates=("clearance.root",),
-        mounting="root",
-        source="x.yaml",
+        places={"joint": {"upper": -1, "c": 1}},
+        candidates=["clearance.root", "clearance.elsewhere"],
+        additions=["clearance.elsewhere"],
     )
     with pytest.raises(ConfigError) as error:
-        check_names(asked, ["a1", "a2"])
+        with_places(stated, two_masses.campaign("nothing", periods=2))
     places = [
-        problem.removeprefix("x.yaml: structure.").split(" is ")[0]
-        for problem in error.value.problems
+        problem.removeprefix("structure.").split(" is ")[0] for problem in error.value.problems
     ]
     assert places == [
         "drive = 'b'",
         "places.joint.c",
         "candidates: 'clearance.root'",
-        "mounting = 'root'",
+        "candidates: 'clearance.elsewhere'",
     ]
-    assert "the usable channels are a1, a2" in str(error.value)
+    assert "the usable channels are upper, lower" in str(error.value)
+
+
+def test_laws_are_tried_at_the_places_that_change():
+    found = with_laws(MeasuredStructure(kind="identified"), ["joint", "root"])
+    assert "clearance.joint" in found.candidates and "clearance.root" in found.candidates
+    assert {name.partition(".")[2] for name in found.additions} == {"joint"}
 
 
 def test_places_are_channel_pairs_and_channels_to_ground():
@@ -179,20 +186,3 @@ def test_places_are_channel_pairs_and_channels_to_ground():
 def test_the_key_reference_names_every_law():
     described = MeasuredStructure.model_fields["candidates"].description
     assert set(LAWS) <= set(re.findall(r"`(\w+)`", described))
-
-
-def test_no_law_is_fitted_to_a_refused_campaign():
-    study = {
-        "name": "x",
-        "band_Hz": [5, 60],
-        "drive": "a1",
-        "residual_modes": [True, True],
-        "mean": False,
-        "places": {"joint": {"a1": 1.0}},
-        "candidates": ["clearance.joint"],
-        "additions": [],
-    }
-    prepared = {"study": study, "refused": None}
-    assert laws_to_fit(prepared, "candidates") == ("clearance.joint",)
-    assert laws_to_fit(prepared | {"refused": "Too noisy."}, "candidates") == ()
-    assert laws_to_fit({"study": None, "refused": "No channel."}, "additions") == ()

@@ -154,7 +154,7 @@ def test_the_wheel_brings_workflow_configurations_and_examples(archives):
         if file.is_file() and "__pycache__" not in file.parts
     } - {"workflow/put_library_on_path.py", "workflow/remove_study.py"}  # for clones
     assert "workflow/scripts/simulate.py" in shared and "config/study.yaml" in shared
-    shared |= {"Snakefile", "examples/f16/f16.smk", "examples/f16/structure.yaml"}
+    shared |= {"Snakefile", "examples/f16/records.py", "examples/f16/structure.yaml"}
     missing = {f"vibroimpact/share/{name}" for name in shared} - names(archives[0])
     assert missing == set()
 

@@ -5,7 +5,7 @@ import shlex
 import sys
 from pathlib import Path
 
-# The folder that holds Snakefile, workflow/, config/ and examples/: a checkout with the library in
+# The folder that holds Snakefile, workflow/ and config/: a checkout with the library in
 # src/, or vibroimpact/share/ of the installed package. That of the package also serves a module
 # that Snakemake reads from a repository in the network.
 if workflow.current_basedir.is_local:
@@ -28,7 +28,6 @@ def as_input(path):
 
 SOURCE = as_input(ROOT / "src" if IN_CHECKOUT else ROOT.parents[1])
 SCRIPTS = as_input(ROOT / "workflow" / "scripts")
-EXAMPLES = as_input(ROOT / "examples")
 CONFIGURATIONS = as_input(ROOT / "config")
 # Snakemake writes sys.executable into commands as it stands: a path with a space needs quotes.
 PYTHON = sys.executable if sys.executable.startswith("'") else shlex.quote(sys.executable)
@@ -44,10 +43,10 @@ os.environ.update(
     NUMBA_NUM_THREADS="1",
 )
 
-from vibroimpact.completion.structure_file import read_structure
 from vibroimpact.config.asked_numbers import asked_number
-from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
+from vibroimpact.config.reading import ConfigError, check_config, read_yaml
 from vibroimpact.diagnosis.diagnose_command import EFFORTS
+from vibroimpact.diagnosis.identified.structure_file import model_of, values_of
 
 # Values of --config that are not keys of the study.
 REQUEST = {
@@ -61,7 +60,6 @@ REQUEST = {
         "count",
         "shard",
         "add",
-        *(f"{folder.name}_data" for folder in sorted(Path(EXAMPLES).glob("*/"))),
     )
     if name in config
 }
@@ -134,32 +132,20 @@ def checked_config():
 
 
 def checked_model():
-    """The Config of the model that a campaign is compared with.
+    """The model that a campaign is compared with, or what is stated of a structure without one.
 
     It is that of --config model=FILE, or the study's where none is given.
     """
     try:
-        return load_config(REQUEST["model"]) if "model" in REQUEST and OWN is None else STUDY
-    except ConfigError as error:
-        sys.exit(str(error))
-
-
-def own_structure():
-    """The StructureFile of --config model=FILE if its modes are to be identified, else None."""
-    try:
-        return read_structure(REQUEST["model"]) if "model" in REQUEST else None
+        return model_of(REQUEST["model"]) if "model" in REQUEST else STUDY
     except ConfigError as error:
         sys.exit(str(error))
 
 
 STUDY = checked_config()
 STUDY_FILES = " + ".join(os.path.relpath(file) for file in workflow.configfiles)
-OWN = own_structure()
-if OWN is not None and "effort" in REQUEST:
-    sys.exit(
-        f"effort = '{EFFORT}': a structure that is identified from its campaign has another search:"
-        " leave it out, or narrow band_Hz and candidates"
-    )
 MODEL = checked_model()
+MODEL_VALUES = values_of(MODEL)
+WITHOUT_MODEL = not isinstance(MODEL, type(STUDY))  # modes come from the campaign itself
 MODEL_FILES = STUDY_FILES if MODEL is STUDY else REQUEST["model"]
 RESULTS = f"results/{STUDY.study}"

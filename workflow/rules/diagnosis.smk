@@ -1,17 +1,22 @@
 # A measured campaign against a model, one job from the campaign to the verdict:
-# `snakemake discrepancy --config campaign=FILE [model=config/x.yaml]`.
+# `snakemake discrepancy --config campaign=FILE [model=config/x.yaml]`, or model=identified.
 # effort=quick or thorough looks for one or three effects at once, in place of two.
 
 
 rule _diagnosis:
     input:
-        campaign=after_model_checks(MODEL, MODEL_FILES, compared_campaign),
+        campaign=(
+            asked_campaign
+            if WITHOUT_MODEL
+            else after_model_checks(MODEL, MODEL_FILES, compared_campaign)
+        ),
     output:
         verdict=f"{DISCREPANCY}/verdict.json",
         ranking=f"{DISCREPANCY}/ranking.csv",
         spectra=f"{DISCREPANCY}/spectra.nc",
         evidence=f"{DISCREPANCY}/evidence.nc",
         model=f"{DISCREPANCY}/model_updated.yaml",
+        prediction=[f"{DISCREPANCY}/prediction.csv"] if WITHOUT_MODEL else [],
     log:
         f"{DISCREPANCY}/logs/diagnosis.log",
     benchmark:
@@ -22,7 +27,7 @@ rule _diagnosis:
         runtime=minutes(60),
     params:
         library=library("diagnosis"),
-        config=MODEL.model_dump(mode="json"),
+        model=MODEL_VALUES,
         effort=EFFORT,
         so_far=f"{DISCREPANCY}/so_far.json",
     message:

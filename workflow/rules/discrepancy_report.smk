@@ -33,7 +33,7 @@ rule _discrepancy_report:
         runtime=minutes(10),
     params:
         library=library("discrepancy_report"),
-        config=MODEL.model_dump(mode="json"),
+        model=MODEL_VALUES,
         name=LOOKED_AT,
     message:
         f"Report of {LOOKED_AT}: {DISCREPANCY}/report.html"

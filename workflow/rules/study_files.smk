@@ -57,15 +57,10 @@ def library(script):
     It is a function, so that only the digests of jobs that are planned are made. A param costs the
     same whatever the number of files, while each input of each job is looked at again and again.
     """
-    return library_of(f"{SCRIPTS}/{script}.py")
-
-
-def library_of(program):
-    """The digest of the library files that a program imports, as library() gives it."""
 
     @cache
     def digest():
-        return library_digest(program, SOURCE)
+        return library_digest(f"{SCRIPTS}/{script}.py", SOURCE)
 
     return lambda wildcards: digest()
 

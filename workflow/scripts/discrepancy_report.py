@@ -2,28 +2,35 @@
 
 from pathlib import Path
 
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.schema import Config
+from vibroimpact.diagnosis.identified.structure_file import model_from
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_record, write_text
-from vibroimpact.reports.discrepancy_page import discrepancy_page
+from vibroimpact.reports.discrepancy_page import FREE_RUNS, NOISE, discrepancy_page
 from vibroimpact.verdict.file import read_verdict
 
 redirect_output(snakemake.log[0])
+model = model_from(snakemake.params.model)
+with_model = isinstance(model, Config)
 files, folder = snakemake.input, Path(snakemake.output.page).parent
 verdict = read_verdict(files.verdict)
 sheets = diagnosis_figures(
     read_record(files.evidence),
     read_record(files.spectra),
     verdict,
-    check_config(snakemake.params.config, "model"),
+    model if with_model else None,
 )
 for sheet in sheets:
     sheet.save(folder / "figures")
 shown = [folder / "figures" / f"{sheet.name}.png" for sheet in sheets if sheet.tables]
 write_text(
     discrepancy_page(
-        snakemake.params.name, verdict, shown, model=str(folder / "model_updated.yaml")
+        snakemake.params.name,
+        verdict,
+        shown,
+        FREE_RUNS if with_model else NOISE,
+        str(folder / "model_updated.yaml"),
     ),
     snakemake.output.page,
 )

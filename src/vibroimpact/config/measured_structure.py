@@ -127,10 +127,6 @@ Emphasis = Annotated[
         "must be between 0 (all levels alike) and 2",
     ),
 ]
-Place = Annotated[
-    str,
-    only(lambda value: isinstance(value, str), "must be the name of a place, such as joint"),
-]
 
 
 class MeasuredStructure(Section):
@@ -195,16 +191,4 @@ class MeasuredStructure(Section):
         " error is multiplied by the RMS of its response over that of the largest level, to this"
         " power. Between 0 (all levels alike) and 2.",
         examples=[1],
-    )
-    mounting: Place | None = Field(
-        None,
-        description="Place whose equivalent stiffness and damping are tabled against the level."
-        " Default: the place that explains the change with the level best.",
-        examples=["joint"],
-    )
-    peak_Hz: Band | None = Field(
-        None,
-        description="Band in which the mode with the largest peak gives that stiffness and damping."
-        " Default: round the mode that changes most with the level.",
-        examples=[[15, 25]],
     )

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
-PACKAGE = Path(__file__).resolve().parents[1]
 TARGETS = ("validation",)
 # How snakemake marks a wildcard, and what names no folder inside results/.
 UNUSABLE = r"[{}/\\*?\x00-\x1f]|^\.*$"
 DRAW_NAME = r"(acceptance|development)_([0-9]+)"  # of every draw of campaigns
 
 
-def reserved_names() -> frozenset[str]:
-    """Return the names, in small letters: a file system may take Validation for validation."""
-    places = (PACKAGE / "share" / "examples", PACKAGE.parents[1] / "examples")
-    examples = (rules.parent.name.lower() for place in places for rules in place.glob("*/*.smk"))
-    return frozenset((*TARGETS, *examples))
-
-
 def is_reserved(name: str) -> bool:
-    """Whether a target writes to the folder of this name, or a draw of campaigns does."""
-    return name.lower() in reserved_names() or re.fullmatch(DRAW_NAME, name.lower()) is not None
+    """Whether a target writes to the folder of this name, or a draw of campaigns does.
+
+    A file system may take Validation for validation.
+    """
+    return name.lower() in TARGETS or re.fullmatch(DRAW_NAME, name.lower()) is not None
 
 
 def name_problem(name: str, study: str | None = None) -> str | None:
@@ -30,7 +24,7 @@ def name_problem(name: str, study: str | None = None) -> str | None:
     study: name of the study of the same run, whose folder is taken.
     """
     if is_reserved(name):
-        target = name.lower() if name.lower() in reserved_names() else "acceptance"
+        target = name.lower() if name.lower() in TARGETS else "acceptance"
         return f"its results would go to results/{name}, which the target {target} writes"
     if name == study:
         return f"its results would go to results/{name}, where the study '{study}' is"

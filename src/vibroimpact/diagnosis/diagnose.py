@@ -11,11 +11,11 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.checks.stated import check_row
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.observation.attached_model import with_channel_points
-from vibroimpact.observation.signals import signals_of
+from vibroimpact.observation.signals import Signals, signals_of
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
@@ -37,6 +37,9 @@ from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
 from .free_runs import FreeRuns, distance, free_runs, regions
+from .identified.identified import PREDICTION, Identified, identified
+from .identified.search import left_and_floor, search_laws
+from .identified.structure_file import model_of
 from .next_measurement import next_measurement
 from .search import Hypothesis, Search, search
 from .usable import Refused, not_testable, usable
@@ -54,10 +57,13 @@ class Diagnosis:
 
     verdict: Verdict
     comparison: Comparison | None = None
+    identified: Identified | None = None  # in place of a comparison, where there is no model
+    signals: Signals | None = None
     search: Search | None = None
     decision: Decision | None = None
     runs: FreeRuns | None = None
     completed: str = "# not testable: the model is as it was\n"
+    without_model: bool = False
 
     @property
     def chosen(self) -> Hypothesis | None:
@@ -69,15 +75,17 @@ class Diagnosis:
 
 def diagnose(
     campaign: xr.Dataset | str | Path,
-    model: Config | str | Path,
+    model: Config | MeasuredStructure | str | Path,
     effort: str = "standard",
     threads: int = 1,
 ) -> Verdict:
     """Return the Verdict on what a model lacks, given a measured campaign.
 
-    campaign: a campaign Dataset, or the path of its file. model: a checked Config, or the path of a
-    configuration. effort: "quick" looks for one effect, "standard" for two, "thorough" for three at
-    once. threads: runs at a time; no number depends on it.
+    campaign: a campaign Dataset, or the path of its file. model: a checked Config, the path of a
+    configuration, or "identified": modes are identified from the campaign; what is known of such a
+    structure is a MeasuredStructure or its file. effort: "quick" looks for one effect, "standard"
+    for two, "thorough" for three at once, both for as many as gain in an identified structure.
+    threads: runs at a time; no number depends on it.
 
     A campaign that can not be compared gives the verdict "not_testable". Raises ConfigError for a
     configuration that can not be used, ValueError for another effort.
@@ -87,7 +95,7 @@ def diagnose(
 
 def run_diagnosis(
     campaign: xr.Dataset | str | Path,
-    model: Config | str | Path,
+    model: Config | MeasuredStructure | str | Path,
     effort: str = "standard",
     threads: int = 1,
     provenance: dict[str, Any] | None = None,
@@ -98,7 +106,9 @@ def run_diagnosis(
     """
     if effort not in EFFORTS:
         raise ValueError(f"effort = '{effort}': give one of {', '.join(EFFORTS)}")
-    config = model if isinstance(model, Config) else load_config(model)
+    config = model_of(model)
+    if isinstance(config, MeasuredStructure):
+        return _run_identified(campaign, config, EFFORTS[effort], provenance or {}, log)
     watch, known = Stopwatch(), SIMULATED["records"]
     try:
         with watch("reading and checks"):
@@ -122,7 +132,36 @@ def run_diagnosis(
             comparison.structure, comparison.signals, None if chosen is None else chosen.point
         )
     return _concluded(
-        _Found(comparison, searched, decision, runs, checks, provenance or {}),
+        _Found(comparison.signals, searched, decision, runs, checks, provenance or {}, comparison),
+        _cost(watch, SIMULATED["records"] - known),
+    )
+
+
+def _run_identified(
+    campaign: xr.Dataset | str | Path,
+    stated: MeasuredStructure,
+    most: int,
+    provenance: dict[str, Any],
+    log: Log,
+) -> Diagnosis:
+    """Return the Diagnosis of a structure that is identified from its own records."""
+    watch, known = Stopwatch(), SIMULATED["records"]
+    try:
+        with watch("reading, checks and modes"):
+            own, checks = identified(campaign, stated, log)
+            signals = replace(signals_of(own.campaign), band_Hz=own.band_Hz)
+        with watch("search"):
+            searched = search_laws(own.setting, most, log)
+            decision = decide(searched, *left_and_floor(own.setting, searched))
+            if decision.verdict not in ("none", "unknown"):
+                decision = own.completed(decision, checks)
+        with watch("free runs"):
+            chosen = None if decision.verdict in ("none", "unknown") else decision.best
+            runs = own.free_runs(chosen)
+    except Refused as refusal:
+        return Diagnosis(_refused(refusal, provenance, watch), without_model=True)
+    return _concluded(
+        _Found(signals, searched, decision, runs, checks, provenance, identified=own),
         _cost(watch, SIMULATED["records"] - known),
     )
 
@@ -131,12 +170,30 @@ def run_diagnosis(
 class _Found:
     """What the stages found."""
 
-    comparison: Comparison
+    signals: Signals
     searched: Search
     decision: Decision
     runs: FreeRuns
     checks: list[dict[str, Any]]
     provenance: dict[str, Any]
+    comparison: Comparison | None = None
+    identified: Identified | None = None
+
+    def effect_rows(self, hypothesis: Hypothesis) -> list[dict[str, Any]]:
+        """Return the rows of the effects of a hypothesis."""
+        if self.identified is not None:
+            return self.identified.effect_rows(hypothesis)
+        return effect_rows(hypothesis, self.signals)
+
+    def model_text(self, point: Point, sentence: str) -> str:
+        """Return the text of the completed model."""
+        if self.comparison is not None:
+            return completed_model(self.comparison.structure, point, sentence)
+        return self.identified.model_text(point, sentence) if self.identified is not None else ""
+
+    def not_testable(self) -> list[str]:
+        """Return the effects that the campaign can not show."""
+        return not_testable(self.comparison.structure.campaign) if self.comparison else []
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
@@ -149,16 +206,19 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
     write_record(spectra(diagnosis), folder / "spectra.nc")
     write_record(evidence(diagnosis), folder / "evidence.nc")
     write_text(diagnosis.completed, folder / "model_updated.yaml")
+    if diagnosis.without_model:
+        own = diagnosis.identified
+        rows = [] if own is None else own.prediction(diagnosis.chosen)
+        write_table(rows, folder / "prediction.csv", columns=PREDICTION)
 
 
 def spectra(diagnosis: Diagnosis) -> xr.Dataset:
     """Return psd (state, record, channel, frequency): measured, and of free runs before and
     after.
     """
-    runs, comparison = diagnosis.runs, diagnosis.comparison
-    if runs is None or comparison is None:
+    runs, signals = diagnosis.runs, diagnosis.signals
+    if runs is None or signals is None:
         return xr.Dataset(attrs={"title": "no spectra: the campaign can not be tested"})
-    signals = comparison.signals
     values = np.stack([runs.measured, runs.before.mean(axis=1), runs.after.mean(axis=1)])
     return xr.Dataset(
         {
@@ -182,6 +242,8 @@ def spectra(diagnosis: Diagnosis) -> xr.Dataset:
 
 def evidence(diagnosis: Diagnosis) -> xr.Dataset:
     """Return what is shown of a diagnosis beside its spectra, see evidence.evidence_of."""
+    if diagnosis.identified is not None:
+        return diagnosis.identified.evidence(diagnosis.chosen)
     if diagnosis.comparison is None or diagnosis.search is None:
         return xr.Dataset(attrs={"title": "no evidence: the campaign can not be tested"})
     chosen = diagnosis.chosen
@@ -223,17 +285,15 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     content = {
         **_decided(decision, effects),
         "regions": (
-            []
-            if decision.verdict == "none"
-            else regions(found.runs, found.comparison.signals, REGIONS)
+            [] if decision.verdict == "none" else regions(found.runs, found.signals, REGIONS)
         ),
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
         "checks": _contract([*found.checks, *_failed_rows(found.searched)]),
-        "not_testable": not_testable(found.comparison.structure.campaign),
+        "not_testable": found.not_testable(),
         "provenance": found.provenance,
-        "load_unit": found.comparison.signals.load_unit,
+        "load_unit": found.signals.load_unit,
         "withdrawn": withdrawn,
         "cost": cost,
         "seconds": cost["cpu_seconds"],
@@ -242,25 +302,24 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     completed = (
         not_offered(withdrawn)
         if withdrawn
-        else completed_model(
-            found.comparison.structure,
-            _offered(found.searched, decision),
-            _sentence(decision.verdict),
-        )
+        else found.model_text(_offered(found.searched, decision), _sentence(decision.verdict))
     )
     return Diagnosis(
         Verdict.from_values(content),
         found.comparison,
+        found.identified,
+        found.signals,
         found.searched,
         decision,
         found.runs,
         completed,
+        found.identified is not None,
     )
 
 
 def _misfits(found: _Found) -> dict[str, Any]:
     """Return `misfit` of verdict.json."""
-    signals = found.comparison.signals
+    signals = found.signals
     return {
         split: distance(found.runs, signals, records) if len(records) else None
         for split, records in (("fit", signals.fit()), ("holdout", signals.holdout()))
@@ -273,7 +332,7 @@ def _effects(found: _Found) -> list[dict[str, Any]]:
     if decision.best is None or decision.verdict == "none":
         return []
     fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
-    rows = effect_rows(decision.best, found.comparison.signals)
+    rows = found.effect_rows(decision.best)
     return [row | {"law_fits": fits} for row in rows]
 
 

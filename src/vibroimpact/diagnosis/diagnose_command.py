@@ -20,7 +20,12 @@ EFFORTS = ("quick", "standard", "thorough")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("campaign", metavar="CAMPAIGN", help="a measured campaign (.nc)")
-    parser.add_argument("--model", metavar="FILE", required=True, help="configuration of the model")
+    parser.add_argument(
+        "--model",
+        metavar="FILE",
+        required=True,
+        help="configuration of the model; identified: the modes come from the campaign itself",
+    )
     parser.add_argument(
         "--effort",
         choices=EFFORTS,
@@ -38,23 +43,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 where there is no verdict."""
     from vibroimpact.config.problems import ConfigError
-    from vibroimpact.config.reading import load_config
     from vibroimpact.provenance import verdict_origin
     from vibroimpact.records import RecordError
 
     from .diagnose import run_diagnosis, write_diagnosis
+    from .identified.structure_file import model_of, values_of
 
     if not os.path.isfile(options.campaign):
         print(f"{options.campaign}: there is no such file", file=sys.stderr)
         return 1
     try:
-        config = load_config(options.model)
+        model = model_of(options.model)
         found = run_diagnosis(
             options.campaign,
-            config,
+            model,
             options.effort,
             threads=os.cpu_count() or 1,
-            provenance=verdict_origin(config.model_dump(mode="json"), options.campaign, None),
+            provenance=verdict_origin(values_of(model), options.campaign, None),
             log=lambda text: print(text, file=sys.stderr, flush=True),
         )
         if options.folder:

@@ -23,6 +23,10 @@ SENTENCES = {
         "Turn the force by 45 degrees: a lobed hole answers by direction, friction in a round hole"
         " does not."
     ),
+    frozenset({"coulomb_friction", "saturation_stiffness"}): (
+        "A slow sine up and down through the peak at two levels, and a static load cycle at the"
+        " place: friction has a loop, a spring that saturates has none."
+    ),
     frozenset({"support_offset", "preload"}): (
         "Measure the rest position in the support without force, and repeat at another gap: an"
         " offset moves the centre, a preload bends the tube."

@@ -62,7 +62,7 @@ def usable(
 
     campaign: a Dataset, or the file of one. Raises Refused, with the sentence why.
     """
-    whole, checks = _checked(campaign)
+    whole, checks = checked_campaign(campaign)
     if whole is not None and not refused(checks):
         checks += [*channel_rows(whole), *still_rows(config, whole)]
         checks += [
@@ -86,7 +86,9 @@ def not_testable(campaign: xr.Dataset) -> list[str]:
     return [effect.reported for effect in EFFECTS.values() if not set(effect.needs) <= held]
 
 
-def _checked(campaign):
+def checked_campaign(
+    campaign: xr.Dataset | str | Path,
+) -> tuple[xr.Dataset | None, list[dict[str, Any]]]:
     """Return (Dataset or None, rows) of a Dataset or a file."""
     if not isinstance(campaign, xr.Dataset):
         return check_file(campaign)

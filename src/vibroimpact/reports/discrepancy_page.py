@@ -49,11 +49,8 @@ HEADINGS = {
 SECTIONS = {
     "diagnosis_ranking": "sure",
     "diagnosis_holding": "where",
-    "where": "where",
     "diagnosis_law": "law",
     "diagnosis_place": "what",
-    "mounting": "what",
-    "restoring_force": "what",
 }
 BAR_PX = 240  # of a probability of 1
 MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6

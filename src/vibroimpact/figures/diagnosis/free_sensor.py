@@ -22,11 +22,17 @@ CAPTION = (
     " as velocities.{left_out} A sensor far beyond the others may be at fault."
 )
 
+NONE_HELD = (
+    "No sensor is held: the steady response to the measured force, which repeats by itself, is"
+    " predicted. Above: the sensor whose prediction gains most, where its response is largest."
+    " Below: RMS error over RMS response of every sensor, as velocities.{left_out}"
+)
+
 
 def free_sensor_figure(evidence: xr.Dataset) -> list[Sheet]:
     """Return [Sheet]: the waveform of a sensor that was left free, and the errors of all."""
     if "free_error" not in evidence:
-        why = ALONE if "holding_force" in evidence else REFUSED
+        why = ALONE if "holding_force" in evidence else evidence.attrs.get("left_out", REFUSED)
         columns = ("time_s", "velocity_m_per_s")
         return [empty_sheet("diagnosis_free_sensor", "No sensor is left free", why, columns)]
     states, error = shown_states(evidence), evidence["free_error"].values[:, 0]
@@ -40,7 +46,7 @@ def free_sensor_figure(evidence: xr.Dataset) -> list[Sheet]:
     sheet = Sheet(
         "diagnosis_free_sensor",
         f"{names[told]}, left free, is predicted: error {errors}",
-        CAPTION.format(left_out=words),
+        (NONE_HELD if evidence.attrs.get("held") == "nothing" else CAPTION).format(left_out=words),
         [["waveform"], ["errors"]],
         size=(WIDTH_IN, 3.8 + 0.24 * len(channels)),
         height_ratios=(2.3, 0.7 + 0.24 * len(channels)),

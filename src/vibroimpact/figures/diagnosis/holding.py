@@ -26,7 +26,8 @@ def holding_figure(evidence: xr.Dataset) -> list[Sheet]:
     """Return [Sheet]: maps of the holding force, a column per level and a row per state."""
     if "holding_force" not in evidence:
         columns = ("frequency_Hz", "holding_force_N")
-        return [empty_sheet("diagnosis_holding", "Holding force", REFUSED, columns)]
+        why = evidence.attrs.get("left_out", REFUSED)
+        return [empty_sheet("diagnosis_holding", "Holding force", why, columns)]
     levels, channels = chosen_levels(evidence), chosen_channels(evidence)
     states = shown_states(evidence)
     mosaic = [[f"{name}, {level}" for level in levels] for _, name in states]

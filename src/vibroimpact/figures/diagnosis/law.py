@@ -49,7 +49,7 @@ STATIC = "A static part of motion or force is not measured and is left out of bo
 def law_figure(evidence: xr.Dataset) -> list[Sheet]:
     """Return [Sheet]: force against motion at each support that the sensors tell of."""
     if "demanded_force" not in evidence:
-        why = NO_PLACE if "holding_force" in evidence else REFUSED
+        why = NO_PLACE if "holding_force" in evidence else evidence.attrs.get("left_out", REFUSED)
         columns = ("place_motion_m", "place_force_N")
         return [empty_sheet("diagnosis_law", "The law at the supports", why, columns)]
     evidence = evidence.isel(law_stretch=[telling_level(evidence)])

@@ -1,0 +1,244 @@
+"""A campaign whose structure is identified from its own records: what a diagnosis asks of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.file import valid_count
+from vibroimpact.campaign.signals import transfer_band
+from vibroimpact.config.measured_structure import MeasuredStructure
+from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.spectra.periodic_lines import LevelLines
+
+from ..decision import Decision
+from ..free_runs import FreeRuns
+from ..search import Hypothesis
+from .evidence import evidence_of
+from .fit import Fitted, estimates
+from .levels import SETTLED, levels_of, naming_split, noise_rows
+from .long_records import settled_response
+from .modes import LinearModels, Sensors, linear_errors, linear_models
+from .places import ranked_places, tried_places
+from .records import Rows, along_force, refuse, repeating, usable_records
+from .search import Log, Setting, refitted
+from .spectra import PERIODS_BEFORE, free_runs, steady_lines
+from .stated import default_band, own_units, with_laws, with_places
+from .trial import Records, Trial
+from .updated_model import configuration, configuration_text
+
+MISSED = 0.5  # of the response of the lowest level: a linear model that misses more is none
+PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "error_completed")
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """A campaign by its levels, in ascending load, and what was identified from it.
+
+    campaign: what of it is usable. everything: Records of all levels. units: of generic channels,
+    see stated.own_units.
+    """
+
+    campaign: xr.Dataset
+    setting: Setting
+    everything: Records
+    units: dict[str, str]
+
+    @property
+    def linear(self) -> LinearModels:
+        """Return the linear models."""
+        return self.setting.linear
+
+    @property
+    def band_Hz(self) -> tuple[float, float]:
+        """Return the band in Hz; one that begins at 0 from a hundredth of its end."""
+        low, high = self.everything.band_Hz
+        return max(low, 0.01 * high), high
+
+    def completed(self, decision: Decision, rows: Rows) -> Decision:
+        """Return the Decision with its best hypothesis fitted to all fitted levels.
+
+        Raises Refused where it has no bounded motion at some level.
+        """
+        (best, chance), *others = decision.ranked
+        levels = [level for level in self.everything.levels if level.split == "fit"]
+        try:
+            best = refitted(best, replace(self.setting.fitted, levels=levels), self.everything)
+            steady_lines(_trial(best), self.everything)
+        except ValueError as error:
+            refuse(str(error), rows)
+        return replace(decision, ranked=((best, chance), *others))
+
+    def states(self, chosen: Hypothesis | None) -> tuple[Trial, Trial]:
+        """Return the model before and after: the modes of the lowest level, and the completed one;
+        chosen: None where nothing is completed.
+        """
+        given = Trial(self.linear.base)
+        return given, given if chosen is None else _trial(chosen)
+
+    def free_runs(self, chosen: Hypothesis | None) -> FreeRuns:
+        """Return the FreeRuns before and after."""
+        return free_runs(*self.states(chosen), self.everything)
+
+    def effect_rows(self, hypothesis: Hypothesis) -> list[dict[str, Any]]:
+        """Return the rows of `effects` of verdict.json."""
+        own, rows = cast(Fitted, hypothesis.fit), []
+        for term, told in zip(own.point.terms, estimates(own), strict=True):
+            for each in told.values():
+                each["unit"] = self.units.get(each["unit"], each["unit"])
+            known = EFFECTS.get(term.effect_id)
+            row = {"id": term.effect_id, "family": known.family if known else None}
+            rows.append(row | {"location": term.location, "parameters": told})
+        return rows
+
+    def model_text(self, trial: Any, sentence: str) -> str:
+        """Return the YAML text of the configuration of a Trial."""
+        band = self.everything.band_Hz
+        loads = [level.load_rms for level in self.everything.levels]
+        values = configuration("identified", trial, self.setting.places, band, loads)
+        return configuration_text(values, sentence)
+
+    def evidence(self, chosen: Hypothesis | None) -> xr.Dataset:
+        """Return the evidence before and after, see evidence.evidence_of; with the equivalent
+        stiffness and damping (place, fitted_level) of each place, changes against the lowest level.
+        """
+        mechanical, places = not self.units, self.setting.ranking
+        out = evidence_of(self.campaign, self.everything, *self.states(chosen), mechanical)
+        table, families = ("ranked_place", "fitted_level"), places.values()
+        return out.assign_coords(
+            ranked_place=list(places), fitted_level=[own.name for own in self.setting.fitted.levels]
+        ).assign(
+            place_error=(table[:1], [own.error for own in families], {"units": "1"}),
+            stiffness_change=(table, [own.k for own in families], {"units": "N/m"}),
+            damping_change=(table, [own.c for own in families], {"units": "N s/m"}),
+        )
+
+    def prediction(self, chosen: Hypothesis | None) -> list[dict[str, Any]]:
+        """Return the rows of prediction.csv: relative error of the steady response of each level
+        and channel by the modes of the lowest level, those identified again, the completed model.
+        """
+        everything, rows = self.everything, []
+        lines = everything.predict(self.states(chosen)[1], PERIODS_BEFORE)
+        for level, completed in zip(everything.levels, everything.errors(lines), strict=True):
+            linear, again = (
+                linear_errors(modes, level, everything.band_Hz)
+                for modes in (self.linear.base, self.linear.again[level.name])
+            )
+            head = _number(level.name), level.split
+            for row in zip(self.linear.base.names, linear, again, completed, strict=True):
+                rows.append(dict(zip(PREDICTION, (*head, *row), strict=True)))
+        return rows
+
+
+def _number(name: str) -> int | float | str:
+    """Return the number in a level's name: 3 of level 3, 100 of 100 mV; the name where it has
+    none.
+    """
+    numbers = [float(word) for word in name.split() if word.replace(".", "", 1).isdigit()]
+    return name if not numbers else int(numbers[0]) if numbers[0].is_integer() else numbers[0]
+
+
+def _trial(hypothesis: Hypothesis) -> Trial:
+    """Return the Trial of a Hypothesis."""
+    return cast(Trial, hypothesis.point)
+
+
+def identified(
+    campaign: xr.Dataset | str | Path, stated: MeasuredStructure, log: Log = lambda text: None
+) -> tuple[Identified, Rows]:
+    """Return (Identified, rows of all checks) of a campaign Dataset or the path of its file.
+
+    Raises Refused with the sentence why no law can be told, ConfigError for channels and places
+    that are stated and not there.
+    """
+    usable, rows, measured = usable_records(campaign)
+    stated = with_places(stated, usable)
+    usable, drive = along_force(usable, measured, stated.drive, rows)
+    excited = stated.band_Hz or transfer_band(measured)
+    if excited is None:
+        refuse("The force excites too few lines: give band_Hz.", rows)
+    try:
+        lowest = _fitted(levels_of(usable))[0]
+        band = stated.band_Hz or default_band(lowest, measured.kinds, excited, measured.rate)
+        usable = _in_order(repeating(usable, band, rows))
+        sensors = Sensors(tuple(measured.channels), tuple(measured.kinds), drive)
+        usable, levels, linear = _linear(usable, sensors, band, stated)
+        setting = _setting(stated, levels, linear, band, log)
+    except ValueError as error:
+        text = str(error)
+        refuse(f"{text[0].upper()}{text[1:].rstrip('.')}.", rows)
+    lowest = _fitted(levels)[0]
+    missed = float(np.median(linear_errors(linear.base, lowest, band)))
+    if missed > MISSED:
+        refuse(
+            f"The linear model of {lowest.name} misses {missed:.0%} of the response:"
+            " what it lacks can not be told from what a law would add. A lower level, a narrower"
+            " band_Hz, or a channel at the force may help.",
+            rows,
+        )
+    rows += [row for level in levels for row in noise_rows(level, band)]
+    everything = Records(levels, band, stated.mean)
+    return Identified(usable, setting, everything, own_units(usable, drive)), rows
+
+
+def _fitted(levels: Sequence[LevelLines]) -> list[LevelLines]:
+    """Return the levels that are fitted, all where none is."""
+    return [level for level in levels if level.split == "fit"] or list(levels)
+
+
+def _in_order(campaign: xr.Dataset) -> xr.Dataset:
+    """Return the campaign with its records in the order of their levels."""
+    names = [str(name) for name in campaign["record_name"].values]
+    return campaign.isel(record=[names.index(level.name) for level in levels_of(campaign)])
+
+
+def _linear(usable, sensors, band, stated):
+    """Return (campaign, levels, LinearModels); of records without period, the free decay of each
+    level's own modes is taken away first.
+    """
+    residuals = stated.residual_modes
+    levels = levels_of(usable)
+    linear = linear_models(levels, naming_split(levels)[0], sensors, band, residuals)
+    if not usable.attrs.get("whole_records", 0):
+        return usable, levels, linear
+    out = usable.copy(deep=True).assign_attrs(whole_records=SETTLED)
+    for record, name in enumerate(usable["record_name"].values):
+        count = valid_count(usable, record)
+        force, response = (
+            usable[key].values[record, :, :count].astype(float) for key in ("force", "response")
+        )
+        out["response"].values[record, :, :count] = settled_response(
+            force[0],
+            response,
+            usable.attrs["sampling_frequency"],
+            linear.again[str(name)],
+            band,
+        )
+    levels = levels_of(out)
+    return (
+        out,
+        levels,
+        linear_models(levels, naming_split(levels)[0], sensors, band, residuals),
+    )
+
+
+def _setting(stated, levels, linear, band, log) -> Setting:
+    """Return the Setting of a search."""
+    named, tried = naming_split(levels)
+    ranking = ranked_places(stated.places, linear.base, named, band)
+    log("places: " + ", ".join(f"{place} {own.error:.3g}" for place, own in ranking.items()))
+    stated = with_laws(stated, tried_places(ranking))
+    return Setting(
+        stated.places,
+        ranking,
+        [name for name in stated.candidates if name.partition(".")[2] in ranking],
+        stated.additions,
+        linear,
+        Records(named, band, stated.mean, stated.emphasis),
+        Records(tried, band, stated.mean),
+    )

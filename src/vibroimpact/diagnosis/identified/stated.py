@@ -1,0 +1,131 @@
+"""What is stated of a structure without a model, and for the rest what its records say."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.file import PARALLEL, force_units
+from vibroimpact.config.measured_structure import ELSEWHERE, MeasuredStructure
+from vibroimpact.config.reading import ConfigError
+from vibroimpact.spectra.periodic_lines import LevelLines
+from vibroimpact.units import TIME_DERIVATIVES, si_unit
+
+LAWS_TRIED = (
+    "cubic_stiffness",
+    "quadratic_stiffness",
+    "quadratic_drag",
+    "saturation_stiffness",
+    "clearance",
+    "single_friction",
+    "coulomb_friction",
+)
+SECOND_LAWS = ("quadratic_stiffness", "cubic_stiffness", "quadratic_drag", "single_friction")
+MOST_PLACES = 60  # that are ranked
+# Share of the velocity's power below the end of the band, and how much wider the band is.
+ENOUGH, WIDER = 0.999, 1.3
+SHARPEST = 0.4  # of the sampling frequency: the end of any band
+
+
+def with_places(stated: MeasuredStructure, campaign: xr.Dataset) -> MeasuredStructure:
+    """Return what is stated with places, by default those of default_places.
+
+    Raises ConfigError for names that are no channel of the campaign, and places that are not given.
+    """
+    names = [str(name) for name in campaign["channel_name"].values]
+    directions = campaign["channel_direction"].values.astype(float)
+    places = stated.places or default_places(names, directions)
+    known = f"the usable channels are {', '.join(names)}"
+    problems = [
+        f"structure.{key} is no channel of the campaign: {known}"
+        for key, name in (
+            ("drive" if stated.drive is None else f"drive = '{stated.drive}'", stated.drive),
+            *((f"places.{place}.{name}", name) for place, row in places.items() for name in row),
+        )
+        if name is not None and name not in names
+    ]
+    problems += [
+        f"structure.{key}: '{name}' is at no place: the places are {', '.join(places)}"
+        for key, others in (("candidates", ()), ("additions", (ELSEWHERE,)))
+        for name in getattr(stated, key) or ()
+        if name.partition(".")[2] not in (*places, *others)
+    ]
+    if problems:
+        raise ConfigError(problems)
+    return stated.model_copy(update={"places": places})
+
+
+def with_laws(stated: MeasuredStructure, tried: Sequence[str]) -> MeasuredStructure:
+    """Return what is stated with candidates at the places that are tried, the best one first, and
+    additions there.
+    """
+    candidates = stated.candidates or tuple(f"{law}.{at}" for at in tried for law in LAWS_TRIED)
+    additions = tuple(f"{law}.{tried[0]}" for law in SECOND_LAWS)
+    if stated.additions is not None:
+        additions = stated.additions
+    return stated.model_copy(update={"candidates": candidates, "additions": additions})
+
+
+def default_places(names: Sequence[str], directions: np.ndarray) -> dict[str, dict[str, float]]:
+    """Return {place: {channel: coefficient}}: every pair of channels along one direction, then
+    every channel to the ground.
+    """
+    slugs: list[str] = []
+    for name in names:  # of their own, since they name places
+        slug = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "channel"
+        slug = slug if slug[0].isalpha() else f"c{slug}"
+        slugs.append(slug if slug not in slugs else f"{slug}_{len(slugs)}")
+    places = {}
+    for first, second in combinations(range(len(names)), 2):
+        along = float(np.dot(directions[first], directions[second]))
+        if abs(along) > PARALLEL:
+            row = {names[first]: -float(np.sign(along)), names[second]: 1.0}
+            places[f"{slugs[first]}-{slugs[second]}"] = row
+    places |= {slug: {name: 1.0} for slug, name in zip(slugs, names, strict=True)}
+    return dict([*places.items()][:MOST_PLACES])
+
+
+def default_band(
+    level: LevelLines, kinds: Sequence[str], excited_Hz: Sequence[float], rate: float
+) -> tuple[float, float]:
+    """Return (low, high) Hz: the excited lines, ended where next to nothing is left of the
+    responses' velocity at a level.
+    """
+    end = min(excited_Hz[1], SHARPEST * rate)
+    inside = (level.frequency >= excited_Hz[0]) & (level.frequency <= end)
+    frequency = level.frequency[inside]
+    orders = np.array([1.0 - TIME_DERIVATIVES.get(kind, 0) for kind in kinds])[:, None]
+    power = np.abs(level.response[:, inside] * (2.0 * np.pi * frequency) ** orders) ** 2
+    total = np.maximum(power.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    last = max(int(np.searchsorted(row, ENOUGH)) for row in np.cumsum(power, axis=1) / total)
+    high = min(WIDER * frequency[min(last, frequency.size - 1)], frequency[-1])
+    return float(frequency[0]), float(high)
+
+
+def own_units(campaign: xr.Dataset, drive: int) -> dict[str, str]:
+    """Return {unit of a mechanical law: unit here} from those of force and response in SI; empty
+    where the response is a motion.
+    """
+    kind, units = (str(campaign[f"channel_{key}"].values[drive]) for key in ("kind", "units"))
+    if kind != "generic":
+        return {}
+    force, moved = si_unit(force_units(campaign, 0), "excitation"), si_unit(units, kind)
+    own = f"({moved})"
+    units_of = {
+        "N": force,
+        "m": moved,
+        "N/m": f"{force}/{own}",
+        "N/m2": f"{force}/{own}2",
+        "N/m3": f"{force}/{own}3",
+        "N s/m": f"{force} s/{own}",
+        "m/s": f"{own}/s",
+        "N s2/m2": f"{force} s2/{own}2",
+    }
+    if force == moved:  # powers of one unit
+        units_of |= {"N/m": "1", "N/m2": f"{force}-1", "N/m3": f"{force}-2", "N s/m": "s"}
+        units_of |= {"m/s": f"{force} s-1", "N s2/m2": f"s2 {force}-1"}
+    return units_of

@@ -1,0 +1,137 @@
+"""A completed structure as a configuration of the ordinary study: measured modes with their
+elements, under a random force in the band.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import yaml
+
+from vibroimpact.contact.local_elements import COLUMNS
+from vibroimpact.records import plain_values
+
+from .trial import LocalTerm, Trial
+
+# Shapes hold one direction per channel; which way it points in space is the sensor's affair.
+AXIS, DIRECTION = "x", [1.0, 0.0, 0.0]
+STEPS_PER_CYCLE = 200  # of the highest mode or of the band's end
+START_UP_PERIODS = 40  # of the lowest frequency of the band
+DURATION_PERIODS = 600  # of the lowest mode
+DECIMATION = 25  # of two stages: steps are a multiple of it
+Places = Mapping[str, Mapping[str, float]]
+
+
+def configuration(
+    name: str, trial: Trial, places: Places, band_Hz: Sequence[float], loads: Sequence[float]
+) -> dict[str, Any]:
+    """Return the configuration of a Trial as plain values, with loads in N RMS.
+
+    Points carry the channels' names with underscores; a place that no two channels show is a point
+    of its own.
+    """
+    modes, names = trial.modes, [_point(own) for own in trial.modes.names]
+    hidden = {
+        term.place: term.along(modes) for term in trial.terms if not _joins_points(places, term)
+    }
+    described = [
+        {
+            "frequency_Hz": frequency,
+            "damping_ratio": ratio,
+            "residual": residual,
+            "shape": {own: {AXIS: value} for own, value in zip(names, row, strict=True)}
+            | {_point(place): {AXIS: along[mode]} for place, along in hidden.items()},
+        }
+        for mode, (frequency, ratio, residual, row) in enumerate(
+            zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
+        )
+    ]
+    first = modes.frequency[~modes.residual].min()
+    highest, lowest = max(band_Hz[1], modes.frequency.max()), max(band_Hz[0], 0.1 * first)
+    rate = int(np.ceil(STEPS_PER_CYCLE * highest / DECIMATION)) * DECIMATION
+    values = {
+        "study": f"{name}_updated",
+        "structure": {"kind": "identified", "modes": described},
+        "elements": [*_elements(trial, places)],
+        "excitation": {
+            "kind": "band_limited",
+            "point": names[modes.drive],
+            "direction": DIRECTION,
+            "band_Hz": [lowest, band_Hz[1]],
+        },
+        "integration": {
+            "scheme": "exact",
+            "steps_per_second": rate,
+            "start_up_s": float(np.ceil(START_UP_PERIODS / lowest)),
+            "imperfection": 0.0,
+        },
+        "grid": {
+            "load_rms_N": sorted({float(f"{load:.6g}") for load in loads}),
+            "gap_m": [1.0],
+            "seeds": 1,
+        },
+        "record": {
+            "duration_s": float(np.ceil(DURATION_PERIODS / first)),
+            "sampling_frequency_Hz": rate // DECIMATION,
+        },
+    }
+    return plain_values(values)
+
+
+def configuration_text(values: dict[str, Any], sentence: str) -> str:
+    """Return the YAML text of a configuration; sentence: its first line, a comment."""
+    text = yaml.safe_dump(values, sort_keys=False, width=150, default_flow_style=None)
+    return (
+        f"# {sentence}\n# Units are in the keys; shapes are in kg^-1/2. There is no gap: gap_m is"
+        f" not used.\n{text}"
+    )
+
+
+def location(place: str, row: Mapping[str, float] | None) -> str:
+    """Return a place {channel: coefficient} in words; None: one that no channel shows."""
+    if row is None:
+        return "elsewhere: no channel shows the place; its share in every mode was fitted"
+    ends = [name for name, _ in sorted(row.items(), key=lambda item: item[1])]
+    if not is_relative(row):
+        told = " ".join(f"{weight:+g} {name}" for name, weight in row.items())
+        return f"{place}: along {told}"
+    if len(ends) == 2:
+        return f"{place}: between {ends[0]} and {ends[1]}"
+    return f"{place}: at {ends[0]}, to the ground"
+
+
+def is_relative(row: Mapping[str, float]) -> bool:
+    """Return whether a place {channel: coefficient} is the displacement of a point or of one
+    against another, which an element can join.
+    """
+    return sorted(row.values()) in ([1.0], [-1.0, 1.0])
+
+
+def _joins_points(places: Places, term: LocalTerm) -> bool:
+    """Return whether a term joins points that channels show."""
+    return term.place in places and is_relative(places[term.place])
+
+
+def _point(name: str) -> str:
+    """Return a channel's or place's name as the name of a point."""
+    plain = re.sub(r"[^A-Za-z0-9_]", "_", name)
+    return plain if plain[0].isalpha() else f"p{plain}"
+
+
+def _elements(trial: Trial, places: Places) -> Iterator[dict[str, Any]]:
+    """Yield the entries of all elements: between two points, or a point and the ground."""
+    for number, term in enumerate(trial.terms):
+        ends = {"point": _point(term.place)}
+        if _joins_points(places, term):
+            # the displacement counts from the channel with -1 to the one with +1
+            signs = {weight: _point(name) for name, weight in places[term.place].items()}
+            ends = {"point": signs[1.0]}
+            ends |= {"other_point": signs[-1.0]} if -1.0 in signs else {}
+        table = term.effect.columns(term.values)
+        for index in range(term.effect.elements):
+            laws = {COLUMNS[column]: float(values[index]) for column, values in table.items()}
+            name = f"{term.effect_id}_{number + 1}_{index + 1}"
+            yield {"name": name, **ends, "direction": DIRECTION, **laws}

@@ -1,0 +1,196 @@
+"""A user's campaign of two masses without a model: named, none, or not testable, never a wrong
+name.
+"""
+
+import functools
+import json
+
+import numpy as np
+import pytest
+import yaml
+from scipy import linalg
+
+from docs.examples import two_masses as example
+from tests import two_masses
+from vibroimpact import diagnose
+from vibroimpact.campaign.file import write_campaign
+from vibroimpact.campaign.importing.assemble import import_folder
+from vibroimpact.cli import main
+from vibroimpact.config.measured_structure import MeasuredStructure
+from vibroimpact.config.reading import check_config
+from vibroimpact.diagnosis.diagnose import run_diagnosis
+from vibroimpact.diagnosis.identified.identified import identified
+from vibroimpact.diagnosis.identified.long_records import long_record_lines
+from vibroimpact.diagnosis.identified.records import unsettled_periods
+from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.records import read_record, read_table
+from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.verdict.file import read_verdict
+
+FEW = ("cubic_stiffness", "clearance", "single_friction", "saturation_stiffness", "quadratic_drag")
+STATED = MeasuredStructure(
+    kind="identified", candidates=[f"{law}.upper-lower" for law in FEW], additions=[]
+)
+
+
+@functools.cache
+def campaign_of(law, periodic=True):
+    return two_masses.campaign(law, periodic, 4 if periodic else 8)
+
+
+@functools.cache
+def judged(law, periodic=True):
+    """The Diagnosis of a law, with the laws of FEW at the joint."""
+    return run_diagnosis(campaign_of(law, periodic), STATED)
+
+
+def masses():
+    """(frequency (mode,), shapes (mode, channel)) of the two masses by hand."""
+    ground, joint = two_masses.GROUND[0], two_masses.JOINT[0]
+    stiffness = np.array([[ground + joint, -joint], [-joint, joint]])
+    squares, shapes = linalg.eigh(stiffness, np.diag(two_masses.MASS))
+    return np.sqrt(squares) / (2.0 * np.pi), shapes.T * np.sign(shapes[0])[:, None]
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_modes_from_periodic_and_random_records(periodic):
+    own, _ = identified(campaign_of("nothing", periodic), MeasuredStructure(kind="identified"))
+    frequency, shapes = masses()
+    base, (low, high) = own.linear.base, own.everything.band_Hz
+    assert base.names[base.drive] == "upper" and not base.residual.any()
+    assert base.frequency == pytest.approx(frequency, rel=3.0e-3)
+    assert base.shapes == pytest.approx(shapes, abs=0.03)
+    assert low == pytest.approx(3.0, abs=0.2) and 25.0 < high < 46.0
+
+
+def test_cubic_spring_is_named_and_located():
+    found = judged("cubic")
+    verdict = found.verdict
+    assert next(iter(found.identified.setting.ranking)) == "upper-lower"
+    assert (verdict.verdict, verdict.ambiguity_set) == ("named", [["cubic_stiffness"]])
+    effect = verdict.effects[0]
+    assert effect.location == "upper-lower: between upper and lower"
+    value = effect.parameters["cubic_stiffness"]
+    assert value.value == pytest.approx(two_masses.CUBIC, rel=0.05) and value.low < value.high
+    held = [row for row in found.identified.prediction(found.chosen) if row["split"] == "holdout"]
+    assert len(held) == 2
+    assert all(row["error_completed"] < 0.1 < row["error_linear"] for row in held)
+    assert verdict.misfit.holdout.closed_fraction > 0.7
+
+
+def test_completed_model_runs():
+    config = check_config(yaml.safe_load(judged("cubic").completed), "updated")
+    assert build_model(config).sensor_names == ("upper.x", "lower.x")
+
+
+def test_linear_structure_gets_verdict_none():
+    verdict = judged("nothing").verdict
+    assert (verdict.verdict, verdict.effects, verdict.regions) == ("none", [], [])
+
+
+@pytest.mark.slow
+def test_bouc_wen_hysteresis_is_at_most_called_friction():
+    verdict = judged("bouc_wen").verdict
+    assert verdict.verdict in ("named", "partly_explained", "ambiguous", "unknown")
+    named = {each for ids in verdict.ambiguity_set for each in ids}
+    assert named <= {"coulomb_friction", "saturation_stiffness"}
+
+
+@pytest.mark.slow
+def test_cubic_spring_is_found_in_random_records():
+    verdict = judged("cubic", periodic=False).verdict
+    assert verdict.verdict in ("named", "partly_explained")
+    assert verdict.effects[0].id == "cubic_stiffness"
+    value = verdict.effects[0].parameters["cubic_stiffness"].value
+    assert value == pytest.approx(two_masses.CUBIC, rel=0.1)
+
+
+def test_sensor_opposite_to_the_force_is_reversed():
+    own, _ = identified(two_masses.campaign("nothing", periods=3, turned=True), STATED)
+    assert own.linear.base.frequency == pytest.approx(masses()[0], rel=3.0e-3)
+    assert own.campaign["channel_direction"].values[0].tolist() == [0.0, 0.0, 1.0]
+
+
+def refusal(campaign):
+    """The sentences with which a campaign is refused."""
+    verdict = diagnose(campaign, "identified")
+    assert verdict.verdict == "not_testable"
+    return " ".join(row.message for row in verdict.checks if row.level == "refuse")
+
+
+def test_two_levels_are_not_testable():
+    campaign = two_masses.campaign("nothing", periods=3, levels=(1.0, 4.0), splits=("fit", "fit"))
+    assert "record a third level" in refusal(campaign)
+
+
+def test_response_unrelated_to_the_force_is_refused():
+    campaign = two_masses.campaign("nothing", periods=3)
+    random = np.random.default_rng(3).standard_normal(campaign["response"].shape)
+    assert refusal(campaign.assign(response=campaign["response"].copy(data=random)))
+
+
+def test_transient_periods_are_counted():
+    steady = np.random.default_rng(1).standard_normal((2, 500))
+    signal = np.tile(steady, 6) + 1.0e-3 * np.random.default_rng(2).standard_normal((2, 3000))
+    signal[:, :900] += 5.0 * np.exp(-np.arange(900) / 100.0)
+    noise = 0.01 * np.random.default_rng(4).standard_normal((2, 2000))
+    assert unsettled_periods(signal, 500) == 2
+    assert unsettled_periods(np.tile(steady, 4) + noise, 500) == 0
+
+
+def test_transient_is_removed_from_a_random_record():
+    rate, count = 100.0, 4096
+    force = np.random.default_rng(8).standard_normal(2 * count)
+    lines = 2j * np.pi * np.fft.rfftfreq(2 * count, 1.0 / rate)
+    receptance = 1.0 / (lines**2 + 2.0 * 0.02 * 60.0 * lines + 60.0**2)
+    answer = np.fft.irfft(np.fft.rfft(force) * receptance, 2 * count)
+    level = long_record_lines("one", "fit", force[-count:], answer[None, -count:], rate)
+    kept = (level.frequency > 5.0) & (level.frequency < 20.0)
+    laplace = 2j * np.pi * level.frequency[kept]
+    wanted = level.force[kept] / (laplace**2 + 2.0 * 0.02 * 60.0 * laplace + 60.0**2)
+    plain_lines = np.fft.rfft(answer[-count:])[kept] / count
+    missed, before = (
+        np.linalg.norm(each - wanted) / np.linalg.norm(wanted)
+        for each in (level.response[0, kept], plain_lines)
+    )
+    assert missed < 0.03 < 0.1 < before
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """The folder of results of the documented example, by the command."""
+    folder = tmp_path_factory.mktemp("example")
+    example.main(folder / "raw")
+    write_campaign(import_folder(folder / "raw")[0], folder / "masses.nc")
+    asked = ["diagnose", str(folder / "masses.nc"), "--model", "identified"]
+    assert main([*asked, "--folder", str(folder / "results")]) == 0
+    return folder / "results"
+
+
+def test_the_documented_stop_is_named(results):
+    verdict = read_verdict(results / "verdict.json")
+    assert (verdict.verdict, verdict.ambiguity_set) == ("named", [["clearance"]])
+    values = {name: each.value for name, each in verdict.effects[0].parameters.items()}
+    assert values["half_gap"] == pytest.approx(example.CLEARANCE, rel=0.01)
+    assert values["stiffness"] == pytest.approx(example.STOP, rel=0.02)
+    held = [row for row in read_table(results / "prediction.csv") if row["split"] == "holdout"]
+    assert all(float(row["error_completed"]) < 0.1 * float(row["error_refitted"]) for row in held)
+    assert json.loads((results / "verdict.json").read_text())["cost"]["simulations"] > 100
+
+
+def test_the_records_demand_the_law_of_the_stop(results):
+    """Of linear modes the sensors demand a force; the fitted law has it, in the band."""
+    evidence = read_record(results / "evidence.nc")
+    assert evidence["place_name"].values.tolist() == ["upper-lower"]
+    demanded = evidence["demanded_force"].values[-1, 0]
+    law = evidence["model_force"].values[1, -1, 0]
+    assert np.std(demanded - law) < 0.3 * np.std(demanded)
+    assert evidence["explained"].values[-1] > 0.99
+    before, after = np.linalg.norm(evidence["holding_force"].values[:, -1], axis=(-2, -1))
+    assert after < 0.4 * before
+
+
+def test_the_figures_of_any_diagnosis_are_drawn(results):
+    content = [read_record(results / f"{name}.nc") for name in ("evidence", "spectra")]
+    sheets = diagnosis_figures(*content, read_verdict(results / "verdict.json"))
+    assert [sheet.name for sheet in sheets if not sheet.tables] == []
