@@ -41,12 +41,14 @@ def write_files_of_run():
     """Write provenance into every folder that this run writes to, and the configuration of a study,
     or of the model that a campaign is compared with.
     """
-    study = STUDY.model_dump(mode="json")
-    configurations = {Path(RESULTS): study, Path("results/validation"): study}
-    if any(job.rule.name.startswith("_discrepancy") for job in planned_jobs()):
-        configurations[Path(DISCREPANCY)] = MODEL_VALUES
+    configurations = {Path(RESULTS): STUDY, Path("results/validation"): STUDY}
+    if not WITHOUT_MODEL and any(
+        job.rule.name.startswith("_discrepancy") for job in planned_jobs()
+    ):
+        configurations[Path(DISCREPANCY)] = MODEL
     for folder in result_folders():
-        write_run_files(folder, configurations.get(folder), sys.argv)
+        values = configurations.get(folder)
+        write_run_files(folder, values and values.model_dump(mode="json"), sys.argv)
 
 
 def say_success():

@@ -78,7 +78,7 @@ def evidence_of(
         return out.assign_attrs(left_out="the response is no motion, and forces are not in N")
     levels = _levels(records, before, after)
     out = out.assign(_free(levels, held)).assign(_holding(levels, before.modes))
-    return out.assign(_law(levels, records, before, after))
+    return out.assign(_law(levels, records, after))
 
 
 def _levels(records: Records, before: Trial, after: Trial) -> list[_Level]:
@@ -120,9 +120,9 @@ def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict:
     }
 
 
-def _law(levels: Sequence[_Level], records: Records, before: Trial, after: Trial) -> dict:
+def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict:
     """Return the force against the motion at each place that channels show, as the sensors demand
-    it and as the added laws have it; the modes as given have no such element.
+    it of the completed modes and as the added laws have it; the modes as given have no element.
     """
     terms = {term.place: term for term in after.terms if term.participation is None}
     if not terms:
@@ -133,7 +133,7 @@ def _law(levels: Sequence[_Level], records: Records, before: Trial, after: Trial
     shape = (2, len(chosen), len(terms), samples)  # force and motion
     demanded, model, known = np.zeros(shape), np.zeros(shape), np.zeros(len(chosen))
     for row, number in enumerate(chosen):
-        *both, known[row] = _demanded(levels[number], before.modes, terms)
+        *both, known[row] = _demanded(levels[number], after, terms)
         demanded[:, row] = levels[number].series(np.array(both), samples)
         own = np.array(_modelled(levels[number], records, number, after, terms))
         model[:, row] = levels[number].series(own, samples)
@@ -152,18 +152,20 @@ def _law(levels: Sequence[_Level], records: Records, before: Trial, after: Trial
     return out
 
 
-def _demanded(level: _Level, modes: IdentifiedModes, terms: dict[str, LocalTerm]) -> tuple:
+def _demanded(level: _Level, after: Trial, terms: dict[str, LocalTerm]) -> tuple:
     """Return (force (place, line), motion (place, line), share of what the modes miss that the
-    forces explain): least squares per line.
+    forces explain): least squares per line, a force at a hidden place among them.
     """
-    columns = np.stack([term.along(modes) for term in terms.values()], axis=1)
-    away = (level.motions[0] - level.motions[1]).T[..., None]
+    modes, hidden = after.modes, [term for term in after.terms if term.place not in terms]
+    columns = np.stack([own.along(modes) for own in (*terms.values(), *hidden[:1])], axis=1)
     receptance = modes.receptance(level.frequency)
+    free = modes.shapes.T @ (modes.shapes[:, [modes.drive]] * receptance * level.force)
+    away = (level.motions[0] - free).T[..., None]
     matrix = np.einsum("mc,mp,ml->lcp", modes.shapes, columns, receptance)
     force = np.linalg.pinv(matrix) @ away
     left = np.sum(np.abs(away - matrix @ force) ** 2) / np.sum(np.abs(away) ** 2)
     motion = np.array([term.row @ level.motions[0] for term in terms.values()])
-    return force[..., 0].T, motion, 1.0 - left
+    return force[:, : len(terms), 0].T, motion, 1.0 - left
 
 
 def _modelled(level: _Level, records: Records, number: int, after: Trial, terms) -> tuple:

@@ -10,7 +10,6 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import valid_count
 from vibroimpact.campaign.signals import transfer_band
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.effects.registry import EFFECTS
@@ -21,8 +20,7 @@ from ..free_runs import FreeRuns
 from ..search import Hypothesis
 from .evidence import evidence_of
 from .fit import Fitted, estimates
-from .levels import SETTLED, levels_of, naming_split, noise_rows
-from .long_records import settled_response
+from .levels import levels_of, naming_split, noise_rows
 from .modes import LinearModels, Sensors, linear_errors, linear_models
 from .places import ranked_places, tried_places
 from .records import Rows, along_force, refuse, repeating, usable_records
@@ -167,7 +165,11 @@ def identified(
         band = stated.band_Hz or default_band(lowest, measured.kinds, excited, measured.rate)
         usable = _in_order(repeating(usable, band, rows))
         sensors = Sensors(tuple(measured.channels), tuple(measured.kinds), drive)
-        usable, levels, linear = _linear(usable, sensors, band, stated)
+        levels = levels_of(usable)
+        linear = linear_models(levels, sensors, band, stated.residual_modes)
+        if usable.attrs.get("whole_records", 0):
+            levels = levels_of(usable, linear.again, band)
+            linear = linear_models(levels, sensors, band, stated.residual_modes)
         setting = _setting(stated, levels, linear, band, log)
     except ValueError as error:
         text = str(error)
@@ -195,36 +197,6 @@ def _in_order(campaign: xr.Dataset) -> xr.Dataset:
     """Return the campaign with its records in the order of their levels."""
     names = [str(name) for name in campaign["record_name"].values]
     return campaign.isel(record=[names.index(level.name) for level in levels_of(campaign)])
-
-
-def _linear(usable, sensors, band, stated):
-    """Return (campaign, levels, LinearModels); of records without period, the free decay of each
-    level's own modes is taken away first.
-    """
-    residuals = stated.residual_modes
-    levels = levels_of(usable)
-    linear = linear_models(levels, naming_split(levels)[0], sensors, band, residuals)
-    if not usable.attrs.get("whole_records", 0):
-        return usable, levels, linear
-    out = usable.copy(deep=True).assign_attrs(whole_records=SETTLED)
-    for record, name in enumerate(usable["record_name"].values):
-        count = valid_count(usable, record)
-        force, response = (
-            usable[key].values[record, :, :count].astype(float) for key in ("force", "response")
-        )
-        out["response"].values[record, :, :count] = settled_response(
-            force[0],
-            response,
-            usable.attrs["sampling_frequency"],
-            linear.again[str(name)],
-            band,
-        )
-    levels = levels_of(out)
-    return (
-        out,
-        levels,
-        linear_models(levels, naming_split(levels)[0], sensors, band, residuals),
-    )
 
 
 def _setting(stated, levels, linear, band, log) -> Setting:

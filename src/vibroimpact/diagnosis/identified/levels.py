@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,11 @@ import xarray as xr
 
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.signals import campaign_signals
+from vibroimpact.reduction.modal_structure import IdentifiedModes
 from vibroimpact.spectra.periodic_lines import LevelLines, level_lines, line_power
 
 from .long_records import long_record_lines
 
-SETTLED = 2  # the attribute whole_records of records whose transient was taken away
 SAME_LOAD = 1.05  # records within this factor repeat one level
 FEWEST_FITTED = 3  # fewer fitted levels leave none to try a name on
 # Share of the response that noise may have without a warning: of the mean over periods, and of a
@@ -22,10 +22,15 @@ FEWEST_FITTED = 3  # fewer fitted levels leave none to try a name on
 NOISY, LOUD = 0.05, 0.5
 
 
-def levels_of(campaign: xr.Dataset) -> tuple[LevelLines, ...]:
+def levels_of(
+    campaign: xr.Dataset,
+    modes: Mapping[str, IdentifiedModes] | None = None,
+    band_Hz: tuple[float, float] = (0.0, np.inf),
+) -> tuple[LevelLines, ...]:
     """Return the LevelLines of a campaign in ascending load, in SI or, where a channel is generic,
     its own units.
 
+    modes {record: modes}, band_Hz: for the transient of records without period, see long_records.
     Records have no period where the attribute whole_records says so. Raises PeriodError for any
     other record without one.
     """
@@ -35,8 +40,8 @@ def levels_of(campaign: xr.Dataset) -> tuple[LevelLines, ...]:
         split, force = signals.splits[record], signals.force[record][0]
         response, rate = signals.response[record], signals.rate
         if whole:
-            settled = whole == SETTLED
-            out.append(long_record_lines(name, split, force, response, rate, settled))
+            own = None if modes is None else modes[name]
+            out.append(long_record_lines(name, split, force, response, rate, own, band_Hz))
         else:
             period, drop = signals.stated_period, signals.transient_periods
             out.append(level_lines(name, split, force, response, rate, period, drop))

@@ -14,8 +14,6 @@ the smaller the longer the record is.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy.fft import next_fast_len
 
@@ -23,8 +21,8 @@ from vibroimpact.reduction.modal_structure import IdentifiedModes
 from vibroimpact.spectra.periodic_lines import LevelLines
 
 HALF_WIDTH, ORDER = 4, 2  # lines on either side; degree of both polynomials
+END_TERMS = 3  # of the polynomial in s that the ends of a record add to the free decay
 FEWEST_LINES = 4 * (2 * HALF_WIDTH + 1)
-END_TERMS = 3  # of the polynomial in s
 
 
 def long_record_lines(
@@ -33,14 +31,15 @@ def long_record_lines(
     force: np.ndarray,
     response: np.ndarray,
     sampling_frequency: float,
-    settled: bool = False,
+    modes: IdentifiedModes | None = None,
+    band_Hz: tuple[float, float] = (0.0, np.inf),
 ) -> LevelLines:
     """Return LevelLines of one record without period: force (time,), response (channel, time), Hz;
     of its last samples, a length quick to transform.
 
-    settled: the transient has been taken away already (settled_response). noise is the scatter
-    about the local polynomials: noise and distortion. periods is 0. Raises ValueError for a record
-    too short.
+    modes: known ones, whose free decay is the transient over a band; None for local polynomials.
+    noise is the scatter about the local polynomials: noise and distortion. periods is 0. Raises
+    ValueError for a record too short.
     """
     size = quick_length(force.size)
     if size < 2 * FEWEST_LINES:
@@ -52,59 +51,48 @@ def long_record_lines(
     lines = np.fft.rfft(response[:, -size:], axis=-1) / size
     transient, scatter = _local_polynomials(driven, lines)
     frequency = np.fft.rfftfreq(size, 1.0 / sampling_frequency)
-    lines = lines if settled else lines - transient
+    if modes is not None:
+        inside = (frequency >= band_Hz[0]) & (frequency <= band_Hz[1])
+        part = frequency[inside], driven[inside], lines[:, inside]
+        transient = np.zeros_like(lines)
+        transient[:, inside] = _free_decay(modes, *part)
     return LevelLines(
         name,
         split,
         float(np.sqrt(np.mean(force[-size:] ** 2))),
         frequency,
         driven,
-        lines,
+        lines - transient,
         np.zeros(frequency.size),
         scatter,
         0,
     )
 
 
-def settled_response(
-    force: np.ndarray,
-    response: np.ndarray,
-    sampling_frequency: float,
-    modes: IdentifiedModes,
-    band_Hz: Sequence[float],
-) -> np.ndarray:
-    """Return (channel, time) the response to the force repeated for ever, over the lines of a band:
-    force (time,), response (channel, time).
-
-    By channel, in least squares: the response is that of the modes (IdentifiedModes) to the force
-    with residues of their own, and the modes' free decay, (a + b s) / (s² + 2 zeta omega s +
-    omega²) each, with a polynomial for what the ends of the record add.
-    """
-    size = force.size
-    frequency = np.fft.rfftfreq(size, 1.0 / sampling_frequency)
-    driven, lines = np.fft.rfft(force - force.mean()) / size, np.fft.rfft(response, axis=-1) / size
-    inside = (frequency >= band_Hz[0]) & (frequency <= band_Hz[1])
-    laplace, receptance = 2j * np.pi * frequency[inside], modes.receptance(frequency[inside])
-    ends = laplace / (2.0 * np.pi * band_Hz[1])
-    decay = np.concatenate(
-        [receptance, laplace * receptance, [ends**power for power in range(END_TERMS)]]
-    )
-    for channel, observed in enumerate(modes.sensor_factors(frequency[inside])):
-        columns = np.concatenate([receptance * observed * driven[inside], decay]).T
-        scale = np.linalg.norm(columns, axis=0)
-        parts, wanted = columns / scale, lines[channel, inside]
-        values = np.linalg.lstsq(
-            np.vstack([parts.real, parts.imag]),
-            np.concatenate([wanted.real, wanted.imag]),
-            rcond=1.0e-10,
-        )[0]
-        lines[channel, inside] -= parts[:, modes.modes :] @ values[modes.modes :]
-    return np.fft.irfft(lines * size, size)
-
-
 def quick_length(size: int) -> int:
     """Return the largest number of samples up to size that is quick to transform."""
     return next(count for count in range(size, 0, -1) if next_fast_len(count, real=True) == count)
+
+
+def _free_decay(modes, frequency, driven, lines):
+    """Return (channel, line) the transient in lines (channel, line) under a force (line,).
+
+    By channel, in least squares: the response is that of the modes to the force with residues of
+    their own, and their free decay, (a + b s) / (s² + 2 zeta omega s + omega²) each, with a
+    polynomial for what the ends of the record add.
+    """
+    laplace, receptance = 2j * np.pi * frequency, modes.receptance(frequency)
+    ends = [(frequency / frequency[-1] * 1j) ** power for power in range(END_TERMS)]
+    decay = np.concatenate([receptance, laplace * receptance, ends])
+    out = np.empty_like(lines)
+    for channel, observed in enumerate(modes.sensor_factors(frequency)):
+        columns = np.concatenate([receptance * observed * driven, decay]).T
+        columns /= np.linalg.norm(columns, axis=0)
+        matrix = np.vstack([columns.real, columns.imag])
+        wanted = np.concatenate([lines[channel].real, lines[channel].imag])
+        values = np.linalg.lstsq(matrix, wanted, rcond=1.0e-10)[0]
+        out[channel] = columns[:, modes.modes :] @ values[modes.modes :]
+    return out
 
 
 def _local_polynomials(driven, lines):

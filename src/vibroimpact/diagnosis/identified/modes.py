@@ -12,6 +12,8 @@ from vibroimpact.identify.modal_fit import identify_modes, refine_modes, relativ
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 from vibroimpact.spectra.periodic_lines import LevelLines
 
+from .levels import naming_split
+
 RESIDUALS = ((False, False), (True, False), (False, True), (True, True))
 SIMPLE = 1.15  # times the least error: fewer residual modes within it are taken
 
@@ -38,12 +40,11 @@ class LinearModels:
 
 def linear_models(
     levels: Sequence[LevelLines],
-    fitted: Sequence[LevelLines],
     sensors: Sensors,
     band_Hz: Sequence[float],
     residuals: tuple[bool, bool] | None,
 ) -> LinearModels:
-    """Return the LinearModels of levels in ascending load; fitted: those that names are fitted to.
+    """Return the LinearModels of levels in ascending load.
 
     residuals: modes (below, above) the band; None for the fewest that are needed. Raises ValueError
     where no pole is stable.
@@ -63,7 +64,7 @@ def linear_models(
         own = [refine_modes(base, [level], band_Hz), _identified(level, sensors, band_Hz, kept)]
         known = [modes for modes in own if isinstance(modes, IdentifiedModes)]
         again[level.name] = min(known, key=partial(_rms, level=level, band_Hz=band_Hz))
-    return LinearModels(base, refine_modes(base, fitted, band_Hz), again)
+    return LinearModels(base, refine_modes(base, naming_split(levels)[0], band_Hz), again)
 
 
 def linear_errors(

@@ -24,6 +24,7 @@ NO_PLACE = "the structure has no support and no local element"
 MOST_UNSEEN = 12  # bars of places
 MOST_PLACES = 3  # supports and elements
 ACROSS = 3  # panels
+NARROW_IN = 5.6  # of the figure: its title has room
 DOTS = 1200  # of the demanded law
 BINS, LEAST_IN_BIN = 36, 6
 IN_CONTACT = 0.15  # of the largest force: from it on a place is drawn as pressed
@@ -69,7 +70,7 @@ def law_figure(evidence: xr.Dataset) -> list[Sheet]:
         f"{level}. "
         + CAPTION.format(panels=ORBIT if _has_orbit(panels) else "", static=STATIC, unseen=unseen),
         mosaic,
-        size=(min(0.6 + 3.1 * len(mosaic[0]), WIDTH_IN), 1.0 + 2.5 * len(mosaic)),
+        size=(min(max(0.6 + 3.1 * len(mosaic[0]), NARROW_IN), WIDTH_IN), 1.0 + 2.5 * len(mosaic)),
     )
     for key, places in panels.items():
         axes = sheet.axes[key]
