@@ -185,7 +185,7 @@ def test_the_records_demand_the_law_of_the_stop(results):
     demanded = evidence["demanded_force"].values[-1, 0]
     law = evidence["model_force"].values[1, -1, 0]
     assert np.std(demanded - law) < 0.3 * np.std(demanded)
-    assert evidence["explained"].values[-1] > 0.99
+    assert evidence["resolution"].values[-1, 0] > 0.99 > evidence["resolution"].values[0, 0]
     before, after = np.linalg.norm(evidence["holding_force"].values[:, -1], axis=(-2, -1))
     assert after < 0.4 * before
 

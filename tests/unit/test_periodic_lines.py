@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vibroimpact.spectra.periodic_lines import PeriodError, distortion, find_period, level_lines
+from vibroimpact.spectra.periodic_lines import PeriodError, find_period, level_lines
 
 PERIOD, RATE = 1024, 256.0
 
@@ -66,35 +66,3 @@ def test_period_is_found_in_a_record_of_fractional_periods():
 def test_record_without_period_is_refused():
     with pytest.raises(PeriodError, match="does not repeat within 5000 samples"):
         find_period(np.random.default_rng(1).standard_normal(5000))
-
-
-@pytest.mark.parametrize(
-    ("law", "large", "small"),
-    [
-        (lambda y: 0.1 * y**3, "odd_fraction", "even_fraction"),
-        (lambda y: 0.1 * y**2, "even_fraction", "odd_fraction"),
-    ],
-)
-def test_unexcited_lines_distinguish_odd_and_even_laws(law, large, small):
-    generator = np.random.default_rng(2)
-    lines = {
-        line: 0.2 * np.exp(2j * np.pi * generator.uniform())
-        for line in range(1, 100, 2)
-        if line % 8 != 3
-    }
-    force = np.tile(signal(lines), 3)
-    told = distortion(
-        level_lines("law", "fit", force, (force + law(force))[None], RATE, PERIOD, 0), (0.2, 25.0)
-    )
-    assert told["excited_lines"] == len(lines) and told["detection_lines"] > 40
-    assert told[large][0] > 0.02 and told[small][0] < 1.0e-6
-
-
-def test_full_multisine_cannot_distinguish_parity():
-    force = np.tile(signal(dict.fromkeys(range(8, 60), 0.1 + 0j)), 3)
-    assert (
-        "every line of the band is excited"
-        in distortion(
-            level_lines("full", "fit", force, force[None], RATE, PERIOD, 0), (2.0, 14.75)
-        )["summary"]
-    )

@@ -8,7 +8,6 @@ Source: Pintelon and Schoukens, System Identification, 2nd ed. 2012, chapter 4.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -19,15 +18,6 @@ FRACTIONS = (2, 3, 5, 7)  # of a period, tried for a shorter one
 # Largest relative difference of the force between two periods of a periodic record.
 REPEATS = 0.05
 EXCITED = 0.05  # of the largest line in the band; a line below it is not excited
-
-ALL_EXCITED = (
-    "every line of the band is excited: distortion cannot be separated from the linear response"
-    " line by line; the scatter of the response per force about a fitted curve bounds it"
-)
-DETECTION_LINES = (
-    "distortion read at the lines that the force leaves out: odd ones from odd, even ones from even"
-    " nonlinearities"
-)
 
 
 class PeriodError(ValueError):
@@ -189,29 +179,3 @@ def _scatter(lines: np.ndarray, axis: int) -> np.ndarray:
     if count < 2:
         return np.full(np.delete(lines.shape, axis), np.nan)
     return np.sqrt(np.var(lines, axis=axis, ddof=1) / count)
-
-
-def distortion(level: LevelLines, band_Hz: Sequence[float]) -> dict[str, Any]:
-    """Return what the lines without force say about nonlinearity, {name: value}.
-
-    excited_lines, detection_lines: numbers of lines of the band with and without force.
-    odd_fraction, even_fraction: (channel,) RMS at odd and even detection lines over the RMS at
-        excited lines, noise subtracted; left out where there are too few lines.
-    summary: a sentence for the reader.
-    """
-    inside, excited = level.inside(band_Hz) & (level.frequency > 0.0), level.excited(band_Hz)
-    number, silent = np.arange(level.frequency.size), inside & ~excited
-    reference = np.sqrt(line_power(level.response, level.frequency, excited))
-    found: dict[str, Any] = {
-        "excited_lines": int(excited.sum()),
-        "detection_lines": int(silent.sum()),
-    }
-    if silent.sum() < 4:
-        return found | {"summary": ALL_EXCITED}
-    for name, parity in (("odd_fraction", 1), ("even_fraction", 0)):
-        lines = silent & (number % 2 == parity)
-        noise = line_power(np.nan_to_num(level.noise), level.frequency, lines)
-        power = line_power(level.response, level.frequency, lines) - noise
-        fraction = np.sqrt(np.maximum(power, 0.0)) / reference
-        found[name] = fraction.tolist() if lines.any() else None
-    return found | {"summary": DETECTION_LINES}

@@ -7,7 +7,6 @@ the classes below; `verdict.schema.json` beside this file is a copy for readers 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, get_args
 
@@ -285,14 +284,12 @@ def not_testable(
     provenance: dict[str, Any],
     next_measurement: str | None = None,
     misfit: MisfitBySplit = NO_MISFIT,
-    regions: Sequence[dict[str, Any]] = (),
     cost: dict[str, Any] | None = None,
 ) -> Verdict:
     """Return the verdict on a campaign that can not be judged.
 
     checks: rows as in CheckResult, at least one with level refuse; next_measurement: a sentence;
-    regions: rows as in Region, where a linear model could be compared with the records; cost: as
-    Cost, nothing where None.
+    cost: as Cost, nothing where None.
     """
     cost = {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}} if cost is None else cost
     return Verdict.from_values(
@@ -303,7 +300,7 @@ def not_testable(
             "ranking": [],
             "next_measurement": next_measurement,
             "broken_invariances": [],
-            "regions": list(regions),
+            "regions": [],
             "misfit": misfit.to_values(),
             "p_global_before": None,
             "p_global_after": None,

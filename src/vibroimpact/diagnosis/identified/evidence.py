@@ -131,9 +131,11 @@ def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict:
     chosen = list(dict.fromkeys(order.tolist()))
     samples = min(levels[number].samples for number in chosen)
     shape = (2, len(chosen), len(terms), samples)  # force and motion
-    demanded, model, known = np.zeros(shape), np.zeros(shape), np.zeros(len(chosen))
+    demanded, model, known = np.zeros(shape), np.zeros(shape), np.zeros(shape[1:3])
+    lowest = levels[0].motions
+    miss = np.linalg.norm(lowest[1] - lowest[0], axis=1) / np.linalg.norm(lowest[0], axis=1)
     for row, number in enumerate(chosen):
-        *both, known[row] = _demanded(levels[number], after, terms)
+        *both, known[row] = _demanded(levels[number], after, terms, miss)
         demanded[:, row] = levels[number].series(np.array(both), samples)
         own = np.array(_modelled(levels[number], records, number, after, terms))
         model[:, row] = levels[number].series(own, samples)
@@ -142,8 +144,7 @@ def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict:
         "place_name": ("place", np.array(list(terms), object)),
         "owner_name": ("place", np.array(list(terms), object)),
         "law_of_stretch": ("law_stretch", np.array(chosen)),
-        "resolution": (dims[:2], np.ones(shape[1:3])),
-        "explained": (dims[:1], known),
+        "resolution": (dims[:2], known),
     }
     for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
         states = np.stack([np.full_like(model[part], np.nan), model[part]])
@@ -152,20 +153,26 @@ def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict:
     return out
 
 
-def _demanded(level: _Level, after: Trial, terms: dict[str, LocalTerm]) -> tuple:
-    """Return (force (place, line), motion (place, line), share of what the modes miss that the
-    forces explain): least squares per line, a force at a hidden place among them.
+def _demanded(
+    level: _Level, after: Trial, terms: dict[str, LocalTerm], miss: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (force (place, line), motion (place, line), share of the force that is known (place,))
+    of a level: least squares per line, a force at a hidden place among them.
+
+    miss (channel,): relative error of linear modes where no law acts, at the lowest level; what it
+    makes of the force is not known.
     """
     modes, hidden = after.modes, [term for term in after.terms if term.place not in terms]
     columns = np.stack([own.along(modes) for own in (*terms.values(), *hidden[:1])], axis=1)
     receptance = modes.receptance(level.frequency)
     free = modes.shapes.T @ (modes.shapes[:, [modes.drive]] * receptance * level.force)
-    away = (level.motions[0] - free).T[..., None]
-    matrix = np.einsum("mc,mp,ml->lcp", modes.shapes, columns, receptance)
-    force = np.linalg.pinv(matrix) @ away
-    left = np.sum(np.abs(away - matrix @ force) ** 2) / np.sum(np.abs(away) ** 2)
-    motion = np.array([term.row @ level.motions[0] for term in terms.values()])
-    return force[:, : len(terms), 0].T, motion, 1.0 - left
+    measured = level.motions[0]
+    inverse = np.linalg.pinv(np.einsum("mc,mp,ml->lcp", modes.shapes, columns, receptance))
+    force = np.einsum("lpc,cl->pl", inverse, measured - free)
+    wrong = np.einsum("lpc,c,cl->p", np.abs(inverse) ** 2, miss**2, np.abs(measured) ** 2)
+    known = 1.0 - wrong / np.maximum(np.sum(np.abs(force) ** 2, axis=1), np.finfo(float).tiny)
+    motion = np.array([term.row @ measured for term in terms.values()])
+    return force[: len(terms)], motion, np.maximum(known[: len(terms)], 0.0)
 
 
 def _modelled(level: _Level, records: Records, number: int, after: Trial, terms) -> tuple:
