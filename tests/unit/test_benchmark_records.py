@@ -16,6 +16,7 @@ from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_ca
 from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.identified import identified
 from vibroimpact.diagnosis.identified.levels import levels_of, naming_split
+from vibroimpact.diagnosis.identified.places import fit_family
 from vibroimpact.diagnosis.identified.records import usable_records
 from vibroimpact.diagnosis.identified.stated import own_units
 from vibroimpact.diagnosis.identified.structure_file import model_of
@@ -150,8 +151,10 @@ def test_f16_mounting_softens():
     assert base.frequency[~base.residual][:6] == pytest.approx(
         [3.47, 3.97, 5.19, 6.61, 7.32, 9.17], abs=0.02
     )
-    change = own.setting.ranking["mounting"].k / 1.0e6
-    assert change == pytest.approx([0.0, -0.52, -1.44], rel=0.1, abs=0.01)
+    levels = [level for level in own.everything.levels if level.split == "fit"]
+    row = own.setting.ranking["mounting"].row
+    change = fit_family(base, row, levels, own.everything.band_Hz).k / 1.0e6
+    assert change == pytest.approx([0.0, -0.52, -1.1, -1.5], rel=0.15, abs=0.01)
 
 
 @pytest.mark.slow

@@ -22,7 +22,7 @@ from .evidence import evidence_of
 from .fit import Fitted, estimates
 from .levels import levels_of, naming_split, noise_rows
 from .modes import LinearModels, Sensors, linear_errors, linear_models
-from .places import ranked_places, tried_places
+from .places import fit_family, ranked_places, tried_places
 from .records import Rows, along_force, refuse, repeating, usable_records
 from .search import Log, Setting, refitted
 from .spectra import PERIODS_BEFORE, free_runs, steady_lines
@@ -102,18 +102,22 @@ class Identified:
         return configuration_text(values, sentence)
 
     def evidence(self, chosen: Hypothesis | None) -> xr.Dataset:
-        """Return the evidence before and after, see evidence.evidence_of; with the equivalent
-        stiffness and damping (place, fitted_level) of each place, changes against the lowest level.
+        """Return the evidence before and after, see evidence.evidence_of; with place_error
+        (ranked_place,), and the equivalent stiffness and damping (fitted_level,) of the place of
+        the first law, or of the best one: changes against the lowest level.
         """
-        mechanical, places = not self.units, self.setting.ranking
-        out = evidence_of(self.campaign, self.everything, *self.states(chosen), mechanical)
-        table, families = ("ranked_place", "fitted_level"), places.values()
+        places, (before, after) = self.setting.ranking, self.states(chosen)
+        out = evidence_of(self.campaign, self.everything, before, after, not self.units)
+        shown = [term.place for term in after.terms if term.place in places]
+        place = [*shown, *places][0]
+        levels = [level for level in self.everything.levels if level.split == "fit"]
+        family = fit_family(before.modes, places[place].row, levels, self.everything.band_Hz)
         return out.assign_coords(
-            ranked_place=list(places), fitted_level=[own.name for own in self.setting.fitted.levels]
+            ranked_place=list(places), fitted_level=[level.name for level in levels]
         ).assign(
-            place_error=(table[:1], [own.error for own in families], {"units": "1"}),
-            stiffness_change=(table, [own.k for own in families], {"units": "N/m"}),
-            damping_change=(table, [own.c for own in families], {"units": "N s/m"}),
+            place_error=("ranked_place", [own.error for own in places.values()], {"units": "1"}),
+            stiffness_change=("fitted_level", family.k, {"units": "N/m", "place": place}),
+            damping_change=("fitted_level", family.c, {"units": "N s/m", "place": place}),
         )
 
     def prediction(self, chosen: Hypothesis | None) -> list[dict[str, Any]]:

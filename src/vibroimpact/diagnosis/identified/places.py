@@ -63,13 +63,18 @@ def ranked_places(
     levels: Sequence[LevelLines],
     band_Hz: Sequence[float],
 ) -> dict[str, Family]:
-    """Return {place: Family}, the best first; places that no mode moves are left out."""
+    """Return {place: Family}, the best first; places that no mode moves are left out.
+
+    Raises ValueError where none is left.
+    """
     rows = {place: row_of(row, base.names) for place, row in places.items()}
     families = {
         place: fit_family(base, row, levels, band_Hz, PASSES)
         for place, row in rows.items()
         if np.any(base.shapes[~base.residual] @ row)
     }
+    if not families:
+        raise ValueError("no mode moves any of the places: give others")
     return dict(sorted(families.items(), key=lambda item: item[1].error))
 
 

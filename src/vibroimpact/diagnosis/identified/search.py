@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -61,7 +62,8 @@ def search_laws(setting: Setting, most: int, log: Log) -> Search:
     most: 1 for single laws; otherwise laws are added as long as each gains. Gains are those over
     one linear model of all levels.
     """
-    nothing = Hypothesis(cast(Any, _AsGiven(Trial(setting.linear.base))), 0.0, 0.0, 0.0)
+    as_given: Any = SimpleNamespace(point=Trial(setting.linear.base))
+    nothing = Hypothesis(as_given, 0.0, 0.0, 0.0)
     found: dict[str, Hypothesis] = {}
     linear, records = setting.linear, setting.fitted
     terms = {name: _bare(setting, name) for name in (*setting.candidates, *setting.additions)}
@@ -106,13 +108,6 @@ def _leading(found: Sequence[Hypothesis], nothing: Hypothesis) -> Hypothesis:
 def _laws(hypothesis: Any) -> list[str]:
     """Return the laws of its terms."""
     return [term.law for term in hypothesis.point.terms]
-
-
-@dataclass(frozen=True)
-class _AsGiven:
-    """A Trial that was not fitted."""
-
-    point: Trial
 
 
 def _names(hypothesis: Hypothesis) -> list[str]:
