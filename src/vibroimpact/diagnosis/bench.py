@@ -41,6 +41,10 @@ class Bench:
         """Return the Bench with dampers of another strength."""
         return replace(self, strength=strength)
 
+    def on(self, stretches: slice) -> Bench:
+        """Return the Bench with some of its stretches."""
+        return replace(self, stretches=self.stretches[stretches])
+
     @property
     def moving(self) -> np.ndarray:
         """Return (stretch, channel, 1) bool: which channels move there."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 from vibroimpact.observation.signals import Signals
 
 from .comparison import Comparison
-from .coordinates import nuisance_coordinates
 from .explanations import Point, Structure
 from .gauss_newton import fit
 
@@ -21,5 +20,4 @@ def calibrated(structure: Structure, signals: Signals, point: Point) -> Point:
     point: its terms stay, its nuisances are where the fit begins.
     """
     comparison = Comparison(signals, structure)
-    rows = nuisance_coordinates(comparison.modes, len(signals.names))
-    return fit(comparison.fitted(), point, rows, PASSES).point
+    return fit(comparison.fitted(), point, comparison.nuisances(), PASSES).point

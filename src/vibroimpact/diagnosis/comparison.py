@@ -12,6 +12,7 @@ from vibroimpact.observation.signals import Signals
 
 from .bench import Bench
 from .constants import SCREENED_S, SHARP, STRETCH_S, WIDE
+from .coordinates import Coordinate, nuisance_coordinates
 from .explanations import Structure
 from .sizes import sizes_of
 from .stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
@@ -63,6 +64,12 @@ class Comparison:
     def modes(self) -> int:
         """Return the number of modes up to the upper end of the band."""
         return int(np.sum(self.structure.with_terms(()).frequencies < self.band[1]))
+
+    def nuisances(self) -> list[Coordinate]:
+        """Return the coordinates of the nuisances: of the modes in the band and of all channels."""
+        model = self.structure.with_terms(())
+        ratio = model.damping / (2.0 * np.maximum(model.omega, 1.0e-12))
+        return nuisance_coordinates(ratio[: self.modes], len(self.structure.names))
 
     @property
     def across(self) -> bool:

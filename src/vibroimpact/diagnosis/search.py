@@ -18,11 +18,12 @@ from .bench import (
     effective_lines,
     holding_lines,
     log_power,
+    misfit,
 )
 from .catalogue import within_priors
 from .comparison import Comparison
 from .constants import NOTHING_LEFT, needed_gain
-from .coordinates import effect_coordinates, nuisance_coordinates
+from .coordinates import effect_coordinates
 from .explanations import Point
 from .floor import floor_of
 from .gauss_newton import Fit, columns, fit
@@ -30,6 +31,7 @@ from .screening import Screened, screen
 
 RACED, FINALISTS = 8, 3
 PER_EFFECT = 2  # places of one effect in a race
+RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
 RACE_PASSES, FINAL_PASSES = 3, 12  # at most
 MOST_EFFECTS = 2
 
@@ -108,7 +110,7 @@ def search(
         beside = replace(Point(), terms=base.point.terms)
         ranked = _screened(at, beside)
         failed = failed or _never_run(ranked)
-        raced = _race(at, ranked)
+        raced = _race(at, ranked, beside)
         new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
         found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
         if not new:
@@ -146,8 +148,12 @@ def _never_run(ranked: Sequence[Screened]) -> tuple[str, ...]:
     return tuple(sorted(tried - ran))
 
 
-def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
-    """Return the Fits of the best screened points of different effects, best first."""
+def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
+    """Return the Fits of the best screened points of different effects, best first.
+
+    beside: Point without their last term.
+    """
+    base = misfit(at.screened, holding_lines(at.screened, [beside])[0])
     chosen: dict[str, Point] = {}
     per_effect: dict[str, int] = {}
     for each in ranked:
@@ -164,7 +170,9 @@ def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
     ]
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
     apart = [each for each in fits if not within_priors(each.point.terms[-1], rate, sizes)]
-    return sorted(apart, key=lambda each: each.objective)
+    apart.sort(key=lambda each: each.objective)
+    least = RIVALS * (base - apart[0].objective) if apart else 0.0
+    return [each for each in apart if base - each.objective >= least]
 
 
 def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -> list[Hypothesis]:
@@ -172,7 +180,7 @@ def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -
 
     The columns of the nuisances are those at the first point.
     """
-    nuisances = nuisance_coordinates(at.comparison.modes, len(at.comparison.structure.names))
+    nuisances = at.comparison.nuisances()
     known: np.ndarray | None = None
     out = []
     for point in points:
@@ -218,7 +226,7 @@ def _exchanged(at, best, nothing, log):
     for kept in best.point.terms[1:]:
         base = replace(Point(), terms=(kept,))
         ranked = _screened(at, base)
-        raced = [each for each in _race(at, ranked)[:2] if each.point.name not in out]
+        raced = [each for each in _race(at, ranked, base)[:2] if each.point.name not in out]
         for each in _finals(at, [each.point for each in raced], nothing):
             out[each.point.name] = each
             log(f"exchanged: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
