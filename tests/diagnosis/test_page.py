@@ -7,7 +7,9 @@ import pytest
 
 from tests.discrepancy_results import made_up_verdict
 from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.diagnosis.diagnose_command import summary
 from vibroimpact.display_units import display_unit
+from vibroimpact.figures.diagnosis.ranking import ranking_figure
 from vibroimpact.reports.discrepancy_page import discrepancy_page
 from vibroimpact.reports.explanations import best_places, explanations_of
 from vibroimpact.reports.verdict_words import next_steps, verdict_sentence
@@ -294,3 +296,22 @@ def test_nothing_is_said_of_after_where_nothing_was_added():
     page = discrepancy_page("campaign", made_up_verdict("unknown"), [])
     assert "How far off the model is" in page and "after (dB)" not in page
     assert "after (dB)" in discrepancy_page("campaign", made_up_verdict("named"), [])
+
+
+@pytest.mark.parametrize("kind", [kind for kind in CONCLUSIONS if kind != "not_testable"])
+def test_effects_that_could_not_be_run_are_told(kind):
+    verdict = made_up_verdict(
+        kind,
+        not_run=["hertz", "preload"],
+        p_global_before=None,
+        probability_none=float(kind == "none"),
+        probability_something_else=float(kind == "unknown"),
+    )
+    told = "Nothing is known of Hertz contact and preload, which could not be run."
+    page = " ".join(discrepancy_page("campaign", verdict, []).split())
+    (figure,) = ranking_figure(verdict)
+    for text in (page, figure.caption, "\n".join(summary(verdict))):
+        assert told in text
+        assert not re.search(
+            "something (else )?that is not|No effect is missing|effect of the", text
+        )

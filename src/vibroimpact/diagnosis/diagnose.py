@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
@@ -25,6 +24,7 @@ from vibroimpact.verdict.content import (
     Misfit,
     MisfitBySplit,
     Verdict,
+    not_run_sentence,
 )
 from vibroimpact.verdict.content import not_testable as not_testable_verdict
 from vibroimpact.verdict.file import write_verdict
@@ -230,7 +230,8 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
-        "checks": _contract([*found.checks, *_failed_rows(found.searched)]),
+        "checks": _contract(found.checks),
+        "not_run": list(found.searched.failed),
         "not_testable": not_testable(found.comparison.structure.campaign),
         "provenance": found.provenance,
         "load_unit": found.comparison.signals.load_unit,
@@ -245,7 +246,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         else completed_model(
             found.comparison.structure,
             _offered(found.searched, decision),
-            _sentence(decision.verdict),
+            _sentence(decision.verdict) + not_run_sentence(found.searched.failed),
         )
     )
     return Diagnosis(
@@ -334,14 +335,6 @@ def _sentence(conclusion):
     if conclusion in ("none", "unknown"):
         return f"The verdict is {conclusion}: no effect was added, modes are corrected."
     return "The model with the effects that the campaign shows to be missing; modes are corrected."
-
-
-def _failed_rows(searched):
-    """Return the rows of checks for effects that could not be run."""
-    return [
-        check_row("left out", "warn", f"{name} could not be run: it is not among the explanations.")
-        for name in searched.failed
-    ]
 
 
 def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:

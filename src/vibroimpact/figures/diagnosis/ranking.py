@@ -6,8 +6,13 @@ import numpy as np
 
 from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import BLUE, GREY, ORANGE, label_of
-from vibroimpact.reports.explanations import Explanation, chance_text, explanations_of
-from vibroimpact.verdict.content import Verdict
+from vibroimpact.reports.explanations import (
+    Explanation,
+    chance_text,
+    explanations_of,
+    not_explained,
+)
+from vibroimpact.verdict.content import Verdict, not_run_sentence
 
 from .states import empty_sheet
 
@@ -17,7 +22,7 @@ NONE_KNOWN = "no probabilities are known that the verdict stands by"
 CAPTION = (
     "Probability of each explanation among all that are shown, given the records and what was held"
     " probable before; the places of one effect together. Orange: what is named, or all that is not"
-    " told apart. Grey: nothing is missing, and something that is not in the catalogue.{left_out}"
+    " told apart. Grey: nothing is missing, and something {rest}.{left_out}"
 )
 
 
@@ -30,11 +35,12 @@ def ranking_figure(verdict: Verdict) -> list[Sheet]:
     shown = rows[:MOST_BARS]
     left = sum(row.probability for row in rows[MOST_BARS:])
     words = f" {len(rows) - MOST_BARS} more have {100.0 * left:.2g} % together." if left else ""
+    words += not_run_sentence(verdict.not_run)
     first = rows[0]
     sheet = Sheet(
         "diagnosis_ranking",
         f"Most probable: {first.words}, {chance_text(first.probability)}",
-        CAPTION.format(left_out=words),
+        CAPTION.format(rest=not_explained(verdict), left_out=words),
         size=(WIDTH_IN, 1.2 + 0.3 * max(len(shown), 3)),
     )
     _bars(sheet, sheet.axes["main"], shown)
