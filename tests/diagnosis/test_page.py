@@ -309,7 +309,7 @@ def test_effects_that_could_not_be_run_are_told(kind):
     )
     told = "Nothing is known of Hertz contact and preload, which could not be run."
     page = " ".join(discrepancy_page("campaign", verdict, []).split())
-    (figure,) = ranking_figure(verdict)
+    figure = ranking_figure(verdict)
     for text in (page, figure.caption, "\n".join(summary(verdict))):
         assert told in text
         assert not re.search(

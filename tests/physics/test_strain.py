@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.straight_path import straight_path
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
 from vibroimpact.observation.attached_model import attach
@@ -28,21 +29,9 @@ def cantilever(study_config):
 
 def cantilever_of(study_config, section):
     values = study_config.model_dump(mode="json")
-    values["structure"] = {
-        "kind": "path",
-        "section": section,
-        "material": {
-            "young_modulus_Pa": YOUNG,
-            "poisson_ratio": 0.3,
-            "density_kg_per_m3": 7800.0,
-        },
-        "start_m": [0.0, 0.0, 0.0],
-        "start_direction": [1.0, 0.0, 0.0],
-        "segments": [{"kind": "straight", "length_m": LENGTH}],
-        "start": {"kind": "clamped"},
-        "end": {"kind": "free"},
-        "mesh": {"elements_per_span": 20},
-    }
+    values["structure"] = straight_path(
+        LENGTH, [1.0, 0.0, 0.0], section, (YOUNG, 0.3, 7800.0), mesh={"elements_per_span": 20}
+    )
     values |= {"points": {"tip": list(TIP)}, "supports": [], "masses": [], "elements": []}
     values["excitation"] = {
         "kind": "band_limited",
