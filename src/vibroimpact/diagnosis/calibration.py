@@ -5,12 +5,11 @@ They are fitted to the lines of the holding force, with the priors of constants.
 
 from __future__ import annotations
 
-from vibroimpact.observation.signals import Signals
-
 from .comparison import Comparison
 from .coordinates import nuisance_coordinates
 from .explanations import Point, Structure
 from .gauss_newton import fit
+from .measurement.signals import Signals
 
 PASSES = 3  # at most: gains are then known to 1 %, see docs/virtual_supports.md
 

@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.observation.signals import Signals
-
 from .bench import Bench
 from .constants import SCREENED_S, SHARP, STRETCH_S, WIDE
 from .explanations import Structure
+from .measurement.signals import Signals
+from .measurement.stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 from .sizes import sizes_of
-from .stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 
 FITTED, SCREENED, APART = 3, 2, 4  # stretches
 BEGIN = 0.2  # of a record: where its first stretch begins

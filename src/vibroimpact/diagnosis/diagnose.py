@@ -13,8 +13,6 @@ import xarray as xr
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.observation.attached_model import with_channel_points
-from vibroimpact.observation.signals import signals_of
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
@@ -37,9 +35,11 @@ from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
 from .free_runs import FreeRuns, distance, free_runs, regions
+from .measurement.attached_model import with_channel_points
+from .measurement.signals import signals_of
+from .measurement.usable import Refused, not_testable, usable
 from .next_measurement import next_measurement
 from .search import Hypothesis, Search, search
-from .usable import Refused, not_testable, usable
 
 EFFORTS = {"quick": 1, "standard": 2, "thorough": 3}  # effects at once, at most
 REGIONS = 12

@@ -10,14 +10,13 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample_poly
 
-from vibroimpact.observation.strain import STRAIN
-
 from .bench import Bench, in_band, measures_motion, settled
 from .comparison import Comparison
 from .explanations import Point
 from .held_states import HeldState, held_state, measured_motion
 from .law import Demand, Places, demand_of
-from .stretches import Stretch
+from .measurement.sensed_motion import STRAIN
+from .measurement.stretches import Stretch
 
 STATES = ("before", "after")
 SERIES = ("measured", *STATES)

@@ -17,10 +17,11 @@ from vibroimpact.effects.effect import Effect, Values
 from vibroimpact.effects.places import with_place
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.force_vectors import MODE_FIELDS
-from vibroimpact.observation.attached_model import attach, attached_basis
-from vibroimpact.observation.sensor_chain import Measuring, measuring_of
-from vibroimpact.observation.strain import as_displacements
 from vibroimpact.reduction.modal_model import ModalModel
+
+from .measurement.attached_model import attach, attached_basis
+from .measurement.sensed_motion import displacement_scale
+from .measurement.sensor_chain import Measuring, measuring_of
 
 KEPT_MODELS = 256
 # Arrays of a ModalModel whose first axis is the mode, beside omega and damping.
@@ -95,11 +96,9 @@ class Structure:
 
     def __post_init__(self) -> None:
         own = attach(self.config, self.campaign)
-        size = np.abs(own.sensor_shapes).max(axis=0)
-        scaled = np.abs(as_displacements(own)).max(axis=0)
         fields = {
             "values": self.config.model_dump(mode="json"),
-            "scale": np.where(size > 0.0, scaled / np.where(size > 0.0, size, 1.0), 1.0),
+            "scale": displacement_scale(own, self.campaign["channel_kind"].values),
             "basis": attached_basis(self.config, self.campaign),
             "with_terms": lru_cache(maxsize=KEPT_MODELS)(self._with_terms),
         }

@@ -23,14 +23,14 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
 from vibroimpact.contact.laws import LocalLaws
-from vibroimpact.observation.sensed_motion import across, of_modes, orders
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import Bench, settled
 from .comparison import Comparison
 from .constants import GAIN_SD
 from .explanations import Point
-from .stretches import FADE_S, Stretch, stretches_of, valid_samples
+from .measurement.sensed_motion import across, of_modes, orders
+from .measurement.stretches import FADE_S, Stretch, stretches_of, valid_samples
 
 MARGIN_S, TAPER_S = 2.0, 1.0  # beside a stretch, and of it faded
 BANDS = 12  # logarithmic, each with a variance of its own

@@ -20,19 +20,18 @@ import xarray as xr
 from vibroimpact.campaign.file import CampaignError
 from vibroimpact.config.schema import Config
 from vibroimpact.linear.support_groups import support_directions
-from vibroimpact.observation.comparable import (
-    channel_faults,
-    comparison_problems,
-    left_out,
-    still_rows,
-    strain_rows,
-)
-from vibroimpact.observation.sensed_motion import of_modes
-from vibroimpact.observation.signals import signals_of
 
 from .calibration import calibrated
 from .explanations import Point, Structure
 from .measured_forces import force_channels, side_by_side
+from .measurement.comparable import (
+    channel_rows,
+    comparison_problems,
+    left_out,
+    model_rows,
+)
+from .measurement.sensed_motion import of_modes
+from .measurement.signals import signals_of
 from .support_statistics import (
     HeldTwice,
     agreement_of,
@@ -166,13 +165,11 @@ def _held_channels(campaign, config):
         )
     if problems:
         raise CampaignError("\n".join(f"{problem}." for problem in problems))
-    faults = channel_faults(campaign)
-    rows = [*still_rows(config, campaign), *strain_rows(config, campaign)]
+    rows = [*channel_rows(campaign), *model_rows(config, campaign)]
     names = campaign["channel_name"].values
     told = of_modes(campaign["channel_kind"].values) & ~np.isin(names, sorted(left_out(rows)))
-    held = [int(channel) for channel in np.flatnonzero(told) if channel not in faults]
-    notes = [*(f"{fault}." for fault in faults.values()), *(row["message"] for row in rows)]
-    if not held:
+    held, notes = np.flatnonzero(told), [row["message"] for row in rows]
+    if not len(held):
         raise CampaignError(
             "\n".join(
                 [

@@ -9,14 +9,14 @@ import numpy as np
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.observation.sensed_motion import orders
-from vibroimpact.observation.signals import Signals
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import undelayed
 from .constants import FORGET_S
 from .explanations import Point, Structure
-from .stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
+from .measurement.sensed_motion import orders
+from .measurement.signals import Signals
+from .measurement.stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
 
 STRETCHES = LANES  # of a record: they fill the lanes of one batch
 # Of the dampers, in units of the first mode, see unit_strength. Measured, correlation with the true

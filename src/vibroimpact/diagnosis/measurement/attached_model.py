@@ -1,9 +1,8 @@
 """The reduced model with the channels and forces of a campaign as its sensors and drives."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -19,8 +18,7 @@ from vibroimpact.reduction.reduced_model import build_model, reduced_basis
 
 from .moving_base import driven_by_base, further_drive_shapes
 from .named_places import point_at
-from .sensed_motion import moving, of_modes
-from .strain import STRAIN, gauged_model
+from .sensed_motion import STRAIN, moving, of_modes
 
 SAME_POINT_M = 1.0e-3
 
@@ -51,7 +49,7 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     gauged = np.flatnonzero(campaign["channel_kind"].values == STRAIN)
     config = driven_by_base(config, campaign)
     try:
-        model, displacements = displacement_shapes(
+        model, displacements = _displacement_shapes(
             config, places, {int(number): directions[number] for number in gauged}, basis
         )
     except ValueError as error:
@@ -67,9 +65,9 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     shapes[:, gauged] = model.sensor_shapes[:, 3 * len(places) :]
     drive_shapes = shapes[:, channels:]
     if len(bases):
-        others = further_drive_shapes(config, bases[1:], partial(build_model, motion_only=True))
+        others = further_drive_shapes(config, bases[1:])
         drive_shapes = np.concatenate([model.drive_shapes, *others], axis=1)
-    attached = replace(
+    return replace(
         model,
         gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
         sensor_shapes=shapes[:, :channels],
@@ -78,14 +76,13 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
         sensor_directions=along[:channels],
         drive_shapes=drive_shapes,
     )
-    return gauged_model(attached, gauged) if len(gauged) else attached
 
 
-def displacement_shapes(
+def _displacement_shapes(
     config: ConfigPart,
-    places: Sequence[Sequence[float]] | np.ndarray,
-    normals: Mapping[int, np.ndarray] | None = None,
-    basis: np.ndarray | None = None,
+    places: np.ndarray,
+    normals: Mapping[int, np.ndarray],
+    basis: np.ndarray | None,
 ) -> tuple[ModalModel, np.ndarray]:
     """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
 
@@ -98,7 +95,7 @@ def displacement_shapes(
     model = build_model(
         _with_places(config, places),
         motion_only=True,
-        gauges=[(f"place_{number}", normal) for number, normal in (normals or {}).items()],
+        gauges=[(f"place_{number}", normal) for number, normal in normals.items()],
         basis=basis,
     )
     moved = model.sensor_shapes[:, : 3 * len(places)]
@@ -119,19 +116,24 @@ def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> np.ndarray | Non
 def _with_places(config, places):
     """Return the configuration of a tube with named points place_0, ... as its sensors."""
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
-    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
-    return config.model_copy(update={"points": {**config.points, **points}, "record": sensors})
+    return _sensed_at(config.model_copy(update={"points": {**config.points, **points}}), points)
+
+
+def _sensed_at(config, points):
+    """Return the configuration with sensors in all three directions at named points."""
+    sensors = Sensors(points=tuple(points), directions=("x", "y", "z"))
+    record = config.record.model_copy(update={"sensors": sensors})
+    return config.model_copy(update={"record": record})
 
 
 def _shapes_at_points(config, places):
-    """Return what displacement_shapes does of a structure that is no tube: at its named points."""
+    """Return what _displacement_shapes does of a structure that is no tube: at its named points."""
     names = [
         point_at(config.points, place, f"point place_{number}")
         for number, place in enumerate(places)
     ]
-    named = tuple(dict.fromkeys(names))
-    record = config.record.model_copy(update={"sensors": config_sensors(named)})
-    model = build_model(config.model_copy(update={"record": record}), motion_only=True)
+    named = [*dict.fromkeys(names)]
+    model = build_model(_sensed_at(config, named), motion_only=True)
     moved = model.sensor_shapes.reshape(model.modes, len(named), 3)
     return model, moved[:, [named.index(name) for name in names]]
 
@@ -172,11 +174,6 @@ def _ratio_of_points(campaign, model):
             f" ({', '.join(model.support_names)}): give one clearance for each, in that order"
         )
     return ratios[model.support_of_point]
-
-
-def config_sensors(points: tuple[str, ...]) -> Sensors:
-    """Return the section record.sensors with all three directions of named points."""
-    return Sensors(points=points, directions=("x", "y", "z"))
 
 
 def _require_directions(directions, names):
