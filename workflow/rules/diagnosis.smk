@@ -24,7 +24,6 @@ rule _diagnosis:
         library=library("diagnosis"),
         config=MODEL.model_dump(mode="json"),
         effort=EFFORT,
-        so_far=f"{DISCREPANCY}/so_far.json",
     message:
         "Diagnosis, effort {params.effort}"
     script:

@@ -8,7 +8,6 @@ os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", 
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.diagnose import run_diagnosis, write_diagnosis
-from vibroimpact.diagnosis.progress import SoFar
 from vibroimpact.job_log import redirect_output
 from vibroimpact.provenance import verdict_origin
 
@@ -20,6 +19,6 @@ diagnosis = run_diagnosis(
     snakemake.params.effort,
     snakemake.threads,
     verdict_origin(values, campaign, None),
-    SoFar(snakemake.params.so_far),
+    print,
 )
 write_diagnosis(diagnosis, Path(snakemake.output.verdict).parent)

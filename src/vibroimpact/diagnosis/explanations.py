@@ -21,7 +21,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .measurement.attached_model import attach, attached_basis
 from .measurement.sensed_motion import displacement_scale
-from .measurement.sensor_chain import Measuring, measuring_of
+from .measurement.sensor_chain import Measuring
 
 KEPT_MODELS = 256
 # Arrays of a ModalModel whose first axis is the mode, beside omega and damping.
@@ -149,11 +149,10 @@ class Structure:
 
     def measuring(self, point: Point) -> Measuring:
         """Return what the measuring chain of a Point makes of the motion."""
-        gain, delay, force = np.ones(len(self.names)), np.zeros(len(self.names)), 1.0
-        if point.gain:
-            gain = gain * np.exp(point.gain)
+        names = self.names
+        gain = np.ones(len(names)) * (np.exp(point.gain) if point.gain else 1.0)
+        chain = Measuring(gain, np.zeros(len(names)))
         for term in point.terms:
             if term.effect.measured:
-                own = measuring_of(term.effect_id, term.parameters, term.location, self.names)
-                gain, delay, force = gain * own.gain, delay + own.delay, force * own.force_gain
-        return Measuring(gain, delay, force)
+                chain = chain.with_fault(term.effect_id, term.parameters, term.location, names)
+        return chain

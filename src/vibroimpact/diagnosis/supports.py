@@ -40,7 +40,7 @@ from .support_statistics import (
     unseen_of,
     with_interval,
 )
-from .whole_records import STRENGTH, holder
+from .whole_records import STRENGTH, first_mode_Hz, holder
 
 AGREEMENT = 0.95  # least correlation of the forces under two strengths
 KNOWN = 0.5  # least share of signal in a channel
@@ -54,6 +54,8 @@ UNITS = {
     "wear_work_rate": "W",
     "agreement": "1",
     "correlation": "1",
+    "secant_stiffness": "N m-1",
+    "secant_damping": "N s m-1",
 }
 
 
@@ -146,7 +148,7 @@ def virtual_supports(
     for record in range(len(signals.record_names)):
         run, weaker = holding.hold(record), holding.hold(record, 0.5 * STRENGTH)
         values += _values(HeldTwice(holding, run, weaker, directions, channels))
-        notes += [*_lost(signals, run), *_noisy(signals, run)]
+        notes += _doubts(signals, run)
         if with_forces:
             forces.append(_forces(holding, run))
     return VirtualSupports(tuple(values), tuple(forces), tuple(dict.fromkeys(notes)))
@@ -170,21 +172,17 @@ def _held_channels(campaign, config):
     told = of_modes(campaign["channel_kind"].values) & ~np.isin(names, sorted(left_out(rows)))
     held, notes = np.flatnonzero(told), [row["message"] for row in rows]
     if not len(held):
-        raise CampaignError(
-            "\n".join(
-                [
-                    *notes,
-                    "no channel is left that measures a motion or a strain at a known place: the"
-                    " model can not be held.",
-                ]
-            )
+        notes.append(
+            "no channel is left that measures a motion or a strain at a known place: the model can"
+            " not be held."
         )
+        raise CampaignError("\n".join(notes))
     return held, notes
 
 
 def _unusable(holding) -> Iterator[str]:
     """Yield a sentence for every record that can not be held."""
-    signals, period = holding.signals, 1.0 / holding.first_mode_Hz
+    signals, period = holding.signals, 1.0 / first_mode_Hz(holding.model)
     open_gap = bool(np.isnan(holding.model.contact_laws.gap).any())
     for record, name in enumerate(signals.record_names):
         if open_gap and not np.isfinite(signals.gap[record]):
@@ -197,33 +195,24 @@ def _unusable(holding) -> Iterator[str]:
             )
 
 
-def _lost(signals, run) -> list[str]:
-    """Return a sentence on the stretches of a record that could not be run."""
-    lost = int(np.sum(~np.isfinite(run.runs.support_force).all(axis=(1, 2))))
-    record = signals.record_names[run.record]
-    return (
-        [
-            f"record {record}: {lost} of its {len(run.runs.support_force)} stretches diverged and"
-            " are left out; raise integration.steps_per_second."
-        ]
-        if lost
-        else []
-    )
-
-
-def _noisy(signals, run) -> list[str]:
-    """Return a sentence on the channels of a record that are mostly noise."""
+def _doubts(signals, run) -> Iterator[str]:
+    """Yield sentences on the stretches of a record that could not be run, and on its channels that
+    are mostly noise.
+    """
+    record, force = signals.record_names[run.record], run.runs.support_force
+    lost = int(np.sum(~np.isfinite(force).all(axis=(1, 2))))
+    if lost:
+        yield (
+            f"record {record}: {lost} of its {len(force)} stretches diverged and are left out;"
+            " raise integration.steps_per_second."
+        )
     noisy = [name for name, share in zip(signals.names, run.known, strict=True) if share < KNOWN]
-    record = signals.record_names[run.record]
-    return (
-        [
+    if noisy:
+        yield (
             f"record {record}: {', '.join(noisy)} {'is' if len(noisy) == 1 else 'are'} mostly noise"
             " as a velocity and hardly held; what depends on the motion along them, such as the"
             " wear work rate, is then not known."
-        ]
-        if noisy
-        else []
-    )
+        )
 
 
 def _forces(holding, run) -> SupportForces:
@@ -262,7 +251,7 @@ def _values(record: HeldTwice) -> list[SupportValue]:
             support=record.supports[support],
             channel=channel,
             quantity=quantity,
-            unit=_unit(quantity),
+            unit=UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],
             value=found[support, channel, quantity],
             low=low.get((support, channel, quantity), np.nan),
             high=high.get((support, channel, quantity), np.nan),
@@ -271,13 +260,6 @@ def _values(record: HeldTwice) -> list[SupportValue]:
         )
         for support, channel, quantity in sorted(found, key=lambda key: key[:2])
     ]
-
-
-def _unit(quantity):
-    """Return the unit of a quantity."""
-    if quantity.startswith("secant_stiffness"):
-        return "N m-1"
-    return "N s m-1" if quantity.startswith("secant_damping") else UNITS[quantity]
 
 
 def _remark(quantity, agreement, unseen):

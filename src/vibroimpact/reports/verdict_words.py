@@ -8,7 +8,7 @@ from typing import Any
 from vibroimpact.display_units import display_unit
 from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict, not_run_sentence
+from vibroimpact.verdict.content import Estimate, Verdict, not_run_sentence
 
 from .explanations import NOTHING, chance_text, explanations_of, not_explained
 from .number_text import digits, percent
@@ -37,7 +37,6 @@ def verdict_sentence(verdict: Verdict) -> str:
     )
     near = [] if verdict.withdrawn else [effect.id for effect in verdict.most_probable]
     nearest = f" The best candidate, {effects_in_words(near)}, does not explain it." if near else ""
-    other = next((row.message for row in verdict.checks if row.check == "linear model"), "")
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
         "none": _nothing_missing(verdict) + sure,
@@ -54,11 +53,6 @@ def verdict_sentence(verdict: Verdict) -> str:
         "unknown": (
             f"The model and the measurement disagree, and no effect {_tried(verdict)} explains it:"
             f" the figures say where to look.{nearest}"
-        )
-        if not of_another_structure(verdict)
-        else (
-            "The structure that was measured is another one than the model's, and nothing was"
-            f" looked for beside it. {other.split(' Modes against')[0]}"
         ),
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
@@ -195,11 +189,6 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     return "explains less" if shown else "leaves a difference beyond chance"
 
 
-def of_another_structure(verdict: Verdict) -> bool:
-    """Return whether the lowest record is that of another linear structure than the model."""
-    return any(row.check == OTHER_STRUCTURE for row in verdict.checks)
-
-
 def next_steps(verdict: Verdict, model: str) -> list[dict]:
     """Return [{words, command}] of what to do next; command: None where there is none.
 
@@ -210,8 +199,6 @@ def next_steps(verdict: Verdict, model: str) -> list[dict]:
     if verdict.verdict == "none":
         known = " by the effects that could be run" if verdict.not_run else ""
         return [_step(f"Nothing: the model stands as it is for records like these{known}.")]
-    if of_another_structure(verdict):
-        return [_step("Mend the model where its lowest record says, then give the same command.")]
     if not verdict.shown_effects():
         return [
             _step(

@@ -31,9 +31,6 @@ WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
 WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
 OPEN: tuple[Conclusion, ...] = ("partly_explained", "unknown", "not_testable")
 
-# the check of a lowest record of another linear structure than the model
-OTHER_STRUCTURE = "other structure"
-
 SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
 
 # An integer stays one, so that a file that is read and written again keeps its bytes.

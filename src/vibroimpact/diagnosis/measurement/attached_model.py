@@ -30,30 +30,24 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     config: a checked Config or StageSettings. basis: see build_model and attached_basis. The
     sensors are in the order of the channels: displacements, positive along channel_direction; for
     a strain gauge on a tube the strain of the outer fibre; for a contact force zero. With a
-    campaign on a moving base, the drives are the accelerations of the base. Raises CampaignError
-    when a channel or force is more than 5 mm off the structure, where it is no tube off its named
-    points, or a direction is no vector.
+    campaign on a moving base, the drives are the accelerations of the base. Raises ValueError for
+    a channel or force that is more than 5 mm off the structure, where it is no tube off its named
+    points, CampaignError for another number of supports; see comparable.comparison_problems.
     """
-    forces = ~base_channels(campaign)
-    places, directions, stored_names = (
-        np.concatenate([campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values])
-        for key in ("point", "direction", "name")
+    kinds, forces = campaign["channel_kind"].values, ~base_channels(campaign)
+    channels = len(kinds)
+    places, directions = (
+        np.concatenate(
+            [campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values[forces]]
+        ).astype(float)
+        for key in ("point", "direction")
     )
-    directions, names = directions.astype(float), [*map(str, stored_names)]
-    _require_directions(directions, names)
-    channels = campaign.sizes["channel"]
-    bases = directions[channels:][~forces]
-    on_structure = np.concatenate([np.ones(channels, bool), forces])
-    places, directions = places[on_structure], directions[on_structure]
-    names = [name for name, kept in zip(names, on_structure, strict=True) if kept]
-    gauged = np.flatnonzero(campaign["channel_kind"].values == STRAIN)
+    bases = campaign["force_channel_direction"].values[~forces].astype(float)
+    gauged = np.flatnonzero(kinds == STRAIN)
     config = driven_by_base(config, campaign)
-    try:
-        model, displacements = _displacement_shapes(
-            config, places, {int(number): directions[number] for number in gauged}, basis
-        )
-    except ValueError as error:
-        raise CampaignError(_sentence(str(error), names)) from None
+    model, displacements = _displacement_shapes(
+        config, places, {int(number): directions[number] for number in gauged}, basis
+    )
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
     # excitation.turn_deg turns the forces; the sensors keep their directions
     acting = along.copy()
@@ -61,7 +55,7 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     for number in range(channels, len(places)) if angle else ():
         acting[number] = turned_direction(along[number], angle, turn_axis(config, places[number]))
     shapes = np.einsum("mpa,pa->mp", displacements, acting)
-    shapes[:, :channels] *= of_modes(campaign["channel_kind"].values)
+    shapes[:, :channels] *= of_modes(kinds)
     shapes[:, gauged] = model.sensor_shapes[:, 3 * len(places) :]
     drive_shapes = shapes[:, channels:]
     if len(bases):
@@ -71,7 +65,7 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
         model,
         gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
         sensor_shapes=shapes[:, :channels],
-        sensor_names=tuple(names[:channels]),
+        sensor_names=tuple(map(str, campaign["channel_name"].values)),
         sensor_positions=places[:channels],
         sensor_directions=along[:channels],
         drive_shapes=drive_shapes,
@@ -174,19 +168,3 @@ def _ratio_of_points(campaign, model):
             f" ({', '.join(model.support_names)}): give one clearance for each, in that order"
         )
     return ratios[model.support_of_point]
-
-
-def _require_directions(directions, names):
-    """Raise CampaignError for a direction that is not finite or has no length."""
-    for direction, name in zip(directions, names, strict=True):
-        if not np.isfinite(direction).all() or np.linalg.norm(direction) < 1.0e-6:
-            raise CampaignError(
-                f"channel {name} has the direction {direction.tolist()}: give a unit vector"
-            )
-
-
-def _sentence(message, names):
-    """Return a message with the channel's name in place of place_<number>."""
-    for number in reversed(range(len(names))):
-        message = message.replace(f"point place_{number}", f"channel {names[number]}")
-    return message

@@ -213,7 +213,7 @@ def campaign_problems(campaign: xr.Dataset) -> list[str]:
     problems += _mixed_problems(campaign, bases)
     for channel, name in enumerate(campaign["force_channel_name"].values):
         if bases[channel]:
-            if not _length_of(campaign, channel) > NO_DIRECTION:
+            if not _directed(campaign, "force_channel", channel):
                 problems.append(
                     f"base acceleration {name} has no known direction, but drives the model: give"
                     f" force_channel_direction[{channel}]"
@@ -269,17 +269,16 @@ def _mixed_problems(campaign, bases):
         )
 
 
-def _length_of(campaign, channel):
-    """Return the length of the direction vector of a force channel, NaN where it is unknown."""
-    return float(np.linalg.norm(campaign["force_channel_direction"].values[channel].astype(float)))
+def _directed(campaign: xr.Dataset, what: str, channel: int) -> bool:
+    """Return whether the direction of a channel is known."""
+    direction = campaign[f"{what}_direction"].values[channel].astype(float)
+    return bool(np.linalg.norm(direction) > NO_DIRECTION)
 
 
 def _nowhere(campaign: xr.Dataset, what: str, channel: int) -> bool:
     """Return whether the place or the direction of a channel is unknown."""
-    point, direction = (
-        campaign[f"{what}_{key}"].values[channel].astype(float) for key in ("point", "direction")
-    )
-    return not (np.isfinite(point).all() and np.linalg.norm(direction) > NO_DIRECTION)
+    point = campaign[f"{what}_point"].values[channel].astype(float)
+    return not (np.isfinite(point).all() and _directed(campaign, what, channel))
 
 
 def _gap_problems(config, campaign):

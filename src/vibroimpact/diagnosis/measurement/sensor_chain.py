@@ -1,12 +1,9 @@
-"""Faults of the measuring chain applied to simulated records: gains and delays of channels, and a
-gain of the force.
-"""
+"""The measuring chain: gains and delays of channels, and a gain of the force."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import fft
 
 # Locations of a fault other than single channels: no channel may have such a name.
 NO_CHANNELS = ("force", "responses", "force_and_responses")
@@ -23,16 +20,21 @@ class Measuring:
     delay: np.ndarray
     force_gain: float = 1.0
 
-    def delayed(self, responses: np.ndarray, rate: float) -> np.ndarray:
-        """Return responses (..., channel, sample) with the delays applied; rate: Hz."""
-        if not np.any(self.delay):
-            return responses
-        length = fft.next_fast_len(responses.shape[-1] + 64, real=True)
-        lines = fft.rfft(responses, length, axis=-1)
-        turn = np.exp(-2j * np.pi * np.outer(self.delay, fft.rfftfreq(length, 1.0 / rate)))
-        return fft.irfft(lines * turn, length, axis=-1)[..., : responses.shape[-1]].astype(
-            responses.dtype
-        )
+    def with_fault(
+        self, effect_id: str, parameters: Mapping[str, float], location: str, names: Sequence[str]
+    ) -> "Measuring":
+        """Return the Measuring with the effect sensor_gain or sensor_delay at a location too.
+
+        parameters: {"factor": ...} or {"delay": s}. location: one of places(names). names
+        (channel,).
+        """
+        chosen = np.array([location in (one, "responses", "force_and_responses") for one in names])
+        if effect_id == "sensor_gain":
+            gain = self.gain * np.where(chosen, parameters["factor"], 1.0)
+            of_force = parameters["factor"] if location in ("force", "force_and_responses") else 1.0
+            return replace(self, gain=gain, force_gain=self.force_gain * of_force)
+        share = -1.0 if location == "force" else chosen
+        return replace(self, delay=self.delay + parameters["delay"] * share)
 
 
 def places(names: Iterable[str]) -> list[str]:
@@ -40,22 +42,3 @@ def places(names: Iterable[str]) -> list[str]:
     together.
     """
     return [*names, *NO_CHANNELS]
-
-
-def measuring_of(
-    effect_id: str, parameters: Mapping[str, float], location: str, names: Sequence[str]
-) -> Measuring:
-    """Return the Measuring of the effect sensor_gain or sensor_delay at a location.
-
-    parameters: {"factor": ...} or {"delay": s}. location: one of places(names). names (channel,).
-    """
-    gain, delay, force = np.ones(len(names)), np.zeros(len(names)), 1.0
-    chosen = np.array([location in (name, "responses", "force_and_responses") for name in names])
-    if effect_id == "sensor_gain":
-        gain[chosen] = parameters["factor"]
-        force = parameters["factor"] if location in ("force", "force_and_responses") else 1.0
-    else:
-        delay[chosen] = parameters["delay"]
-        if location == "force":
-            delay[:] = -parameters["delay"]
-    return Measuring(gain, delay, force)

@@ -58,9 +58,9 @@ class Rates:
         """Return the integration steps per second."""
         return self.sampling * self.steps_per_sample
 
-    def schedule(self, duration_s: float, scheme: str) -> Schedule:
-        """Return the Schedule of a stretch."""
-        return Schedule(self.steps_per_second, self.sampling, 0.0, duration_s, scheme)
+    def schedule(self, duration_s: float, scheme: str, start_up_s: float = 0.0) -> Schedule:
+        """Return the Schedule of a stretch, recorded from the end of its start-up on."""
+        return Schedule(self.steps_per_second, self.sampling, start_up_s, duration_s, scheme)
 
 
 def rates_of(sampling: float, integration: ConfigPart) -> Rates:

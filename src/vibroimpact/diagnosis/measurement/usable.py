@@ -31,7 +31,6 @@ from vibroimpact.reduction.modal_model import ModalModel
 from .attached_model import attach
 from .comparable import (
     LEFT_OUT,
-    campaign_problems,
     channel_rows,
     comparison_problems,
     contact_force_rows,
@@ -104,20 +103,17 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
         raise Refused(refusing[0], checks)
     force, response = usable_signals(whole, checks)
     names = whole["channel_name"].values
-    out = {row["channel"] for row in checks if row["check"] in CONTRADICTED and _warns(row)}
+    out = {
+        row["channel"]
+        for row in checks
+        if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None
+    }
     kept = ~np.isin(names, [*left_out(checks), *filter(None, out)])
     moving = of_modes([str(kind) for kind in whole["channel_kind"].values])
     if not (kept & moving).any():
+        otherwise = "No channel that measures a motion or a strain is left after the checks."
         _refuse(
-            next(
-                (row["message"] for row in checks if row["check"] == LEFT_OUT),
-                next(
-                    iter(campaign_problems(whole)),
-                    "No channel that measures a motion or a strain is left after the checks:"
-                    " repair what they name.",
-                ),
-            ),
-            checks,
+            next((row["message"] for row in checks if row["check"] == LEFT_OUT), otherwise), checks
         )
     channels = np.flatnonzero(kept)
     records = np.flatnonzero(force)
@@ -129,10 +125,6 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     if len(records) < FEWEST_RECORDS:
         _refuse("Fewer than two records are left after the checks: repair what they name.", checks)
     return whole.isel(record=records, channel=channels)
-
-
-def _warns(row):
-    return row["level"] == "warn" and row["record"] is not None and row["channel"] is not None
 
 
 def _refuse(sentence, checks):
