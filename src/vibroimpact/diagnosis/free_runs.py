@@ -66,6 +66,7 @@ def _simulated(structure, signals, point):
     integration = structure.config.integration
     rates = whole_rates(signals.rate, integration)
     model, chain = structure.model(point), structure.measuring(point)
+    force = signals.force / chain.force_gain
     raw = replace(model, sensor_shapes=model.sensor_shapes / structure.scale)
     runs = [
         (record, float(signals.gap[record]), seed)
@@ -76,7 +77,7 @@ def _simulated(structure, signals, point):
     for scheme in dict.fromkeys((integration.scheme, "newmark")):
         schedule = rates.schedule(samples / signals.rate, scheme)
         try:
-            found = simulate_records(raw, schedule, signals.force, runs, signals.kinds)
+            found = simulate_records(raw, schedule, force, runs, signals.kinds)
         except IntegrationError:
             continue
         return found.reshape(shape) * chain.gain[:, None].astype(np.float32)
