@@ -21,8 +21,10 @@ from vibroimpact.campaign.file import CampaignError
 from vibroimpact.config.schema import Config
 from vibroimpact.linear.support_groups import support_directions
 
-from .calibration import calibrated
+from .comparison import Comparison
+from .coordinates import nuisance_coordinates
 from .explanations import Point, Structure
+from .gauss_newton import fit
 from .measured_forces import force_channels, side_by_side
 from .measurement.comparable import (
     channel_rows,
@@ -44,6 +46,7 @@ from .whole_records import STRENGTH, first_mode_Hz, holder
 
 AGREEMENT = 0.95  # least correlation of the forces under two strengths
 KNOWN = 0.5  # least share of signal in a channel
+PASSES = 3  # of a calibration, at most: gains are then known to 1 %, see docs/virtual_supports.md
 
 UNITS = {
     "rms_force": "N",
@@ -125,7 +128,7 @@ def virtual_supports(
     Measured contact forces are not used; they stand beside the virtual ones along their channels.
 
     config: of the model. point: effects, and nuisances of the channels that measure a motion; None
-    for the model as given. calibrate: fit frequencies, damping and gains first, see calibration.py.
+    for the model as given. calibrate: fit frequencies, damping and gains first.
     with_forces: also give the forces over time.
 
     Raises CampaignError where the campaign can not be compared with the model, with sentences that
@@ -140,7 +143,7 @@ def virtual_supports(
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
     if calibrate:
-        holding = holder(structure, signals, calibrated(structure, signals, point))
+        holding = holder(structure, signals, _calibrated(structure, signals, point))
     channels, more = force_channels(campaign, holding.model)
     directions = support_directions(holding.model, "each")
     values: list[SupportValue] = []
@@ -178,6 +181,13 @@ def _held_channels(campaign, config):
         )
         raise CampaignError("\n".join(notes))
     return held, notes
+
+
+def _calibrated(structure, signals, point) -> Point:
+    """Return a Point with fitted nuisances of all modes in the band and of all channels."""
+    comparison = Comparison(signals, structure)
+    rows = nuisance_coordinates(comparison.modes, len(signals.names))
+    return fit(comparison.fitted(), point, rows, PASSES).point
 
 
 def _unusable(holding) -> Iterator[str]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -79,7 +80,7 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
     point has no degree of freedom.
     """
     tube = config.structure.kind in TUBES
-    structure = build_structure(config) if tube else build_point_structure(config)
+    structure: Any = build_structure(config) if tube else build_point_structure(config)
     rows = []
     for channel in np.flatnonzero(compared_channels(campaign)):
         name, kind, place, direction = (
@@ -92,7 +93,7 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
         elif kind == STRAIN:
             why = "is a strain, which a structure of named points does not tell: it is left out"
         elif kind != CONTACT_FORCE and not tube:
-            still = _still(structure, config, place, direction)
+            still = no_motion(structure, config.points, place, direction)
             why = f"measures {still}: it is left out" if still else ""
         if why:
             rows.append(_left_out(str(name), f"{name} {why}"))
@@ -332,18 +333,9 @@ def _push_problems(config, campaign):
             campaign[f"force_channel_{key}"].values[channel]
             for key in ("name", "point", "direction")
         )
-        still = _still(structure, config, place, direction)
+        still = no_motion(structure, config.points, place, direction)
         if still:
             yield f"force channel {name} acts {still}: give its degree of freedom a name"
-
-
-def _still(structure, config, place, direction):
-    """Return along what, at which named point, a structure does not move; empty where it does, and
-    where no named point is.
-    """
-    if _off(partial(point_at, config.points), place, ""):
-        return ""
-    return no_motion(structure, config.points, place, direction)
 
 
 def _off(locate: Callable, point: np.ndarray, place: str) -> str | None:
