@@ -256,7 +256,7 @@ def test_telling_levels_and_channels_are_chosen():
 def test_a_failed_free_run_does_not_stop_the_figure():
     psd = made_up_psd()
     psd["psd"].values[1:] = np.nan
-    (sheet,) = psd_figure(psd, verdict_of())
+    sheet = psd_figure(psd, verdict_of())
     assert layout_faults(sheet.figure) == []
 
 
@@ -307,7 +307,7 @@ def with_points(channels):
 )
 def test_place_of_an_effect_is_marked(study_config, effect, location, marked):
     found = FoundEffect(id=effect, location=location, parameters={})
-    (sheet,) = place_figure(study_config, with_points(["apex_y", "apex_x"]), [found])
+    sheet = place_figure(study_config, with_points(["apex_y", "apex_x"]), [found])
     (table,) = [table for _, curve, table in sheet.tables if curve == f"{effect} at {location}"]
     spots = np.transpose([table["x_m"], table["z_m"]])
     if marked is None:  # all of the tube

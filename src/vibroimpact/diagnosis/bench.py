@@ -10,13 +10,13 @@ import numpy as np
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
-from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.run_cost import count_simulated
 
 from .constants import FORGET_S, INDEPENDENT
 from .explanations import Point, Structure
-from .stretches import Stretch
+from .measurement.sensor_chain import Measuring
+from .measurement.stretches import Stretch
 
 BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
 FIRST_BAND = 4  # lines in the lowest
@@ -36,10 +36,6 @@ class Bench:
     strength: float
     threads: int = 1
     held_below_Hz: float = np.inf
-
-    def held_at(self, strength: float) -> Bench:
-        """Return the Bench with dampers of another strength."""
-        return replace(self, strength=strength)
 
     def on(self, stretches: slice) -> Bench:
         """Return the Bench with some of its stretches."""

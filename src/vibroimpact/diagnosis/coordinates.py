@@ -19,7 +19,14 @@ LEAST_DAMPING = 0.4  # of the scatter of a frequency, over it: see nuisance_coor
 ENDS = (0.02, 0.98)  # of a tube: nothing is looked for nearer to its ends
 PLACE_SIZE = 0.05  # of its length
 DIRECTION_SIZE_DEG = 20.0
-STEPS = {"log": 0.03, "amount": 0.1, "signed": 0.05, "place": 0.1, "nuisance": 0.3}
+STEPS = {
+    "log": 0.01,
+    "amount": 0.1,
+    "signed": 0.05,
+    "place": 0.02,
+    "direction": 0.1,
+    "nuisance": 0.3,
+}
 
 
 @dataclass(frozen=True)
@@ -113,7 +120,7 @@ def _of_place(term: Term, number: int, length: float) -> list[Coordinate]:
         Coordinate("place", number, PLACE_SIZE * length, low=low, high=high, step=STEPS["place"])
     ]
     if turned_deg(term.location) is not None:
-        rows.append(Coordinate("direction", number, DIRECTION_SIZE_DEG, step=STEPS["place"]))
+        rows.append(Coordinate("direction", number, DIRECTION_SIZE_DEG, step=STEPS["direction"]))
     return rows
 
 

@@ -13,14 +13,14 @@ import numpy as np
 from scipy import signal
 
 from vibroimpact.integration.held_run import HeldLane, hold
-from vibroimpact.observation.sensed_motion import orders
 
 from .bench import Bench, mean_log_power, measures_motion
 from .comparison import Comparison
 from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
 from .explanations import Point
 from .gauss_newton import Fit, fit
-from .stretches import Stretch
+from .measurement.sensed_motion import orders
+from .measurement.stretches import Stretch
 
 LEAD_S = 2.0  # of a free run before its stretch
 WINDOW = ("kaiser", 9.0)  # of the interpolation: images 90 dB down

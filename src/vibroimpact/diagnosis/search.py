@@ -33,6 +33,7 @@ RACED, FINALISTS = 8, 3
 PER_EFFECT = 2  # places of one effect in a race
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
 RACE_PASSES, FINAL_PASSES = 3, 12  # at most
+POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
 
 
@@ -178,21 +179,48 @@ def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
 def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances at sharp dampers.
 
-    The columns of the nuisances are those at the first point.
+    The columns of the nuisances are those at the first point; for the best fit they are found
+    again where it ends, as long as that helps.
     """
-    nuisances = at.comparison.nuisances()
-    known: np.ndarray | None = None
-    out = []
+    fits: list[Fit] = []
+    known = None
     for point in points:
         if known is None:
-            lines = holding_lines(at.fitted, [point])[0]
-            if not np.isfinite(lines).all():
-                continue
-            known = columns(at.fitted, point, nuisances, lines)
-        rows = [*effect_coordinates(point.terms, at.comparison.sizes), *nuisances]
-        own = fit(at.fitted, point, rows, FINAL_PASSES, known)
-        out.append(_hypothesis(at, own, nothing))
-    return out
+            known = _nuisance_columns(at, point)
+        if known is not None:
+            fits.append(_final(at, point, known))
+    if fits:
+        number = int(np.argmin([each.objective for each in fits]))
+        fits[number] = _polished(at, fits[number])
+    return [_hypothesis(at, own, nothing) for own in fits]
+
+
+def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
+    """Return the columns of the nuisances at a Point, None where it can not be run."""
+    lines = holding_lines(at.fitted, [point])[0]
+    if not np.isfinite(lines).all():
+        return None
+    return columns(at.fitted, point, at.comparison.nuisances(), lines)
+
+
+def _final(at: _Benches, point: Point, known: np.ndarray) -> Fit:
+    """Return the Fit of a Point's effects and of the nuisances, whose columns are known."""
+    rows = [*effect_coordinates(point.terms, at.comparison.sizes), *at.comparison.nuisances()]
+    return fit(at.fitted, point, rows, FINAL_PASSES, known)
+
+
+def _polished(at: _Benches, found: Fit) -> Fit:
+    """Return a Fit from which new columns of the nuisances lead no further."""
+    for _ in range(POLISHED):
+        known = _nuisance_columns(at, found.point)
+        again = found if known is None else _final(at, found.point, known)
+        settled = found.objective - again.objective < POLISHED_GAIN * effective_lines(
+            at.fitted, again.lines
+        )
+        found = again
+        if settled:
+            break
+    return found
 
 
 def _hypothesis(at: _Benches, own: Fit, nothing: Hypothesis | None) -> Hypothesis:
