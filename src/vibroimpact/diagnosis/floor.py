@@ -14,7 +14,7 @@ from scipy import signal
 
 from vibroimpact.integration.held_run import HeldLane, hold
 
-from .bench import Bench, mean_log_power, measures_motion
+from .bench import Bench, mean_log_power, measures_motion, undelayed
 from .comparison import Comparison
 from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
 from .explanations import Point
@@ -78,7 +78,8 @@ def _played(
     led, lead = comparison.led(bench, LEAD_S)
     schedule = replace(bench.schedule, duration=bench.schedule.duration + lead)
     free = np.zeros(len(chain.gain))
-    runs = [HeldLane(model, each.gap, each.force, np.zeros_like(each.motion), free) for each in led]
+    still, scale = np.zeros_like(led[0].motion), 1.0 / chain.force_gain
+    runs = [HeldLane(model, each.gap, each.force, still, free, force_scale=scale) for each in led]
     motion = hold(runs, schedule, bench.threads).motion
     if not np.isfinite(motion).all():
         return None
@@ -92,5 +93,6 @@ def _played(
         # the motion of a stretch begins one step before its first sample
         count = len(each.motion)
         dense = np.pad(fine, ((0, 0), (1, count)), mode="edge")[:, first : first + count]
-        out.append(replace(each, motion=dense.T * held))
+        late = undelayed(dense.T, -chain.delay, schedule.steps_per_second)
+        out.append(replace(each, motion=late * held))
     return tuple(out)

@@ -110,7 +110,7 @@ def search(
     for size in range(1, most + 1):
         beside = replace(Point(), terms=base.point.terms)
         ranked = _screened(at, beside)
-        failed = failed or _never_run(ranked)
+        failed = tuple(sorted({*failed, *_never_run(ranked)}))
         raced = _race(at, ranked, beside)
         new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
         found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
