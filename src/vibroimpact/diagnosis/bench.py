@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -41,6 +42,11 @@ class Bench:
         """Return the Bench with some of its stretches."""
         return replace(self, stretches=self.stretches[stretches])
 
+    @cached_property
+    def measures_motion(self) -> np.ndarray:
+        """Return (channel,) bool: which channels measure a motion, so that they can be held."""
+        return np.any([np.any(stretch.motion, axis=0) for stretch in self.stretches], axis=0)
+
     @property
     def moving(self) -> np.ndarray:
         """Return (stretch, channel, 1) bool: which channels move there."""
@@ -74,7 +80,7 @@ def lane_of(
     """Return the run of a model, as a Measuring chain sees it, on a stretch; free: channels without
     a damper.
     """
-    strength = np.where(measures_motion(bench), bench.strength, 0.0)
+    strength = np.where(bench.measures_motion, bench.strength, 0.0)
     strength[list(free)] = 0.0
     return HeldLane(
         model,
@@ -108,11 +114,6 @@ def in_band(bench: Bench, series: np.ndarray, band: tuple[float, float], order: 
     smooth = np.sin(0.5 * np.pi * fade) ** 2
     lines = np.fft.rfft((series - series.mean(axis=-1, keepdims=True)) * smooth, axis=-1)
     return np.fft.irfft(lines * factor, count, axis=-1)[..., inside]
-
-
-def measures_motion(bench: Bench) -> np.ndarray:
-    """Return (channel,) bool: which channels measure a motion, so that they can be held."""
-    return np.any([np.any(stretch.motion, axis=0) for stretch in bench.stretches], axis=0)
 
 
 def undelayed(motion: np.ndarray, delay: np.ndarray, rate: float) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample_poly
 
-from .bench import Bench, in_band, measures_motion, settled
+from .bench import Bench, in_band, settled
 from .comparison import Comparison
 from .explanations import Point
 from .held_states import HeldState, held_state, measured_motion
@@ -96,7 +96,7 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
     highest and the lowest load that took no part, as far as MOST_FREE runs go.
     """
     order = sorted(range(fitted, len(bench.stretches)), key=lambda at: -bench.stretches[at].load)
-    held = measures_motion(bench)
+    held = bench.measures_motion
     out: list[tuple[int, int]] = []
     for number in list(dict.fromkeys([order[0], order[-1]]))[:FREE_STRETCHES]:
         moving = np.flatnonzero(bench.stretches[number].moving & held)

@@ -14,7 +14,7 @@ from scipy import signal
 
 from vibroimpact.integration.held_run import HeldLane, hold
 
-from .bench import Bench, mean_log_power, measures_motion, undelayed
+from .bench import Bench, mean_log_power, undelayed
 from .comparison import Comparison
 from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
 from .explanations import Point
@@ -85,7 +85,7 @@ def _played(
         return None
     up = round(schedule.steps_per_second / schedule.sampling_frequency)
     first = round(lead * schedule.sampling_frequency) * up
-    held = measures_motion(bench)
+    held = bench.measures_motion
     out = []
     for each, own in zip(bench.stretches, motion, strict=True):
         own = own * chain.gain[:, None] + _noise(comparison, own.shape[1], rng)

@@ -101,17 +101,16 @@ def search(
         comparison.apart(),
         list(EFFECTS.values()) if effects is None else effects,
     )
-    nothing = _finals(at, [Point()], None)[0]
+    nothing = _finals(at, [Point()])[0]
     log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
     found: dict[str, Hypothesis] = {}
     base = nothing
     failed: tuple[str, ...] = ()
     floors: dict[str, tuple[float, float]] = {}
     for size in range(1, most + 1):
-        beside = replace(Point(), terms=base.point.terms)
-        ranked = _screened(at, beside)
+        ranked = _screened(at, base.point)
         failed = tuple(sorted({*failed, *_never_run(ranked)}))
-        raced = _race(at, ranked, beside)
+        raced = _race(at, ranked, base.point)
         new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
         found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
         if not new:
@@ -176,7 +175,9 @@ def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
     return [each for each in apart if base - each.objective >= least]
 
 
-def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -> list[Hypothesis]:
+def _finals(
+    at: _Benches, points: Sequence[Point], nothing: Hypothesis | None = None
+) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances at sharp dampers.
 
     The columns of the nuisances are those at the first point; for the best fit they are found
@@ -252,7 +253,7 @@ def _exchanged(at, best, nothing, log):
     """Return {name: Hypothesis} of pairs in which the first effect of the best is exchanged."""
     out = {}
     for kept in best.point.terms[1:]:
-        base = replace(Point(), terms=(kept,))
+        base = replace(best.point, terms=(kept,))
         ranked = _screened(at, base)
         raced = [each for each in _race(at, ranked, base)[:2] if each.point.name not in out]
         for each in _finals(at, [each.point for each in raced], nothing):
