@@ -48,7 +48,6 @@ PACKAGES = (
     "study",
     "equivalent_support",
     "effects",
-    "observation",
     "verdict",
     "diagnosis",
     "acceptance",

@@ -191,7 +191,7 @@ def _is_netcdf(path: str) -> bool:
 def _campaign(path: str) -> tuple[str | None, list[str]]:
     """Return (what a campaign is, None where it is refused; its problems and warnings)."""
     from vibroimpact.campaign.checks.file_checks import check_file, refused
-    from vibroimpact.observation.comparable import campaign_problems, channel_rows
+    from vibroimpact.diagnosis.measurement.comparable import campaign_problems, channel_rows
 
     campaign, rows = check_file(path)
     problems = [

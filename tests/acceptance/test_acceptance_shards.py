@@ -19,7 +19,7 @@ from vibroimpact.acceptance.shards import (
 )
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.reading import check_config, load_config
-from vibroimpact.observation.comparable import comparison_problems
+from vibroimpact.diagnosis.measurement.comparable import comparison_problems
 from vibroimpact.provenance import package_digest
 from vibroimpact_truth.campaign import make_campaign
 from vibroimpact_truth.draw import POOLS, bare_plan, draw

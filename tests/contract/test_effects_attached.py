@@ -12,10 +12,10 @@ from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.comparison import Comparison
 from vibroimpact.diagnosis.explanations import Structure, Term
+from vibroimpact.diagnosis.measurement.attached_model import attach, with_channel_points
+from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.observation.attached_model import attach, with_channel_points
-from vibroimpact.observation.signals import signals_of
 
 RATE, GAP = 2048.0, 2.8886e-4
 OF_THE_MODEL = [

@@ -6,8 +6,8 @@ import pytest
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.diagnosis.comparison import Comparison
 from vibroimpact.diagnosis.explanations import Structure
+from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.observation.signals import signals_of
 
 RATE, SECONDS, GAP = 2048.0, 8.0, 2.8886e-4
 LOADS = (0.8, 6.0, 20.0)

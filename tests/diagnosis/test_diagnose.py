@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from tests.straight_path import straight_path
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.config.reading import check_config
@@ -42,20 +43,12 @@ SIDECAR = {
 CANTILEVER = {
     "study": "cantilever",
     "seed": 1,
-    "structure": {
-        "kind": "path",
-        "section": {"kind": "rectangle", "sides_m": [0.006, 0.03], "first_axis": [0, 1, 0]},
-        "material": {
-            "young_modulus_Pa": 2.05e11,
-            "poisson_ratio": 0.3,
-            "density_kg_per_m3": 7850.0,
-        },
-        "start_m": [0.0, 0.0, 0.0],
-        "start_direction": [1.0, 0.0, 0.0],
-        "segments": [{"kind": "straight", "length_m": 0.6}],
-        "start": {"kind": "clamped"},
-        "end": {"kind": "free"},
-    },
+    "structure": straight_path(
+        0.6,
+        [1.0, 0.0, 0.0],
+        {"kind": "rectangle", "sides_m": [0.006, 0.03], "first_axis": [0, 1, 0]},
+        (2.05e11, 0.3, 7850.0),
+    ),
     "damping": {"kind": "modal", "first_ratios": [0.008], "other_ratio": 0.008},
     "supports": [],
     "points": {"shaker": [0.2, 0.0, 0.0], "tip": [0.6, 0.0, 0.0]},

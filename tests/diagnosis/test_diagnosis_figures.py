@@ -233,6 +233,15 @@ def test_what_is_not_seen_is_told(figures):
     assert next(each for each in sheets if each.name == "diagnosis_free_sensor").tables == []
 
 
+def test_evidence_says_itself_what_it_can_not_give():
+    told = made_up_evidence().drop_vars(["holding_force", "demanded_force", "free_error"])
+    why = "the response is no motion"
+    sheets = diagnosis_figures(told.assign_attrs(left_out=why), made_up_psd(), verdict_of())
+    silent = {sheet.name: sheet.caption for sheet in sheets if not sheet.tables}
+    assert list(silent) == ["diagnosis_holding", "diagnosis_law", "diagnosis_free_sensor"]
+    assert all(why in caption for caption in silent.values())
+
+
 def test_the_completed_model_is_left_out_where_nothing_was_added():
     evidence = made_up_evidence(after="nothing")
     for sheet in diagnosis_figures(evidence, made_up_psd(), verdict_of("none")):
@@ -256,7 +265,7 @@ def test_telling_levels_and_channels_are_chosen():
 def test_a_failed_free_run_does_not_stop_the_figure():
     psd = made_up_psd()
     psd["psd"].values[1:] = np.nan
-    (sheet,) = psd_figure(psd, verdict_of())
+    sheet = psd_figure(psd, verdict_of())
     assert layout_faults(sheet.figure) == []
 
 
@@ -307,7 +316,7 @@ def with_points(channels):
 )
 def test_place_of_an_effect_is_marked(study_config, effect, location, marked):
     found = FoundEffect(id=effect, location=location, parameters={})
-    (sheet,) = place_figure(study_config, with_points(["apex_y", "apex_x"]), [found])
+    sheet = place_figure(study_config, with_points(["apex_y", "apex_x"]), [found])
     (table,) = [table for _, curve, table in sheet.tables if curve == f"{effect} at {location}"]
     spots = np.transpose([table["x_m"], table["z_m"]])
     if marked is None:  # all of the tube

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.observation.simulated_records import Forces, simulate_records
 from vibroimpact.reduction.reduced_model import build_model
 
 RATE, FAR = 20480, 1.0
@@ -41,7 +41,7 @@ def leaning(study_config):
 def forces():
     schedule = Schedule(RATE, 2048, 0.0, 0.5, "exact")
     unit = np.random.default_rng(3).standard_normal((1, 1024))
-    return schedule, Forces(np.array([load * unit for load in LOADS]), schedule)
+    return schedule, np.array([load * unit for load in LOADS])
 
 
 def runs_of(thrown):

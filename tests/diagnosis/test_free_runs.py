@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.free_runs import distance, free_runs, regions
 
 
@@ -38,3 +39,14 @@ def test_what_the_model_does_not_move_is_compared_with_noise(compared):
     still = replace(runs, before=0.0 * runs.before, after=0.0 * runs.after)
     row = distance(still, signals, np.arange(len(signals.load)))
     assert row["before_dB"] is not None and row["before_dB"] < 200.0
+
+
+def test_a_force_that_was_measured_too_large_is_divided(comparison):
+    """Far from contact, a force gain of two halves the response to what was measured."""
+    signals = comparison.signals
+    quiet = replace(signals, force=1.0e-3 * signals.force)
+    doubled = Point((Term("sensor_gain", "force", (2.0,)),))
+    runs = free_runs(comparison.structure, quiet, doubled)
+    y = [number for number, name in enumerate(signals.names) if name.endswith("_y")]
+    ratio = runs.after[0, 0, y].sum(axis=-1) / runs.before[0, 0, y].sum(axis=-1)
+    assert ratio == pytest.approx(0.25, rel=1.0e-3)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from tests.discrepancy_results import made_up_verdict
-from vibroimpact.campaign.checks.stated import check_row
+from vibroimpact.diagnosis.diagnose_command import summary
 from vibroimpact.display_units import display_unit
+from vibroimpact.figures.diagnosis.ranking import ranking_figure
 from vibroimpact.reports.discrepancy_page import discrepancy_page
 from vibroimpact.reports.explanations import best_places, explanations_of
-from vibroimpact.reports.verdict_words import next_steps, verdict_sentence
+from vibroimpact.reports.verdict_words import verdict_sentence
 from vibroimpact.verdict.content import CONCLUSIONS
 
 
@@ -27,21 +28,6 @@ def test_closest_effect_is_shown_if_nothing_is_named():
     near = "stop behind a clearance and support offset"
     assert told.endswith(f"The best candidate, {near}, does not explain it.")
     assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
-
-
-def test_model_of_another_structure_is_told_first():
-    rows = [
-        check_row(
-            "linear model", "warn", "First look at the legs. Modes against the model's: 11 Hz."
-        ),
-        check_row("other structure", "warn", "Nothing was looked for beside this model."),
-    ]
-    verdict = made_up_verdict("unknown", checks=rows)
-    told = verdict_sentence(verdict)
-    assert "nothing was looked for beside it. First look at the legs" in told
-    assert "Modes against" not in told and "no effect of the catalogue" not in told
-    (step,) = next_steps(verdict, "model.yaml")
-    assert step["words"].startswith("Mend the model")
 
 
 def test_most_probable_of_several_is_shown():
@@ -294,3 +280,22 @@ def test_nothing_is_said_of_after_where_nothing_was_added():
     page = discrepancy_page("campaign", made_up_verdict("unknown"), [])
     assert "How far off the model is" in page and "after (dB)" not in page
     assert "after (dB)" in discrepancy_page("campaign", made_up_verdict("named"), [])
+
+
+@pytest.mark.parametrize("kind", [kind for kind in CONCLUSIONS if kind != "not_testable"])
+def test_effects_that_could_not_be_run_are_told(kind):
+    verdict = made_up_verdict(
+        kind,
+        not_run=["hertz", "preload"],
+        p_global_before=None,
+        probability_none=float(kind == "none"),
+        probability_something_else=float(kind == "unknown"),
+    )
+    told = "Nothing is known of Hertz contact and preload, which could not be run."
+    page = " ".join(discrepancy_page("campaign", verdict, []).split())
+    figure = ranking_figure(verdict)
+    for text in (page, figure.caption, "\n".join(summary(verdict))):
+        assert told in text
+        assert not re.search(
+            "something (else )?that is not|No effect is missing|effect of the", text
+        )

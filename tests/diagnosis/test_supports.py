@@ -9,10 +9,10 @@ import vibroimpact as vi
 from tests.contact_truth import contact_campaign
 from vibroimpact.cli import main
 from vibroimpact.diagnosis.explanations import Point, Structure
-from vibroimpact.diagnosis.stretches import stretches_of
+from vibroimpact.diagnosis.measurement.signals import signals_of
+from vibroimpact.diagnosis.measurement.stretches import stretches_of
 from vibroimpact.diagnosis.whole_records import holder
 from vibroimpact.integration.held_run import HeldLane, hold
-from vibroimpact.observation.signals import signals_of
 
 LEVELS = ((0.5, 1.3, "fit"), (12.0, 1.3, "fit"))
 RISING = ((0.5, 1.3, "fit"), (4.0, 1.3, "fit"), (12.0, 1.3, "fit"), (35.0, 1.3, "fit"))

@@ -9,11 +9,12 @@ from vibroimpact.campaign.base_motion import integrated, relative_to_base
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.config.reading import check_config
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.signals import signals_of
+from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
+from vibroimpact.diagnosis.measurement.stretches import whole_rates
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear.responses import frf
-from vibroimpact.observation.attached_model import attach
-from vibroimpact.observation.signals import signals_of
-from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact_truth.campaign import Plan, forces
 from vibroimpact_truth.campaign import simulate_records as true_records
@@ -126,11 +127,10 @@ def test_records_agree_with_the_independent_code(study_config):
     channels = [(kind, APEX, Y, kind) for kind in kinds]
     campaign = on_base(force[0], absolute, channels, start_up="rest")
     measured = signals_of(campaign).response[0]
-    schedule = schedule_of(campaign, study_config.integration, 4.0)
+    rates = whole_rates(float(campaign.attrs["sampling_frequency"]), study_config.integration)
+    schedule = rates.schedule(4.0, study_config.integration.scheme)
     model = attach(study_config, campaign)
-    simulated = simulate_records(
-        model, schedule, Forces(force[:, None], schedule), [(0, GAP, 0)], kinds
-    )
+    simulated = simulate_records(model, schedule, force[:, None], [(0, GAP, 0)], kinds)
     inner = slice(2048, -512)
     for own, other in zip(simulated[0], measured, strict=True):
         apart = own[inner] - other[inner]

@@ -7,6 +7,7 @@ import pytest
 from scipy import special
 from scipy.sparse.linalg import spsolve
 
+from tests.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.effects.fluid_added_mass_damping import EFFECT
@@ -30,22 +31,15 @@ TUBE = {"outer_diameter_m": DIAMETER, "wall_thickness_m": WALL}
 IN_WATER = {"kind": "outside", "name": "water"}
 STUDY = {
     "study": "tube_in_water",
-    "structure": {
-        "kind": "path",
-        "theory": "euler_bernoulli",
-        "section": TUBE,
-        "material": {
-            "young_modulus_Pa": 2.02e11,
-            "poisson_ratio": 0.3,
-            "density_kg_per_m3": 8330.0,
-        },
-        "start_m": [0.0, 0.0, 0.0],
-        "start_direction": [0.0, 0.0, 1.0],
-        "segments": [{"kind": "straight", "length_m": LENGTH}],
-        "mesh": {"elements_per_span": 40, "elements_per_bend": 1},
-        "start": {"kind": "pinned"},
-        "end": {"kind": "pinned"},
-    },
+    "structure": straight_path(
+        LENGTH,
+        [0.0, 0.0, 1.0],
+        TUBE,
+        (2.02e11, 0.3, 8330.0),
+        ends=("pinned", "pinned"),
+        theory="euler_bernoulli",
+        mesh={"elements_per_span": 40, "elements_per_bend": 1},
+    ),
     "damping": {"kind": "modal", "other_ratio": 0.003},
     "points": {"middle": [0.0, 0.0, 0.6]},
     "excitation": {

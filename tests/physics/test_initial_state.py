@@ -5,6 +5,7 @@ import copy
 import numpy as np
 import pytest
 
+from tests.straight_path import straight_path
 from vibroimpact.config.reading import ConfigError, check_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.beam_elements import section_beam
@@ -14,18 +15,14 @@ from vibroimpact.study.simulation import simulate_cases
 LENGTH = 0.8
 TUBE = {
     "study": "initial",
-    "structure": {
-        "kind": "path",
-        "theory": "euler_bernoulli",
-        "section": {"outer_diameter_m": 0.014, "wall_thickness_m": 0.002},
-        "material": {"young_modulus_Pa": 1.5e11, "poisson_ratio": 0.3, "density_kg_per_m3": 6000.0},
-        "start_m": [0.0, 0.0, 0.0],
-        "start_direction": [0.0, 0.0, 1.0],
-        "segments": [{"kind": "straight", "length_m": LENGTH}],
-        "mesh": {"elements_per_span": 40},
-        "start": {"kind": "clamped"},
-        "end": {"kind": "free"},
-    },
+    "structure": straight_path(
+        LENGTH,
+        [0.0, 0.0, 1.0],
+        {"outer_diameter_m": 0.014, "wall_thickness_m": 0.002},
+        (1.5e11, 0.3, 6000.0),
+        theory="euler_bernoulli",
+        mesh={"elements_per_span": 40},
+    ),
     "damping": {"kind": "modal", "other_ratio": 0.0},
     # without force: it shows the displacement of the tip at every step
     "elements": [{"name": "tip", "point": "tip", "direction": [1.0, 0.0, 0.0]}],

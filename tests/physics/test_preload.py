@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.oscillator import oscillator
+from tests.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.integration.every_step import integrate_every_step
 from vibroimpact.reduction.reduced_model import build_model
@@ -32,21 +33,13 @@ def cantilever(*supports, **sections):
     return check_config(
         {
             "study": "bars",
-            "structure": {
-                "kind": "path",
-                "theory": "euler_bernoulli",
-                "section": {"outer_diameter_m": 0.019, "wall_thickness_m": 0.001},
-                "material": {
-                    "young_modulus_Pa": 2.0e11,
-                    "poisson_ratio": 0.3,
-                    "density_kg_per_m3": 8000.0,
-                },
-                "start_m": [0.0, 0.0, 0.0],
-                "start_direction": [0.0, 0.0, 1.0],
-                "segments": [{"kind": "straight", "length_m": LENGTH}],
-                "start": {"kind": "clamped"},
-                "end": {"kind": "free"},
-            },
+            "structure": straight_path(
+                LENGTH,
+                [0.0, 0.0, 1.0],
+                {"outer_diameter_m": 0.019, "wall_thickness_m": 0.001},
+                (2.0e11, 0.3, 8000.0),
+                theory="euler_bernoulli",
+            ),
             "damping": {"kind": "modal", "other_ratio": 0.0},
             "supports": list(supports),
             "points": {"tip": [0.0, 0.0, LENGTH]},

@@ -9,10 +9,11 @@ import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
+from vibroimpact.diagnosis.measurement import simulated_records as forward
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
+from vibroimpact.diagnosis.measurement.stretches import whole_rates
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.observation import simulated_records as forward
-from vibroimpact.observation.attached_model import attach
-from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
 
 UNITS = {"displacement": "m", "velocity": "m s-1", "acceleration": "m s-2"}
 MOTIONS = tuple(UNITS)
@@ -38,10 +39,11 @@ def at_apex(kinds=MOTIONS):
 def recorded(model, campaign, config, gap=np.nan):
     """(channel, time) one run of the campaign's record on a model, by the campaign's own kinds."""
     force = campaign["force"].values.astype(float)
-    seconds = force.shape[-1] / campaign.attrs["sampling_frequency"]
-    schedule = schedule_of(campaign, config.integration, seconds)
+    rate = float(campaign.attrs["sampling_frequency"])
+    rates = whole_rates(rate, config.integration)
+    schedule = rates.schedule(force.shape[-1] / rate, config.integration.scheme)
     kinds = campaign["channel_kind"].values
-    return simulate_records(model, schedule, Forces(force, schedule), [(0, gap, 0)], kinds)[0]
+    return simulate_records(model, schedule, force, [(0, gap, 0)], kinds)[0]
 
 
 def of_modes(model, chosen, **values):

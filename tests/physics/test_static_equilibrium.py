@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
 from vibroimpact.integration.batch import Schedule, rest_state
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.observation.simulated_records import Forces, simulate_records
 
 GAP = 2.8886e-4
 RATE = 20480
@@ -104,7 +104,7 @@ def test_without_a_force_a_record_is_silent(sensed, schedule, change):
     model, silent = change(sensed), np.zeros((1, 1, 1024))
     kinds = ["acceleration"] * sensed.sensor_shapes.shape[1]
     runs = [(0, GAP, seed) for seed in range(LANES + 1)]  # a whole batch and one more
-    found = simulate_records(model, schedule, Forces(silent, schedule), runs, kinds)
+    found = simulate_records(model, schedule, silent, runs, kinds)
     assert np.abs(found).max() < 1e-2  # m/s²; 100 and more where it starts at zero
 
 
@@ -116,7 +116,7 @@ def test_where_it_rests_does_not_shift_the_force(sensed, schedule):
     force = np.random.default_rng(2).standard_normal((1, 1, 1024))
     kinds = ["acceleration"] * model.sensor_shapes.shape[1]
     bare, under_load = (
-        simulate_records(one, schedule, Forces(force, schedule), [(0, far, 0)], kinds)
+        simulate_records(one, schedule, force, [(0, far, 0)], kinds)
         for one in (model, loaded(model, 20.0))
     )
     np.testing.assert_allclose(under_load, bare, rtol=0.0, atol=1e-3 * np.abs(bare).max())

@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
+from tests.straight_path import straight_path
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
-from vibroimpact.observation.attached_model import attach
-from vibroimpact.observation.simulated_records import Forces, schedule_of, simulate_records
-from vibroimpact.observation.strain import as_displacements, speed_per_strain
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.sensed_motion import displacement_scale
+from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
+from vibroimpact.diagnosis.measurement.stretches import whole_rates
+from vibroimpact.structure.beam_elements import section_beam
 
 LENGTH, RADIUS, WALL, YOUNG = 1.2, 0.01, 0.001, 2.0e11
 INERTIA = 0.25 * np.pi * (RADIUS**4 - (RADIUS - WALL) ** 4)
@@ -28,21 +31,9 @@ def cantilever(study_config):
 
 def cantilever_of(study_config, section):
     values = study_config.model_dump(mode="json")
-    values["structure"] = {
-        "kind": "path",
-        "section": section,
-        "material": {
-            "young_modulus_Pa": YOUNG,
-            "poisson_ratio": 0.3,
-            "density_kg_per_m3": 7800.0,
-        },
-        "start_m": [0.0, 0.0, 0.0],
-        "start_direction": [1.0, 0.0, 0.0],
-        "segments": [{"kind": "straight", "length_m": LENGTH}],
-        "start": {"kind": "clamped"},
-        "end": {"kind": "free"},
-        "mesh": {"elements_per_span": 20},
-    }
+    values["structure"] = straight_path(
+        LENGTH, [1.0, 0.0, 0.0], section, (YOUNG, 0.3, 7800.0), mesh={"elements_per_span": 20}
+    )
     values |= {"points": {"tip": list(TIP)}, "supports": [], "masses": [], "elements": []}
     values["excitation"] = {
         "kind": "band_limited",
@@ -90,9 +81,9 @@ def test_slow_force_in_a_simulated_record(cantilever):
     force = 30.0 * np.sin(2.0 * np.pi * time)
     campaign = campaign_of([(ROOT, Y), (MIDDLE, Y)], force)
     model = attach(cantilever, campaign)
-    schedule = schedule_of(campaign, cantilever.integration, 4.0)
-    drive = Forces(force[None, None], schedule)
-    found = simulate_records(model, schedule, drive, [(0, np.nan, 0)], ["strain"] * 2)[0]
+    integration, runs = cantilever.integration, [(0, np.nan, 0)]
+    schedule = whole_rates(RATE, integration).schedule(4.0, integration.scheme)
+    found = simulate_records(model, schedule, force[None, None], runs, ["strain"] * 2)[0]
     wave = np.sin(2.0 * np.pi * time)[2048:]
     amplitude = found[:, 2048:] @ wave / (wave @ wave)
     slow = 1.0 / (1.0 - (2.0 * np.pi / model.omega[0]) ** 2)
@@ -119,7 +110,10 @@ def test_strain_beside_the_speed_that_goes_with_it(cantilever):
     driven = np.abs(model.drive_shapes[:, 0]) > 1e-6
     modes = np.flatnonzero(driven)[:3]
     speed = tip[modes] * model.omega[modes] / rooted[modes]
-    np.testing.assert_allclose(speed, speed_per_strain(cantilever.structure), rtol=0.02)
+    structure = cantilever.structure
+    plane = section_beam(structure.section, structure.material, structure.theory).planes[0]
+    per_strain = np.sqrt(plane.bending_stiffness / plane.mass_per_length) / plane.outer_fibre
+    np.testing.assert_allclose(speed, per_strain, rtol=0.02)
 
 
 def static_shapes(config):
@@ -133,9 +127,12 @@ def static_shapes(config):
     ).sensor_shapes[:, 0]
 
 
-def test_displacements_alone_are_as_they_are(study_config):
-    model = attach(study_config, sound_one())
-    assert as_displacements(model) is model.sensor_shapes
+def test_a_strain_is_scaled_to_the_largest_displacement(cantilever):
+    model = attach(cantilever, campaign_of([(ROOT, Y), (MIDDLE, Y)]))
+    strain, scale = model.sensor_shapes[:, 0], displacement_scale(model, ["strain", "velocity"])
+    moved = np.abs(model.sensor_shapes[:, 1]).max()
+    assert scale[0] * np.abs(strain).max() == pytest.approx(moved)
+    assert scale[1] == 1.0
 
 
 def sound_one():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
+from tests.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.excitation.correlated_field import POINTS, field_covariance
 from vibroimpact.excitation.force_channels import force_channels
@@ -35,22 +36,15 @@ def beam(excitation, **parts):
         {
             "study": "beam",
             "seed": 5,
-            "structure": {
-                "kind": "path",
-                "theory": "euler_bernoulli",
-                "section": {"outer_diameter_m": DIAMETER, "wall_thickness_m": WALL},
-                "material": {
-                    "young_modulus_Pa": 2.0e11,
-                    "poisson_ratio": 0.3,
-                    "density_kg_per_m3": DENSITY,
-                },
-                "start_m": [0.0, 0.0, 0.0],
-                "start_direction": [0.0, 0.0, 1.0],
-                "segments": [{"kind": "straight", "length_m": LENGTH}],
-                "mesh": {"elements_per_span": 40},
-                "start": {"kind": "pinned"},
-                "end": {"kind": "pinned"},
-            },
+            "structure": straight_path(
+                LENGTH,
+                [0.0, 0.0, 1.0],
+                {"outer_diameter_m": DIAMETER, "wall_thickness_m": WALL},
+                (2.0e11, 0.3, DENSITY),
+                ends=("pinned", "pinned"),
+                theory="euler_bernoulli",
+                mesh={"elements_per_span": 40},
+            ),
             "damping": {"kind": "modal", "first_ratios": [], "other_ratio": 0.03},
             "supports": [
                 {

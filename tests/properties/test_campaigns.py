@@ -14,9 +14,9 @@ from vibroimpact.campaign.file import CampaignError, checked_description, measur
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.config.reading import load_config
 from vibroimpact.diagnosis.identified.records import usable_records
-from vibroimpact.diagnosis.usable import Refused, usable
-from vibroimpact.observation.comparable import comparison_problems
-from vibroimpact.observation.signals import signals_of
+from vibroimpact.diagnosis.measurement.comparable import comparison_problems
+from vibroimpact.diagnosis.measurement.signals import signals_of
+from vibroimpact.diagnosis.measurement.usable import Refused, usable
 
 ROOT = Path(__file__).parents[2]
 SMALL = ("gap", "channel_point", "channel_direction", "force_channel_point", "load_rms", "repeat")

@@ -13,7 +13,7 @@ from vibroimpact.campaign.file import fill_missing, write_campaign
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.reserved_names import name_problem
 from vibroimpact.diagnosis.diagnose import diagnose
-from vibroimpact.observation.comparable import comparison_problems
+from vibroimpact.diagnosis.measurement.comparable import comparison_problems
 
 ROOT = Path(__file__).parents[2]
 

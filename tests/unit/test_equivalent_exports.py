@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.exported_springs import READERS
+from tests.straight_path import straight_path
 from vibroimpact import EquivalentError, build_model, check_config, point_springs, springs_text
 from vibroimpact.equivalent_support import command
 from vibroimpact.equivalent_support.answer import NOT_MOVED, Answer, GroupAnswer, Span
@@ -35,19 +36,14 @@ def slanted_model():
         check_config(
             {
                 "study": "slanted",
-                "structure": {
-                    "kind": "path",
-                    "section": {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001},
-                    "material": {
-                        "young_modulus_Pa": 2.0e11,
-                        "poisson_ratio": 0.3,
-                        "density_kg_per_m3": 8000.0,
-                    },
-                    "start_m": [0.0, 0.0, 0.0],
-                    "start_direction": [1.0, 1.0, 0.0],
-                    "segments": [{"kind": "straight", "length_m": 1.2}],
-                    "mesh": {"elements_per_span": 6},
-                },
+                "structure": straight_path(
+                    1.2,
+                    [1.0, 1.0, 0.0],
+                    {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001},
+                    (2.0e11, 0.3, 8000.0),
+                    ends=("clamped", "clamped"),
+                    mesh={"elements_per_span": 6},
+                ),
                 "supports": [
                     {
                         "name": "plate",

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.reduction.reduced_model import build_model
@@ -20,21 +21,14 @@ def tube(before_end_m, start="clamped", theory="euler_bernoulli", length=LENGTH)
     return check_config(
         {
             "study": "short",
-            "structure": {
-                "kind": "path",
-                "theory": theory,
-                "section": {"outer_diameter_m": 0.0159, "wall_thickness_m": 0.00115},
-                "material": {
-                    "young_modulus_Pa": 2.07e11,
-                    "poisson_ratio": 0.3,
-                    "density_kg_per_m3": 7870.0,
-                },
-                "start_m": [0.0, 0.0, 0.0],
-                "start_direction": [0.0, 0.0, 1.0],
-                "segments": [{"kind": "straight", "length_m": length}],
-                "start": {"kind": start},
-                "end": {"kind": "free"},
-            },
+            "structure": straight_path(
+                length,
+                [0.0, 0.0, 1.0],
+                {"outer_diameter_m": 0.0159, "wall_thickness_m": 0.00115},
+                (2.07e11, 0.3, 7870.0),
+                ends=(start, "free"),
+                theory=theory,
+            ),
             "damping": {"kind": "modal", "other_ratio": 0.01},
             "supports": [
                 {

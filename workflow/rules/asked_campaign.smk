@@ -4,7 +4,7 @@ from functools import cache
 
 from vibroimpact.campaign.file import CampaignError, checked_description
 from vibroimpact.config.reserved_names import name_problem
-from vibroimpact.observation.comparable import channel_rows, comparison_problems
+from vibroimpact.diagnosis.measurement.comparable import channel_rows, comparison_problems
 from vibroimpact.records import RecordError
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name

@@ -1,5 +1,5 @@
 """Diagnosis: the model held to the measurement, what it lacks, and how sure that is.
 
-Data flow one way: measured stretches -> held runs -> score -> fit of explanations -> decision ->
+Data flow one way: measurement -> held runs -> score -> fit of explanations -> decision ->
 verification -> verdict. May import everything but study, reports and figures.
 """

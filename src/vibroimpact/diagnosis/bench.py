@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
-from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.run_cost import count_simulated
 
 from .constants import FORGET_S, INDEPENDENT
 from .explanations import Point, Structure
-from .stretches import Stretch
+from .measurement.sensor_chain import Measuring
+from .measurement.stretches import Stretch
 
 BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
 FIRST_BAND = 4  # lines in the lowest
@@ -37,9 +38,14 @@ class Bench:
     threads: int = 1
     held_below_Hz: float = np.inf
 
-    def held_at(self, strength: float) -> Bench:
-        """Return the Bench with dampers of another strength."""
-        return replace(self, strength=strength)
+    def on(self, stretches: slice) -> Bench:
+        """Return the Bench with some of its stretches."""
+        return replace(self, stretches=self.stretches[stretches])
+
+    @cached_property
+    def measures_motion(self) -> np.ndarray:
+        """Return (channel,) bool: which channels measure a motion, so that they can be held."""
+        return np.any([np.any(stretch.motion, axis=0) for stretch in self.stretches], axis=0)
 
     @property
     def moving(self) -> np.ndarray:
@@ -74,7 +80,7 @@ def lane_of(
     """Return the run of a model, as a Measuring chain sees it, on a stretch; free: channels without
     a damper.
     """
-    strength = np.where(measures_motion(bench), bench.strength, 0.0)
+    strength = np.where(bench.measures_motion, bench.strength, 0.0)
     strength[list(free)] = 0.0
     return HeldLane(
         model,
@@ -108,11 +114,6 @@ def in_band(bench: Bench, series: np.ndarray, band: tuple[float, float], order: 
     smooth = np.sin(0.5 * np.pi * fade) ** 2
     lines = np.fft.rfft((series - series.mean(axis=-1, keepdims=True)) * smooth, axis=-1)
     return np.fft.irfft(lines * factor, count, axis=-1)[..., inside]
-
-
-def measures_motion(bench: Bench) -> np.ndarray:
-    """Return (channel,) bool: which channels measure a motion, so that they can be held."""
-    return np.any([np.any(stretch.motion, axis=0) for stretch in bench.stretches], axis=0)
 
 
 def undelayed(motion: np.ndarray, delay: np.ndarray, rate: float) -> np.ndarray:

@@ -8,10 +8,10 @@ import numpy as np
 
 from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Effect, Values
-from vibroimpact.observation.sensor_chain import places as in_the_chain
 
 from .constants import FREQUENCY_SD, GAIN_SD
 from .explanations import Term
+from .measurement.sensor_chain import places as in_the_chain
 
 AT_A_POINT = (
     "added_mass",

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.observation.signals import Signals
-
 from .bench import Bench
-from .constants import SCREENED_S, SHARP, STRETCH_S, WIDE
+from .constants import SHARP, STRETCH_S, WIDE
+from .coordinates import Coordinate, nuisance_coordinates
 from .explanations import Structure
+from .measurement.signals import Signals
+from .measurement.stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 from .sizes import sizes_of
-from .stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 
 FITTED, SCREENED, APART = 3, 2, 4  # stretches
 BEGIN = 0.2  # of a record: where its first stretch begins
@@ -64,7 +65,13 @@ class Comparison:
         """Return the number of modes up to the upper end of the band."""
         return int(np.sum(self.structure.with_terms(()).frequencies < self.band[1]))
 
-    @property
+    def nuisances(self) -> list[Coordinate]:
+        """Return the coordinates of the nuisances: of the modes in the band and of all channels."""
+        model = self.structure.with_terms(())
+        ratio = model.damping / (2.0 * np.maximum(model.omega, 1.0e-12))
+        return nuisance_coordinates(ratio[: self.modes], len(self.structure.names))
+
+    @cached_property
     def across(self) -> bool:
         """Return whether sensors of more than one direction move at the highest load."""
         moving = self.fitted().moving[-1, :, 0]
@@ -82,8 +89,8 @@ class Comparison:
 
     def screened(self) -> Bench:
         """Return the Bench of screening: the higher loads, strong dampers."""
-        places = self._spread(self.signals.fit(), FITTED, SCREENED_S)[-SCREENED:]
-        return self._bench(places, SCREENED_S, WIDE)
+        places = self._spread(self.signals.fit(), FITTED, STRETCH_S)[-SCREENED:]
+        return self._bench(places, STRETCH_S, WIDE)
 
     def apart(self) -> Bench:
         """Return the Bench of stretches that took no part: of held-out records, or late ones of the
@@ -149,8 +156,3 @@ class Comparison:
             self.threads,
             self.band[1],
         )
-
-
-def with_threads(comparison: Comparison, threads: int) -> Comparison:
-    """Return the Comparison with so many runs at a time."""
-    return replace(comparison, threads=threads)

@@ -11,11 +11,11 @@ from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.step_stability import require_stable_step
-from vibroimpact.observation.signals import Signals
 from vibroimpact.records import plain_values
 
 from .constants import GAIN_SD
 from .explanations import Point, Structure
+from .measurement.signals import Signals
 from .search import Hypothesis
 
 NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law

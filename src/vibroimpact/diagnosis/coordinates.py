@@ -15,10 +15,18 @@ from .explanations import Point, Term
 
 NUISANCES = {"frequency": FREQUENCY_SD, "damping": DAMPING_SD, "gain": GAIN_SD}
 FARTHEST = 4.0  # sigma of a nuisance
+LEAST_DAMPING = 0.4  # of the scatter of a frequency, over it: see nuisance_coordinates
 ENDS = (0.02, 0.98)  # of a tube: nothing is looked for nearer to its ends
 PLACE_SIZE = 0.05  # of its length
 DIRECTION_SIZE_DEG = 20.0
-STEPS = {"log": 0.03, "amount": 0.1, "signed": 0.05, "place": 0.1, "nuisance": 0.3}
+STEPS = {
+    "log": 0.01,
+    "amount": 0.1,
+    "signed": 0.05,
+    "place": 0.02,
+    "direction": 0.1,
+    "nuisance": 0.3,
+}
 
 
 @dataclass(frozen=True)
@@ -55,13 +63,22 @@ class Coordinate:
         return float(np.log(value / self.size)) if self.log else float(value / self.size)
 
 
-def nuisance_coordinates(modes: int, channels: int) -> list[Coordinate]:
-    """Return the coordinates of the frequencies and damping of so many modes, and of the gains."""
-    counts = {"frequency": modes, "damping": modes, "gain": channels}
+def nuisance_coordinates(damping_ratio: np.ndarray, channels: int) -> list[Coordinate]:
+    """Return the coordinates of the frequencies and damping of modes, and of the gains.
+
+    damping_ratio (mode,): a damping whose scatter moves its mode far less than that of the
+    frequency does is left as it is.
+    """
+    heavy = DAMPING_SD * damping_ratio > LEAST_DAMPING * FREQUENCY_SD
+    numbers = {
+        "frequency": range(len(damping_ratio)),
+        "damping": np.flatnonzero(heavy).tolist(),
+        "gain": range(channels),
+    }
     return [
         Coordinate(kind, index, size, low=-FARTHEST, high=FARTHEST, step=STEPS["nuisance"], sd=1.0)
         for kind, size in NUISANCES.items()
-        for index in range(counts[kind])
+        for index in numbers[kind]
     ]
 
 
@@ -103,7 +120,7 @@ def _of_place(term: Term, number: int, length: float) -> list[Coordinate]:
         Coordinate("place", number, PLACE_SIZE * length, low=low, high=high, step=STEPS["place"])
     ]
     if turned_deg(term.location) is not None:
-        rows.append(Coordinate("direction", number, DIRECTION_SIZE_DEG, step=STEPS["place"]))
+        rows.append(Coordinate("direction", number, DIRECTION_SIZE_DEG, step=STEPS["direction"]))
     return rows
 
 

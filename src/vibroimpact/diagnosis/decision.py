@@ -76,7 +76,7 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
     no_effect = float(expit((constants.NULL_GAIN - best) / constants.NULL_WIDTH))
     nothing = no_effect * (1.0 - unexplained)
-    share = best / max(best + max(rest, 0.0), 1.0e-12)
+    share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
     chance = np.exp((gains - best) / width)
     chance *= (1.0 - no_effect) * (1.0 - unexplained) / chance.sum()

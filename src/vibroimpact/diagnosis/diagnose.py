@@ -10,12 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.observation.attached_model import with_channel_points
-from vibroimpact.observation.signals import Signals, signals_of
 from vibroimpact.records import write_record, write_table, write_text
 from vibroimpact.run_cost import SIMULATED
 from vibroimpact.stopwatch import Stopwatch
@@ -25,6 +22,7 @@ from vibroimpact.verdict.content import (
     Misfit,
     MisfitBySplit,
     Verdict,
+    not_run_sentence,
 )
 from vibroimpact.verdict.content import not_testable as not_testable_verdict
 from vibroimpact.verdict.file import write_verdict
@@ -40,9 +38,11 @@ from .free_runs import FreeRuns, distance, free_runs, regions
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
 from .identified.structure_file import model_of
+from .measurement.attached_model import with_channel_points
+from .measurement.signals import Signals, signals_of
+from .measurement.usable import Refused, not_testable, usable
 from .next_measurement import next_measurement
 from .search import Hypothesis, Search, search
-from .usable import Refused, not_testable, usable
 
 EFFORTS = {"quick": 1, "standard": 2, "thorough": 3}  # effects at once, at most
 REGIONS = 12
@@ -290,7 +290,8 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
-        "checks": _contract([*found.checks, *_failed_rows(found.searched)]),
+        "checks": _contract(found.checks),
+        "not_run": list(found.searched.failed),
         "not_testable": found.not_testable(),
         "provenance": found.provenance,
         "load_unit": found.signals.load_unit,
@@ -302,7 +303,10 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     completed = (
         not_offered(withdrawn)
         if withdrawn
-        else found.model_text(_offered(found.searched, decision), _sentence(decision.verdict))
+        else found.model_text(
+            _offered(found.searched, decision),
+            _sentence(decision.verdict) + not_run_sentence(found.searched.failed),
+        )
     )
     return Diagnosis(
         Verdict.from_values(content),
@@ -393,14 +397,6 @@ def _sentence(conclusion):
     if conclusion in ("none", "unknown"):
         return f"The verdict is {conclusion}: no effect was added, modes are corrected."
     return "The model with the effects that the campaign shows to be missing; modes are corrected."
-
-
-def _failed_rows(searched):
-    """Return the rows of checks for effects that could not be run."""
-    return [
-        check_row("left out", "warn", f"{name} could not be run: it is not among the explanations.")
-        for name in searched.failed
-    ]
 
 
 def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:

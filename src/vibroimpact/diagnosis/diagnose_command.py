@@ -74,6 +74,8 @@ def run(options: argparse.Namespace) -> int:
 
 def summary(verdict: Verdict) -> list[str]:
     """Return the lines that tell a verdict on a terminal."""
+    from vibroimpact.verdict.content import not_run_sentence
+
     lines = [f"Verdict: {verdict.verdict.replace('_', ' ')}"]
     if verdict.verdict == "not_testable":
         return [*lines, *(row.message for row in verdict.checks if row.level == "refuse")]
@@ -86,6 +88,7 @@ def summary(verdict: Verdict) -> list[str]:
     shares |= {" + ".join(row.ids): row.probability for row in verdict.ranking}
     shares["something else"] = verdict.probability_something_else
     lines += [f"  {chance:6.1%}  {name}" for name, chance in shares.items() if chance]
+    lines += [f" {told}" for told in [not_run_sentence(verdict.not_run)] if told]
     apart = verdict.misfit.taking_no_part()
     if apart is not None and apart.before_dB is not None and apart.after_dB is not None:
         lines.append(

@@ -10,14 +10,13 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample_poly
 
-from vibroimpact.observation.strain import STRAIN
-
-from .bench import Bench, in_band, measures_motion, settled
+from .bench import Bench, in_band, settled
 from .comparison import Comparison
 from .explanations import Point
 from .held_states import HeldState, held_state, measured_motion
 from .law import Demand, Places, demand_of
-from .stretches import Stretch
+from .measurement.sensed_motion import STRAIN
+from .measurement.stretches import Stretch
 
 STATES = ("before", "after")
 SERIES = ("measured", *STATES)
@@ -28,11 +27,8 @@ LAW_STRETCHES = 3
 WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
 FINER = 4  # times the sampling of the runs, as a waveform is drawn
 PLACES = (  # of a campaign: where its channels and forces are
-    "channel_point",
-    "channel_direction",
     "force_channel_name",
-    "force_channel_point",
-    "force_channel_direction",
+    *(f"{role}_{key}" for role in ("channel", "force_channel") for key in ("point", "direction")),
 )
 ACTS = 0.3  # of the power of the sensors: beyond what the drive alone does
 
@@ -100,7 +96,7 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
     highest and the lowest load that took no part, as far as MOST_FREE runs go.
     """
     order = sorted(range(fitted, len(bench.stretches)), key=lambda at: -bench.stretches[at].load)
-    held = measures_motion(bench)
+    held = bench.measures_motion
     out: list[tuple[int, int]] = []
     for number in list(dict.fromkeys([order[0], order[-1]]))[:FREE_STRETCHES]:
         moving = np.flatnonzero(bench.stretches[number].moving & held)
@@ -151,7 +147,6 @@ def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: P
     return {
         "place_name": ("place", np.array(places.names, object)),
         "owner_name": ("place", np.array(places.owners, object)),
-        "direction": ("place", places.direction),
         "law_of_stretch": ("law_stretch", np.array(chosen, int)),
         "sample_time": ("sample", time, {"units": "s"}),
         "demanded_force": (dims, np.array([row.force for row in shown], np.float32), newton),

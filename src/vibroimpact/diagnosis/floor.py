@@ -13,19 +13,18 @@ import numpy as np
 from scipy import signal
 
 from vibroimpact.integration.held_run import HeldLane, hold
-from vibroimpact.observation.sensed_motion import orders
 
-from .bench import Bench, mean_log_power, measures_motion
+from .bench import Bench, mean_log_power, undelayed
 from .comparison import Comparison
 from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
-from .coordinates import nuisance_coordinates
 from .explanations import Point
 from .gauss_newton import Fit, fit
-from .stretches import Stretch
+from .measurement.sensed_motion import orders
+from .measurement.stretches import Stretch
 
 LEAD_S = 2.0  # of a free run before its stretch
 WINDOW = ("kaiser", 9.0)  # of the interpolation: images 90 dB down
-PASSES = 2  # of the fit of the nuisances
+PASSES = 1  # of the fit of the nuisances: a second one changes the floor by 0.1 at most
 
 
 def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
@@ -47,8 +46,7 @@ def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
     if stretches is None:
         return level, np.nan
     own = replace(bench, stretches=stretches)
-    rows = nuisance_coordinates(modes, channels)
-    found = fit(own, Point(best.point.terms), rows, PASSES)
+    found = fit(own, Point(best.point.terms), comparison.nuisances(), PASSES)
     return level, mean_log_power(own, found.lines)
 
 
@@ -80,13 +78,14 @@ def _played(
     led, lead = comparison.led(bench, LEAD_S)
     schedule = replace(bench.schedule, duration=bench.schedule.duration + lead)
     free = np.zeros(len(chain.gain))
-    runs = [HeldLane(model, each.gap, each.force, np.zeros_like(each.motion), free) for each in led]
+    still, scale = np.zeros_like(led[0].motion), 1.0 / chain.force_gain
+    runs = [HeldLane(model, each.gap, each.force, still, free, force_scale=scale) for each in led]
     motion = hold(runs, schedule, bench.threads).motion
     if not np.isfinite(motion).all():
         return None
     up = round(schedule.steps_per_second / schedule.sampling_frequency)
     first = round(lead * schedule.sampling_frequency) * up
-    held = measures_motion(bench)
+    held = bench.measures_motion
     out = []
     for each, own in zip(bench.stretches, motion, strict=True):
         own = own * chain.gain[:, None] + _noise(comparison, own.shape[1], rng)
@@ -94,5 +93,6 @@ def _played(
         # the motion of a stretch begins one step before its first sample
         count = len(each.motion)
         dense = np.pad(fine, ((0, 0), (1, count)), mode="edge")[:, first : first + count]
-        out.append(replace(each, motion=dense.T * held))
+        late = undelayed(dense.T, -chain.delay, schedule.steps_per_second)
+        out.append(replace(each, motion=late * held))
     return tuple(out)

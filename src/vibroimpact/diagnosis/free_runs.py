@@ -13,14 +13,13 @@ from itertools import combinations
 
 import numpy as np
 
-from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.observation.signals import Signals
-from vibroimpact.observation.simulated_records import Forces, simulate_records, steps_per_second
 from vibroimpact.verdict.misfit import closed_fraction
 
 from .explanations import Point, Structure
-from .stretches import valid_samples
+from .measurement.signals import Signals
+from .measurement.simulated_records import simulate_records
+from .measurement.stretches import valid_samples, whole_rates
 
 SEEDS = 2
 SETTLE_S = 1.0  # at the start of a record
@@ -65,8 +64,9 @@ def _simulated(structure, signals, point):
     """
     samples = max(valid_samples(signals, record) for record in range(len(signals.load)))
     integration = structure.config.integration
-    rate = steps_per_second(signals.rate, integration)
+    rates = whole_rates(signals.rate, integration)
     model, chain = structure.model(point), structure.measuring(point)
+    force = signals.force / chain.force_gain
     raw = replace(model, sensor_shapes=model.sensor_shapes / structure.scale)
     runs = [
         (record, float(signals.gap[record]), seed)
@@ -75,11 +75,9 @@ def _simulated(structure, signals, point):
     ]
     shape = (len(signals.load), SEEDS, len(signals.names), samples)
     for scheme in dict.fromkeys((integration.scheme, "newmark")):
-        schedule = Schedule(rate, signals.rate, 0.0, samples / signals.rate, scheme)
+        schedule = rates.schedule(samples / signals.rate, scheme)
         try:
-            found = simulate_records(
-                raw, schedule, Forces(signals.force, schedule), runs, signals.kinds
-            )
+            found = simulate_records(raw, schedule, force, runs, signals.kinds)
         except IntegrationError:
             continue
         return found.reshape(shape) * chain.gain[:, None].astype(np.float32)

@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.integration.held_run import HeldRecords, hold
-from vibroimpact.observation.sensor_chain import Measuring
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import Bench, lane_of, undelayed
 from .explanations import Point
 from .law import Places, element_force, places_of, probed
+from .measurement.sensor_chain import Measuring
 
 
 @dataclass(frozen=True, eq=False)

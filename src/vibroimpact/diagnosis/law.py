@@ -23,14 +23,14 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
 from vibroimpact.contact.laws import LocalLaws
-from vibroimpact.observation.sensed_motion import across, of_modes, orders
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import Bench, settled
 from .comparison import Comparison
 from .constants import GAIN_SD
 from .explanations import Point
-from .stretches import FADE_S, Stretch, stretches_of, valid_samples
+from .measurement.sensed_motion import across, of_modes, orders
+from .measurement.stretches import FADE_S, Stretch, stretches_of, valid_samples
 
 MARGIN_S, TAPER_S = 2.0, 1.0  # beside a stretch, and of it faded
 BANDS = 12  # logarithmic, each with a variance of its own
@@ -46,13 +46,12 @@ class Places:
     """Where unknown forces act: two resultants per support, and one along each local element.
 
     names, owners (place,): "left, y" and "left". shapes (mode, place): of a unit force that acts
-    equally on the contact points of its support. direction (place,): of a support 0 or 1, else -1.
+    equally on the contact points of its support.
     """
 
     names: tuple[str, ...]
     owners: tuple[str, ...]
     shapes: np.ndarray
-    direction: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,24 +74,21 @@ class Demand:
 
 def places_of(model: ModalModel) -> Places:
     """Return the Places of the supports and local elements of a model."""
-    names, owners, shapes, direction = [], [], [], []
+    names, owners, shapes = [], [], []
     for support, owner in enumerate(model.support_names):
         mean = model.contact_shapes[:, model.support_of_point == support].mean(axis=1)
         for number, vector in enumerate(across(model, support)):
             names.append(f"{owner}, {_axis(vector, number)}")
             owners.append(owner)
             shapes.append(mean[:, number])
-            direction.append(number)
     for element, name in enumerate(model.element_names):
         names.append(name)
         owners.append(name)
         shapes.append(model.element_shapes[:, element])
-        direction.append(-1)
     return Places(
         tuple(names),
         tuple(owners),
         np.stack(shapes, axis=1) if shapes else np.zeros((model.modes, 0)),
-        np.array(direction, int),
     )
 
 
@@ -114,8 +110,9 @@ def demanded(
     frequency: np.ndarray,
     lines: tuple[np.ndarray, np.ndarray],
     variance: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Return (force (place, line) N, motion (place, line) m, resolution (place,), explained).
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
+    """Return (force (place, line) N, motion (place, line) m, resolution (place,), explained,
+    beyond), see Demand.
 
     frequency (line,): Hz. lines: (drive (force_channel, line) N, sensors (sensor, line) m).
     variance (sensor, line): of noise and model, m²; infinite of a sensor that tells nothing.
@@ -136,7 +133,8 @@ def demanded(
     resolution = np.sum(prior * known, axis=0) / np.where(power > 0.0, power, 1.0)
     misfit = white - np.squeeze(matrix @ force[..., None], -1)
     explained = 1.0 - float(np.sum(np.abs(misfit) ** 2) / max(np.sum(np.abs(white) ** 2), 1e-300))
-    return force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained
+    beyond = float(np.sum(np.abs(left) ** 2) / max(np.sum(np.abs(sensors) ** 2), 1e-300))
+    return force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained, beyond
 
 
 def _bands_of(frequency):
@@ -196,26 +194,15 @@ def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Poi
         for values in (longer.force / chain.force_gain, longer.motion / chain.gain)
     )
     sensors = sensors * np.exp(2j * np.pi * frequency[inside] * chain.delay[:, None])
-    left = (
-        sensors
-        - (
-            receptances(model, frequency[inside])
-            * (model.drive_shapes @ drive).T
-            @ model.sensor_shapes
-        ).T
-    )
     variance = _variance(comparison, frequency[inside], sensors, float(np.sum(window**2)))
     places = places_of(model)
-    force, motion, resolution, explained = demanded(
-        model, places, frequency[inside], (drive, sensors), variance
-    )
-    beyond = float(np.sum(np.abs(left) ** 2) / max(np.sum(np.abs(sensors) ** 2), 1e-300))
+    force, motion, *shares = demanded(model, places, frequency[inside], (drive, sensors), variance)
     own = round(stretch.start_s * rates.sampling) - first
     series = [
         _series(lines, inside, last - first, rates.steps_per_sample)[:, own + settled(bench)]
         for lines in (force, motion)
     ]
-    return Demand(places, series[0], series[1], resolution, explained, beyond)
+    return Demand(places, *series, *shares)
 
 
 def _series(lines, inside, samples, ratio):

@@ -9,9 +9,10 @@ import xarray as xr
 
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.geometry.directions import unit_vector
-from vibroimpact.observation.sensed_motion import CONTACT_FORCE, across, support_at
 from vibroimpact.reduction.modal_model import ModalModel
 
+from .measurement.comparable import compared_channels, contact_force_fault
+from .measurement.sensed_motion import CONTACT_FORCE, across, support_at
 from .whole_records import Held, Holder
 
 
@@ -33,19 +34,17 @@ def force_channels(campaign: xr.Dataset, model: ModalModel) -> tuple[list[ForceC
     """Return (the ForceChannels of a campaign, sentences on those at no support of the model)."""
     found, notes = [], []
     signals = campaign_signals(campaign)
-    for channel in np.flatnonzero(campaign["channel_kind"].values == CONTACT_FORCE):
+    pressed = campaign["channel_kind"].values == CONTACT_FORCE
+    for channel in np.flatnonzero(pressed & compared_channels(campaign)):
         name = str(campaign["channel_name"].values[channel])
         place, direction = (
             campaign[f"channel_{key}"].values[channel].astype(float)
             for key in ("point", "direction")
         )
         support = support_at(model, place)
-        if support is None:
-            names = ", ".join(model.support_names)
-            notes.append(
-                f"{name} is a contact force at no support of the model ({names}): it is left out;"
-                " give as channel_point the middle of its support."
-            )
+        why = contact_force_fault(model, place, direction)
+        if support is None or why:
+            notes.append(f"{name} {why}.")
         elif int(channel) in signals.unit_faults:
             notes.append(f"{signals.unit_faults[int(channel)]}: {name} is left out.")
         else:

@@ -18,6 +18,7 @@ from .explanations import Point
 
 AT_A_TIME = 64  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict
+KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
 FARTHEST_STEP = 1.5  # of a coordinate, from where the effect does nothing
 
 
@@ -49,16 +50,29 @@ def screen(
     ]
     lines = holding_lines(bench, [base])[0]
     near = [point for point, _ in predicted(bench, lines, neutral, sizes)[:TRIED]]
+    return _ranked(bench, lines, far + near)
+
+
+def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Screened]:
+    """Return Screened of points, best first: all are tried on the last stretch, and those that
+    gain most there on the others. lines (stretch, channel, line): of the base.
+    """
+    gains = _gains(bench.on(slice(-1, None)), lines[-1:], points)
+    order = np.argsort(-gains, kind="stable")
+    kept, left = np.split(order, [max(round(KEPT * len(order)), FEWEST_KEPT)])
+    if len(bench.stretches) > 1:
+        gains[kept] += _gains(bench.on(slice(0, -1)), lines[:-1], [points[at] for at in kept])
+        kept = kept[np.argsort(-gains[kept], kind="stable")]
+    return [Screened(points[at], float(gains[at])) for at in (*kept, *left)]
+
+
+def _gains(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> np.ndarray:
+    """Return (point,): how much lower the misfit of points is than that of lines."""
     now, out = misfit(bench, lines), []
-    trials = far + near
-    for first in range(0, len(trials), AT_A_TIME):
-        some = trials[first : first + AT_A_TIME]
-        found = holding_lines(bench, some)
-        out += [
-            Screened(point, now - misfit(bench, own))
-            for point, own in zip(some, found, strict=True)
-        ]
-    return sorted(out, key=lambda each: -each.gain)
+    for first in range(0, len(points), AT_A_TIME):
+        found = holding_lines(bench, points[first : first + AT_A_TIME])
+        out += [now - misfit(bench, own) for own in found]
+    return np.array(out)
 
 
 def predicted(

@@ -18,11 +18,12 @@ from .bench import (
     effective_lines,
     holding_lines,
     log_power,
+    misfit,
 )
 from .catalogue import within_priors
 from .comparison import Comparison
 from .constants import NOTHING_LEFT, needed_gain
-from .coordinates import effect_coordinates, nuisance_coordinates
+from .coordinates import effect_coordinates
 from .explanations import Point
 from .floor import floor_of
 from .gauss_newton import Fit, columns, fit
@@ -30,7 +31,9 @@ from .screening import Screened, screen
 
 RACED, FINALISTS = 8, 3
 PER_EFFECT = 2  # places of one effect in a race
+RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
 RACE_PASSES, FINAL_PASSES = 3, 12  # at most
+POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
 
 
@@ -98,17 +101,16 @@ def search(
         comparison.apart(),
         list(EFFECTS.values()) if effects is None else effects,
     )
-    nothing = _finals(at, [Point()], None)[0]
+    nothing = _finals(at, [Point()])[0]
     log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
     found: dict[str, Hypothesis] = {}
     base = nothing
     failed: tuple[str, ...] = ()
     floors: dict[str, tuple[float, float]] = {}
     for size in range(1, most + 1):
-        beside = replace(Point(), terms=base.point.terms)
-        ranked = _screened(at, beside)
-        failed = failed or _never_run(ranked)
-        raced = _race(at, ranked)
+        ranked = _screened(at, base.point)
+        failed = tuple(sorted({*failed, *_never_run(ranked)}))
+        raced = _race(at, ranked, base.point)
         new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
         found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
         if not new:
@@ -146,8 +148,12 @@ def _never_run(ranked: Sequence[Screened]) -> tuple[str, ...]:
     return tuple(sorted(tried - ran))
 
 
-def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
-    """Return the Fits of the best screened points of different effects, best first."""
+def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
+    """Return the Fits of the best screened points of different effects, best first.
+
+    beside: Point without their last term.
+    """
+    base = misfit(at.screened, holding_lines(at.screened, [beside])[0])
     chosen: dict[str, Point] = {}
     per_effect: dict[str, int] = {}
     for each in ranked:
@@ -164,27 +170,58 @@ def _race(at: _Benches, ranked: Sequence[Screened]) -> list[Fit]:
     ]
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
     apart = [each for each in fits if not within_priors(each.point.terms[-1], rate, sizes)]
-    return sorted(apart, key=lambda each: each.objective)
+    apart.sort(key=lambda each: each.objective)
+    least = RIVALS * (base - apart[0].objective) if apart else 0.0
+    return [each for each in apart if base - each.objective >= least]
 
 
-def _finals(at: _Benches, points: Sequence[Point], nothing: Hypothesis | None) -> list[Hypothesis]:
+def _finals(
+    at: _Benches, points: Sequence[Point], nothing: Hypothesis | None = None
+) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances at sharp dampers.
 
-    The columns of the nuisances are those at the first point.
+    The columns of the nuisances are those at the first point; for the best fit they are found
+    again where it ends, as long as that helps.
     """
-    nuisances = nuisance_coordinates(at.comparison.modes, len(at.comparison.structure.names))
-    known: np.ndarray | None = None
-    out = []
+    fits: list[Fit] = []
+    known = None
     for point in points:
         if known is None:
-            lines = holding_lines(at.fitted, [point])[0]
-            if not np.isfinite(lines).all():
-                continue
-            known = columns(at.fitted, point, nuisances, lines)
-        rows = [*effect_coordinates(point.terms, at.comparison.sizes), *nuisances]
-        own = fit(at.fitted, point, rows, FINAL_PASSES, known)
-        out.append(_hypothesis(at, own, nothing))
-    return out
+            known = _nuisance_columns(at, point)
+        if known is not None:
+            fits.append(_final(at, point, known))
+    if fits:
+        number = int(np.argmin([each.objective for each in fits]))
+        fits[number] = _polished(at, fits[number])
+    return [_hypothesis(at, own, nothing) for own in fits]
+
+
+def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
+    """Return the columns of the nuisances at a Point, None where it can not be run."""
+    lines = holding_lines(at.fitted, [point])[0]
+    if not np.isfinite(lines).all():
+        return None
+    return columns(at.fitted, point, at.comparison.nuisances(), lines)
+
+
+def _final(at: _Benches, point: Point, known: np.ndarray) -> Fit:
+    """Return the Fit of a Point's effects and of the nuisances, whose columns are known."""
+    rows = [*effect_coordinates(point.terms, at.comparison.sizes), *at.comparison.nuisances()]
+    return fit(at.fitted, point, rows, FINAL_PASSES, known)
+
+
+def _polished(at: _Benches, found: Fit) -> Fit:
+    """Return a Fit from which new columns of the nuisances lead no further."""
+    for _ in range(POLISHED):
+        known = _nuisance_columns(at, found.point)
+        again = found if known is None else _final(at, found.point, known)
+        settled = found.objective - again.objective < POLISHED_GAIN * effective_lines(
+            at.fitted, again.lines
+        )
+        found = again
+        if settled:
+            break
+    return found
 
 
 def _hypothesis(at: _Benches, own: Fit, nothing: Hypothesis | None) -> Hypothesis:
@@ -216,9 +253,9 @@ def _exchanged(at, best, nothing, log):
     """Return {name: Hypothesis} of pairs in which the first effect of the best is exchanged."""
     out = {}
     for kept in best.point.terms[1:]:
-        base = replace(Point(), terms=(kept,))
+        base = replace(best.point, terms=(kept,))
         ranked = _screened(at, base)
-        raced = [each for each in _race(at, ranked)[:2] if each.point.name not in out]
+        raced = [each for each in _race(at, ranked, base)[:2] if each.point.name not in out]
         for each in _finals(at, [each.point for each in raced], nothing):
             out[each.point.name] = each
             log(f"exchanged: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")

@@ -8,10 +8,10 @@ import numpy as np
 
 from vibroimpact.effects.effect import Values
 from vibroimpact.effects.places import length_m
-from vibroimpact.observation.signals import Signals
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .stretches import Stretch
+from .measurement.signals import Signals
+from .measurement.stretches import Stretch
 
 CONTACT_INDENTATION = 0.03  # of the gap: at it a Hertz contact is as stiff as the model's
 

@@ -94,10 +94,8 @@ def measured_of(
     record: HeldTwice, both: Mapping[str, np.ndarray], chosen: np.ndarray
 ) -> dict[Key, float]:
     """Return {Key: value} of the measured contact forces."""
-    out: dict[Key, float] = {}
-    for channel in record.channels:
-        out |= _of_channel(channel, both[channel.name][1, chosen])
-    return out
+    found = [_of_channel(each, both[each.name][1, chosen]) for each in record.channels]
+    return {key: value for own in found for key, value in own.items()}
 
 
 def with_interval(

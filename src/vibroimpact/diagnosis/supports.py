@@ -20,19 +20,19 @@ import xarray as xr
 from vibroimpact.campaign.file import CampaignError
 from vibroimpact.config.schema import Config
 from vibroimpact.linear.support_groups import support_directions
-from vibroimpact.observation.comparable import (
-    channel_faults,
+
+from .comparison import Comparison
+from .explanations import Point, Structure
+from .gauss_newton import fit
+from .measured_forces import force_channels, side_by_side
+from .measurement.comparable import (
+    channel_rows,
     comparison_problems,
     left_out,
-    still_rows,
-    strain_rows,
+    model_rows,
 )
-from vibroimpact.observation.sensed_motion import of_modes
-from vibroimpact.observation.signals import signals_of
-
-from .calibration import calibrated
-from .explanations import Point, Structure
-from .measured_forces import force_channels, side_by_side
+from .measurement.sensed_motion import of_modes
+from .measurement.signals import signals_of
 from .support_statistics import (
     HeldTwice,
     agreement_of,
@@ -41,10 +41,11 @@ from .support_statistics import (
     unseen_of,
     with_interval,
 )
-from .whole_records import STRENGTH, holder
+from .whole_records import STRENGTH, first_mode_Hz, holder
 
 AGREEMENT = 0.95  # least correlation of the forces under two strengths
 KNOWN = 0.5  # least share of signal in a channel
+PASSES = 3  # of a calibration, at most: gains are then known to 1 %, see docs/virtual_supports.md
 
 UNITS = {
     "rms_force": "N",
@@ -55,6 +56,8 @@ UNITS = {
     "wear_work_rate": "W",
     "agreement": "1",
     "correlation": "1",
+    "secant_stiffness": "N m-1",
+    "secant_damping": "N s m-1",
 }
 
 
@@ -124,7 +127,7 @@ def virtual_supports(
     Measured contact forces are not used; they stand beside the virtual ones along their channels.
 
     config: of the model. point: effects, and nuisances of the channels that measure a motion; None
-    for the model as given. calibrate: fit frequencies, damping and gains first, see calibration.py.
+    for the model as given. calibrate: fit frequencies, damping and gains first.
     with_forces: also give the forces over time.
 
     Raises CampaignError where the campaign can not be compared with the model, with sentences that
@@ -139,7 +142,7 @@ def virtual_supports(
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
     if calibrate:
-        holding = holder(structure, signals, calibrated(structure, signals, point))
+        holding = holder(structure, signals, _calibrated(structure, signals, point))
     channels, more = force_channels(campaign, holding.model)
     directions = support_directions(holding.model, "each")
     values: list[SupportValue] = []
@@ -147,7 +150,7 @@ def virtual_supports(
     for record in range(len(signals.record_names)):
         run, weaker = holding.hold(record), holding.hold(record, 0.5 * STRENGTH)
         values += _values(HeldTwice(holding, run, weaker, directions, channels))
-        notes += [*_lost(signals, run), *_noisy(signals, run)]
+        notes += _doubts(signals, run)
         if with_forces:
             forces.append(_forces(holding, run))
     return VirtualSupports(tuple(values), tuple(forces), tuple(dict.fromkeys(notes)))
@@ -166,28 +169,28 @@ def _held_channels(campaign, config):
         )
     if problems:
         raise CampaignError("\n".join(f"{problem}." for problem in problems))
-    faults = channel_faults(campaign)
-    rows = [*still_rows(config, campaign), *strain_rows(config, campaign)]
+    rows = [*channel_rows(campaign), *model_rows(config, campaign)]
     names = campaign["channel_name"].values
     told = of_modes(campaign["channel_kind"].values) & ~np.isin(names, sorted(left_out(rows)))
-    held = [int(channel) for channel in np.flatnonzero(told) if channel not in faults]
-    notes = [*(f"{fault}." for fault in faults.values()), *(row["message"] for row in rows)]
-    if not held:
-        raise CampaignError(
-            "\n".join(
-                [
-                    *notes,
-                    "no channel is left that measures a motion or a strain at a known place: the"
-                    " model can not be held.",
-                ]
-            )
+    held, notes = np.flatnonzero(told), [row["message"] for row in rows]
+    if not len(held):
+        notes.append(
+            "no channel is left that measures a motion or a strain at a known place: the model can"
+            " not be held."
         )
+        raise CampaignError("\n".join(notes))
     return held, notes
+
+
+def _calibrated(structure, signals, point) -> Point:
+    """Return a Point with fitted nuisances of all modes in the band and of all channels."""
+    comparison = Comparison(signals, structure)
+    return fit(comparison.fitted(), point, comparison.nuisances(), PASSES).point
 
 
 def _unusable(holding) -> Iterator[str]:
     """Yield a sentence for every record that can not be held."""
-    signals, period = holding.signals, 1.0 / holding.first_mode_Hz
+    signals, period = holding.signals, 1.0 / first_mode_Hz(holding.model)
     open_gap = bool(np.isnan(holding.model.contact_laws.gap).any())
     for record, name in enumerate(signals.record_names):
         if open_gap and not np.isfinite(signals.gap[record]):
@@ -200,33 +203,24 @@ def _unusable(holding) -> Iterator[str]:
             )
 
 
-def _lost(signals, run) -> list[str]:
-    """Return a sentence on the stretches of a record that could not be run."""
-    lost = int(np.sum(~np.isfinite(run.runs.support_force).all(axis=(1, 2))))
-    record = signals.record_names[run.record]
-    return (
-        [
-            f"record {record}: {lost} of its {len(run.runs.support_force)} stretches diverged and"
-            " are left out; raise integration.steps_per_second."
-        ]
-        if lost
-        else []
-    )
-
-
-def _noisy(signals, run) -> list[str]:
-    """Return a sentence on the channels of a record that are mostly noise."""
+def _doubts(signals, run) -> Iterator[str]:
+    """Yield sentences on the stretches of a record that could not be run, and on its channels that
+    are mostly noise.
+    """
+    record, force = signals.record_names[run.record], run.runs.support_force
+    lost = int(np.sum(~np.isfinite(force).all(axis=(1, 2))))
+    if lost:
+        yield (
+            f"record {record}: {lost} of its {len(force)} stretches diverged and are left out;"
+            " raise integration.steps_per_second."
+        )
     noisy = [name for name, share in zip(signals.names, run.known, strict=True) if share < KNOWN]
-    record = signals.record_names[run.record]
-    return (
-        [
+    if noisy:
+        yield (
             f"record {record}: {', '.join(noisy)} {'is' if len(noisy) == 1 else 'are'} mostly noise"
             " as a velocity and hardly held; what depends on the motion along them, such as the"
             " wear work rate, is then not known."
-        ]
-        if noisy
-        else []
-    )
+        )
 
 
 def _forces(holding, run) -> SupportForces:
@@ -265,7 +259,7 @@ def _values(record: HeldTwice) -> list[SupportValue]:
             support=record.supports[support],
             channel=channel,
             quantity=quantity,
-            unit=_unit(quantity),
+            unit=UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],
             value=found[support, channel, quantity],
             low=low.get((support, channel, quantity), np.nan),
             high=high.get((support, channel, quantity), np.nan),
@@ -274,13 +268,6 @@ def _values(record: HeldTwice) -> list[SupportValue]:
         )
         for support, channel, quantity in sorted(found, key=lambda key: key[:2])
     ]
-
-
-def _unit(quantity):
-    """Return the unit of a quantity."""
-    if quantity.startswith("secant_stiffness"):
-        return "N m-1"
-    return "N s m-1" if quantity.startswith("secant_damping") else UNITS[quantity]
 
 
 def _remark(quantity, agreement, unseen):

@@ -6,17 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.observation.sensed_motion import orders
-from vibroimpact.observation.signals import Signals
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import undelayed
 from .constants import FORGET_S
 from .explanations import Point, Structure
-from .stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
+from .measurement.sensed_motion import orders
+from .measurement.signals import Signals
+from .measurement.stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
 
 STRETCHES = LANES  # of a record: they fill the lanes of one batch
 # Of the dampers, in units of the first mode, see unit_strength. Measured, correlation with the true
@@ -64,11 +63,6 @@ class Holder:
     rates: Rates
     band: tuple[float, float]
 
-    @property
-    def first_mode_Hz(self) -> float:
-        """Return the lowest frequency of the modes that are no rigid motion, Hz."""
-        return first_mode_Hz(self.model)
-
     def stretch_times(self, record: int) -> tuple[float, float]:
         """Return (first_s, duration_s) of STRETCHES stretches that cover a record as far as its
         motion is known: lines are integrated with a fade at its ends, see stretches.displacement.
@@ -95,15 +89,9 @@ class Holder:
             rates,
             self.structure.scale,
         )
-        schedule = Schedule(
-            rates.steps_per_second,
-            rates.sampling,
-            lead,
-            duration,
-            self.structure.config.integration.scheme,
-        )
+        schedule = rates.schedule(duration, self.structure.config.integration.scheme, lead)
         speed = _speed(stretches, round(lead * rates.steps_per_second), rates.steps_per_second)
-        known = self.share_known(speed)
+        known = _share_known(speed, velocity_noise(signals, self.band) * self.structure.scale)
         strength = factor * unit_strength(self.model, self.band) * known
         chain = self.structure.measuring(self.point)
         runs = hold(
@@ -125,16 +113,6 @@ class Holder:
         return Held(
             record, first, duration, strength, known, runs, rates.steps_per_second, rates.sampling
         )
-
-    def share_known(self, speed: np.ndarray) -> np.ndarray:
-        """Return (channel,) 0 to 1: the share of the measured velocity's power that is no noise.
-
-        speed (channel,): its RMS in m/s. The Wiener filter of a whole channel: a damper to noise
-        would only drive the structure.
-        """
-        noise = velocity_noise(self.signals, self.band) * self.structure.scale
-        share = np.divide(noise, speed, out=np.ones_like(speed), where=speed > 0.0)
-        return np.maximum(1.0 - share**2, 0.0)
 
 
 def holder(structure: Structure, signals: Signals, point: Point) -> Holder:
@@ -174,3 +152,13 @@ def _speed(stretches, lead, steps_per_second):
     """Return (channel,) RMS in m/s of the measured velocity of stretches, `lead` steps left out."""
     velocity = [np.diff(stretch.motion[lead:], axis=0) for stretch in stretches]
     return steps_per_second * np.sqrt(np.mean([np.mean(v**2, axis=0) for v in velocity], axis=0))
+
+
+def _share_known(speed, noise):
+    """Return (channel,) 0 to 1: the share of the measured velocity's power that is no noise.
+
+    speed, noise (channel,): RMS in m/s. The Wiener filter of a whole channel: a damper to noise
+    would only drive the structure.
+    """
+    share = np.divide(noise, speed, out=np.ones_like(speed), where=speed > 0.0)
+    return np.maximum(1.0 - share**2, 0.0)

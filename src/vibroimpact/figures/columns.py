@@ -54,7 +54,6 @@ COLUMNS = {
     "fit_score": ("Log evidence of the fitted records (-)", 1.0),
     "left": ("Chi-square left per value (-)", 1.0),
     "parameter": ("Parameter (in its unit)", 1.0),
-    "place_in_list": ("Place in the list (-)", 1.0),
     "psd_N2_per_Hz": ("PSD of force (N²/Hz)", 1.0),
     "psd_1_per_Hz": ("PSD (1/Hz)", 1.0),
     "psd_m2_per_s2_per_Hz": ("PSD of velocity ((m/s)²/Hz)", 1.0),

@@ -9,7 +9,6 @@ from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.verdict.content import Verdict
 
 NOTHING = "nothing is missing"
-SOMETHING_ELSE = "something that is not in the catalogue"
 LEAST_SHOWN = 0.005
 SURE = 0.5  # above it an explanation speaks against a verdict that does not tell it
 
@@ -25,6 +24,11 @@ class Explanation:
     probability: float
     told: bool = False
     open: bool = False
+
+
+def not_explained(verdict: Verdict) -> str:
+    """Return what an unexplained rest is, in words after "something"."""
+    return f"that {'could not be run, or ' if verdict.not_run else ''}is not in the catalogue"
 
 
 def explanations_of(verdict: Verdict) -> list[Explanation]:
@@ -48,7 +52,7 @@ def explanations_of(verdict: Verdict) -> list[Explanation]:
     ]
     for words, chance in (
         (NOTHING, verdict.probability_none),
-        (SOMETHING_ELSE, verdict.probability_something_else),
+        (f"something {not_explained(verdict)}", verdict.probability_something_else),
     ):
         if chance is not None:
             rows.append(Explanation(words, chance, open=True))
@@ -60,12 +64,12 @@ def _agree(verdict: Verdict, rows: list[Explanation]) -> bool:
     """Return whether rows, the most probable first, do not speak against the verdict."""
     if not rows or rows[0].probability < SURE:
         return True
-    first = rows[0]
+    first, rest = rows[0], f"something {not_explained(verdict)}"
     if verdict.verdict in ("named", "ambiguous"):
         return first.told
     if verdict.verdict == "partly_explained":
-        return first.told or first.words == SOMETHING_ELSE
-    return first.words == (NOTHING if verdict.verdict == "none" else SOMETHING_ELSE)
+        return first.told or first.words == rest
+    return first.words == (NOTHING if verdict.verdict == "none" else rest)
 
 
 def chance_text(value: float | None) -> str:

@@ -8,9 +8,9 @@ from typing import Any
 from vibroimpact.display_units import display_unit
 from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.verdict.content import OTHER_STRUCTURE, Estimate, Verdict
+from vibroimpact.verdict.content import Estimate, Verdict, not_run_sentence
 
-from .explanations import NOTHING, chance_text, explanations_of
+from .explanations import NOTHING, chance_text, explanations_of, not_explained
 from .number_text import digits, percent
 
 
@@ -37,13 +37,12 @@ def verdict_sentence(verdict: Verdict) -> str:
     )
     near = [] if verdict.withdrawn else [effect.id for effect in verdict.most_probable]
     nearest = f" The best candidate, {effects_in_words(near)}, does not explain it." if near else ""
-    other = next((row.message for row in verdict.checks if row.check == "linear model"), "")
     refusals = " ".join(row.message for row in verdict.checks if row.level == "refuse")
     sentences = {
-        "none": _nothing_missing(verdict.p_global_before) + sure,
+        "none": _nothing_missing(verdict) + sure,
         "named": f"The model lacks {named}.{sure}{shrinks}{others}",
         "partly_explained": (
-            f"The model lacks {named}, and something else that is not in the catalogue: the"
+            f"The model lacks {named}, and something else {not_explained(verdict)}: the"
             f" remaining difference is significant.{shrinks}{others}"
         ),
         "ambiguous": (
@@ -52,17 +51,12 @@ def verdict_sentence(verdict: Verdict) -> str:
             + shrinks.replace("Adding it", "Adding the most probable of them")
         ),
         "unknown": (
-            "The model and the measurement disagree, and no effect of the catalogue explains it:"
+            f"The model and the measurement disagree, and no effect {_tried(verdict)} explains it:"
             f" the figures say where to look.{nearest}"
-        )
-        if not of_another_structure(verdict)
-        else (
-            "The structure that was measured is another one than the model's, and nothing was"
-            f" looked for beside it. {other.split(' Modes against')[0]}"
         ),
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
-    return sentences[verdict.verdict]
+    return sentences[verdict.verdict] + not_run_sentence(verdict.not_run)
 
 
 def _how_sure(verdict):
@@ -75,14 +69,21 @@ def _how_sure(verdict):
     return f" The probability of this is {chance_text(rows[0].probability)}."
 
 
-def _nothing_missing(chance):
-    """Return the sentence of the verdict `none`; chance: p-value of all differences, None where it
-    was not computed.
+def _tried(verdict):
+    """Return which effects were tried."""
+    return "that could be run" if verdict.not_run else "of the catalogue"
+
+
+def _nothing_missing(verdict):
+    """Return the sentence of the verdict `none`, with the p-value of all differences where it was
+    computed.
     """
+    chance = verdict.p_global_before
     if chance is None:
         return (
-            "No effect is missing: none of the catalogue brings the model nearer to records that"
-            " took no part than small errors of a right model do."
+            f"No effect is {'found' if verdict.not_run else 'missing'}: none {_tried(verdict)}"
+            " brings the model nearer to records that took no part than small errors of a right"
+            " model do."
         )
     told = f"(p-value of all differences: {probability_text(chance)})"
     if chance > BEYOND_CHANCE:
@@ -188,11 +189,6 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     return "explains less" if shown else "leaves a difference beyond chance"
 
 
-def of_another_structure(verdict: Verdict) -> bool:
-    """Return whether the lowest record is that of another linear structure than the model."""
-    return any(row.check == OTHER_STRUCTURE for row in verdict.checks)
-
-
 def next_steps(verdict: Verdict, model: str) -> list[dict]:
     """Return [{words, command}] of what to do next; command: None where there is none.
 
@@ -201,9 +197,8 @@ def next_steps(verdict: Verdict, model: str) -> list[dict]:
     if verdict.verdict == "not_testable":
         return [_step("Mend what the checks refuse, then give the same command again.")]
     if verdict.verdict == "none":
-        return [_step("Nothing: the model stands as it is for records like these.")]
-    if of_another_structure(verdict):
-        return [_step("Mend the model where its lowest record says, then give the same command.")]
+        known = " by the effects that could be run" if verdict.not_run else ""
+        return [_step(f"Nothing: the model stands as it is for records like these{known}.")]
     if not verdict.shown_effects():
         return [
             _step(

@@ -7,6 +7,7 @@ the classes below; `verdict.schema.json` beside this file is a copy for readers 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, get_args
 
@@ -21,6 +22,7 @@ from pydantic import (
     model_validator,
 )
 
+from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.records import plain_values
 
 Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown", "not_testable"]
@@ -28,9 +30,6 @@ CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
 WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
 WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
 OPEN: tuple[Conclusion, ...] = ("partly_explained", "unknown", "not_testable")
-
-# the check of a lowest record of another linear structure than the model
-OTHER_STRUCTURE = "other structure"
 
 SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
 
@@ -227,6 +226,9 @@ class Verdict(_Content):
     not_testable: list[str] = Field(
         default=[], description="Ids of effects that this campaign can not show."
     )
+    not_run: list[str] = Field(
+        default=[], description="Ids of effects that could not be run: nothing is known of them."
+    )
     linear: list[dict[str, Any]] = Field(
         default=[], description="Linear effects fitted to the record of lowest load."
     )
@@ -274,6 +276,12 @@ class Verdict(_Content):
         These are the named effects, or the most probable ones where the verdict is ambiguous.
         """
         return self.effects or (self.most_probable if self.verdict == "ambiguous" else [])
+
+
+def not_run_sentence(ids: Iterable[str]) -> str:
+    """Return a sentence, after a space, on effects that could not be run; empty without any."""
+    words = effects_in_words(ids)
+    return f" Nothing is known of {words}, which could not be run." if words else ""
 
 
 NO_MISFIT = MisfitBySplit(fit=None, holdout=None)

@@ -22,7 +22,7 @@ from vibroimpact.campaign.signals import (
     transfer_band,
 )
 
-from ..usable import Refused, checked_campaign
+from ..measurement.usable import Refused, checked_campaign
 from .levels import levels_of, noise_share
 from .long_records import quick_length
 

@@ -88,8 +88,9 @@ def search_laws(setting: Setting, most: int, log: Log) -> Search:
         others = [name for name in gained if name not in _names(further)]
         best = further
     ranked = sorted(found.values(), key=lambda each: -each.gain)
-    failed = tuple(name for name, starts in singles.items() if not starts)
-    return Search(nothing, tuple(ranked), failed=failed)
+    ran = {effect for each in ranked for effect in each.point.ids}
+    failed = {terms[name].effect_id for name in singles} - ran
+    return Search(nothing, tuple(ranked), failed=tuple(sorted(failed)))
 
 
 def _leading(found: Sequence[Hypothesis], nothing: Hypothesis) -> Hypothesis:

@@ -8,13 +8,12 @@ import xarray as xr
 from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import BLACK, label_of, shown
 
-from .states import AS_GIVEN, COLOURS, REFUSED, empty_sheet, level_in_words, percent, shown_states
+from .states import AS_GIVEN, COLOURS, bars, level_in_words, name_rows, percent, shown_states
 
 MOST_CHANNELS = 14
 LARGEST = 2.0  # error that is drawn to scale
 COLUMNS = {"m/s": "velocity_m_per_s", "1/s": "strain_rate_1_per_s"}
 
-ALONE = "fewer than two sensors measure a motion, and nothing would be held"
 CAPTION = (
     "Each sensor in turn is left free while all others are held to their measurement; the model"
     " then says what it should have measured. Above: the sensor whose prediction gains most, where"
@@ -29,12 +28,8 @@ NONE_HELD = (
 )
 
 
-def free_sensor_figure(evidence: xr.Dataset) -> list[Sheet]:
-    """Return [Sheet]: the waveform of a sensor that was left free, and the errors of all."""
-    if "free_error" not in evidence:
-        why = ALONE if "holding_force" in evidence else evidence.attrs.get("left_out", REFUSED)
-        columns = ("time_s", "velocity_m_per_s")
-        return [empty_sheet("diagnosis_free_sensor", "No sensor is left free", why, columns)]
+def free_sensor_figure(evidence: xr.Dataset) -> Sheet:
+    """Return the Sheet of the waveform of a sensor that was left free, and the errors of all."""
     states, error = shown_states(evidence), evidence["free_error"].values[:, 0]
     told = int(evidence["waveform_channel"].values)
     channels = _chosen(error, told)
@@ -54,7 +49,7 @@ def free_sensor_figure(evidence: xr.Dataset) -> list[Sheet]:
     _waveform(sheet, sheet.axes["waveform"], evidence, states)
     sheet.axes["waveform"].set_title(f"{names[told]}, {level}")
     _errors(sheet, sheet.axes["errors"], evidence, states, channels)
-    return [sheet]
+    return sheet
 
 
 def _chosen(error, told):
@@ -86,29 +81,13 @@ def _errors(sheet, axes, evidence, states, channels):
     """Draw a bar per channel and state."""
     error, names = evidence["free_error"].values[:, 0], evidence["channel_name"].values
     height = 0.8 / len(states)
-    places = np.arange(len(channels))
     for position, (state, name) in enumerate(states):
         values = error[state, channels]
         place = sheet.record(axes, name, channel=names[channels], free_error=values)
-        bars = axes.barh(
-            places + (position - 0.5 * (len(states) - 1)) * height,
-            100.0 * np.minimum(np.nan_to_num(values), LARGEST),
-            height,
-            color=COLOURS[name],
-            label=name,
-        )
-        for bar, value in zip(bars, values, strict=True):
-            bar.set_gid(place)
-            axes.annotate(
-                percent(value),
-                (bar.get_width(), bar.get_y() + 0.5 * height),
-                (3, 0),
-                textcoords="offset points",
-                va="center",
-                fontsize=7,
-            )
-    axes.set_yticks(places, [str(name) for name in names[channels]], fontsize=8)
-    axes.set_ylim(len(channels) - 0.5, -0.5)
-    axes.grid(False, axis="y")
+        rows = np.arange(len(channels)) + (position - 0.5 * (len(states) - 1)) * height
+        drawn = 100.0 * np.minimum(np.nan_to_num(values), LARGEST)
+        style = {"color": COLOURS[name], "label": name}
+        bars(axes, rows, drawn, [*map(percent, values)], place, height, **style)
+    name_rows(axes, names[channels])
     axes.margins(x=0.12)
     axes.set_xlabel(label_of("free_error"))

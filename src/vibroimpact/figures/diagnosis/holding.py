@@ -9,7 +9,7 @@ from matplotlib.colors import LogNorm
 from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import label_of, tidy_log_axis
 
-from .states import REFUSED, empty_sheet, level_in_words, shown_states
+from .states import level_in_words, name_rows, shown_states
 
 MOST_LEVELS, MOST_CHANNELS = 3, 12
 RANGE = 50.0  # between the largest colour and the least
@@ -22,12 +22,8 @@ CAPTION = (
 )
 
 
-def holding_figure(evidence: xr.Dataset) -> list[Sheet]:
-    """Return [Sheet]: maps of the holding force, a column per level and a row per state."""
-    if "holding_force" not in evidence:
-        columns = ("frequency_Hz", "holding_force_N")
-        why = evidence.attrs.get("left_out", REFUSED)
-        return [empty_sheet("diagnosis_holding", "Holding force", why, columns)]
+def holding_figure(evidence: xr.Dataset) -> Sheet:
+    """Return the Sheet of maps of the holding force, a column per level and a row per state."""
     levels, channels = chosen_levels(evidence), chosen_channels(evidence)
     states = shown_states(evidence)
     mosaic = [[f"{name}, {level}" for level in levels] for _, name in states]
@@ -59,7 +55,7 @@ def holding_figure(evidence: xr.Dataset) -> list[Sheet]:
         bar = sheet.colour_bar(mesh, panels, "holding_force_N", location="bottom", aspect=14)
         tidy_log_axis(bar.ax.xaxis)
         bar.ax.tick_params(labelsize=8)
-    return [sheet]
+    return sheet
 
 
 def chosen_levels(evidence: xr.Dataset) -> list[int]:
@@ -127,7 +123,6 @@ def _map(sheet, axes, evidence, chosen, norm):
         gid=place,
     )
     axes.set_xscale("log")
-    axes.set_yticks(range(len(names)), [str(name) for name in names], fontsize=8)
-    axes.set_ylim(len(names) - 0.5, -0.5)
+    name_rows(axes, names)
     axes.grid(False)
     return mesh

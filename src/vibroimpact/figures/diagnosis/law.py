@@ -12,15 +12,14 @@ from vibroimpact.figures.style import BLACK, GREY, PALE, label_of, shown
 from .states import (
     AS_GIVEN,
     COLOURS,
-    REFUSED,
+    bars,
     before_and_after,
-    empty_sheet,
     level_in_words,
+    name_rows,
     percent,
     shown_states,
 )
 
-NO_PLACE = "the structure has no support and no local element"
 MOST_UNSEEN = 12  # bars of places
 MOST_PLACES = 3  # supports and elements
 ACROSS = 3  # panels
@@ -47,17 +46,13 @@ ORBIT = (
 STATIC = "A static part of motion or force is not measured and is left out of both."
 
 
-def law_figure(evidence: xr.Dataset) -> list[Sheet]:
-    """Return [Sheet]: force against motion at each support that the sensors tell of."""
-    if "demanded_force" not in evidence:
-        why = NO_PLACE if "holding_force" in evidence else evidence.attrs.get("left_out", REFUSED)
-        columns = ("place_motion_m", "place_force_N")
-        return [empty_sheet("diagnosis_law", "The law at the supports", why, columns)]
+def law_figure(evidence: xr.Dataset) -> Sheet:
+    """Return the Sheet of force against motion at each support that the sensors tell of."""
     evidence = evidence.isel(law_stretch=[telling_level(evidence)])
     told, unseen = _told_places(evidence)
     level = level_in_words(evidence, int(evidence["law_of_stretch"].values[0]))
     if not told:
-        return [_unseen(evidence, level, unseen)]
+        return _unseen(evidence, level, unseen)
     panels = _panels(evidence, told)
     states = shown_states(evidence)
     errors = [force_error(evidence, state, told) for state, _ in states]
@@ -80,7 +75,7 @@ def law_figure(evidence: xr.Dataset) -> list[Sheet]:
             _orbit_panel(sheet, axes, evidence, places, states)
     handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
     sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3, markerscale=3)
-    return [sheet]
+    return sheet
 
 
 def _unseen(evidence, level, unseen):
@@ -96,14 +91,11 @@ def _unseen(evidence, level, unseen):
     )
     axes, places = sheet.axes["main"], np.arange(len(order))
     gid = sheet.record(axes, "known", place=names[order], known_share=known[order])
-    for bar in axes.barh(places, 100.0 * known[order], 0.62, color=GREY, zorder=2):
-        bar.set_gid(gid)
+    bars(axes, places, 100.0 * known[order], [""] * len(order), gid, color=GREY)
     axes.axvline(100.0 * SEEN, color=BLACK, linewidth=0.8, linestyle=":")
-    axes.set_yticks(places, [str(name) for name in names[order]])
-    axes.set_ylim(len(order) - 0.5, -0.5)
+    name_rows(axes, names[order])
     axes.set_xlim(0.0, 100.0)
     axes.set_xlabel(label_of("known_share"))
-    axes.grid(False, axis="y")
     return sheet
 
 

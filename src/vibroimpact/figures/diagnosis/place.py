@@ -109,7 +109,7 @@ def places_of(config, data):
 
 
 def place_figure(config, data, effects):
-    """Return [Sheet] of the structure with the places of effects [FoundEffect] marked.
+    """Return the Sheet of the structure with the places of effects [FoundEffect] marked.
 
     config, data: as of places_of; data None where no campaign was compared.
     """
@@ -127,7 +127,7 @@ def place_figure(config, data, effects):
     if places is None or size == 0.0:
         sheet = Sheet("diagnosis_place", title, f"{caption}.", size=(WIDTH_IN, LEAST_IN))
         sheet.note(sheet.axes["main"], "no places are known", "x_m", "z_m")
-        return [sheet]
+        return sheet
     drawn = np.vstack([places.known(), places.tips(ARROW * size)])  # of a straight tube, the plane
     view = view_axes(drawn)[:2]  # that its channels point in
     across, up = np.ptp(drawn, axis=0)[list(view)]
@@ -150,7 +150,7 @@ def place_figure(config, data, effects):
     axes.margins(0.2, 0.12)  # the bars of supports reach beyond the tube
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     spread_labels(sheet.figure, [label for label in labels if label is not None])
-    return [sheet]
+    return sheet
 
 
 def _structure(sheet, axes, places, view, columns):

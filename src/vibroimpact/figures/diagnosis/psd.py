@@ -10,7 +10,7 @@ from vibroimpact.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.figures.style import BLACK, label_of
 from vibroimpact.verdict.content import Misfit, Verdict
 
-from .states import AS_GIVEN, COLOURS, COMPLETED, REFUSED, empty_sheet
+from .states import AS_GIVEN, COLOURS, COMPLETED
 
 MOST_RECORDS, CHANNELS_SHOWN = 3, 2
 BELOW = 1.0e-8  # of the largest PSD: the lowest drawn
@@ -33,16 +33,13 @@ CAPTION = (
 )
 
 
-def psd_figure(psd: xr.Dataset, verdict: Verdict) -> list[Sheet]:
-    """Return [Sheet]: a row per channel and a column per record, for those that matter most.
+def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Sheet:
+    """Return the Sheet with a row per channel and a column per record, for those that matter most.
 
     psd: variable psd (state: measured, before, after; record, channel, frequency) in unit²/Hz, NaN
     of a run that failed, with frequency in Hz, load, record_name, split (record,), channel_name and
     channel_kind (channel,).
     """
-    if "psd" not in psd:
-        columns = ("frequency_Hz", "psd_unit2_per_Hz")
-        return [empty_sheet("diagnosis_psd", "Spectra of free runs", REFUSED, columns)]
     records, channels = chosen_records(psd), chosen_channels(psd)
     mosaic = [[f"{record} {channel}" for record in records] for channel in channels]
     sheet = Sheet(
@@ -62,7 +59,7 @@ def psd_figure(psd: xr.Dataset, verdict: Verdict) -> list[Sheet]:
             sheet.axes[key].set_xlabel(label_of("frequency_Hz") if row is mosaic[-1] else "")
     handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
     sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return [sheet]
+    return sheet
 
 
 def _title(misfit: Misfit | None, completed: bool) -> str:

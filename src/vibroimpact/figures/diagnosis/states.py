@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLUE, ORANGE
@@ -12,15 +16,11 @@ AS_GIVEN, COMPLETED = "model as given", "completed model"
 COLOURS = {AS_GIVEN: ORANGE, COMPLETED: BLUE}
 
 
-REFUSED = "the campaign was refused"
-
-
-def empty_sheet(name: str, title: str, why: str, columns: tuple[str, str]) -> Sheet:
-    """Return a Sheet without a table that says why nothing is drawn; columns: of its axes."""
+def empty_sheet(name: str, title: str, why: str) -> Sheet:
+    """Return a Sheet without a table that says why nothing is drawn."""
     sheet = Sheet(name, title, f"Nothing is shown: {why}.", size=(7.6, 2.4))
-    sheet.note(sheet.axes["main"], why, *columns)
-    sheet.axes["main"].set_xticks([])
-    sheet.axes["main"].set_yticks([])
+    sheet.axes["main"].text(0.5, 0.5, why, ha="center", va="center")
+    sheet.axes["main"].set_axis_off()
     return sheet
 
 
@@ -39,6 +39,29 @@ def level_in_words(evidence: xr.Dataset, stretch: int) -> str:
     unit = load.attrs.get("units", "N")
     told = " (held out)" if held_out else ""
     return f"{name}, {float(load.values[stretch]):.3g} {unit} RMS{told}"
+
+
+def bars(
+    axes: Axes,
+    places: np.ndarray,
+    values: np.ndarray,
+    texts: Sequence[str],
+    gid: str,
+    height: float = 0.62,
+    **style: Any,
+) -> None:
+    """Draw horizontal bars of values at places, each with its text at its end."""
+    for bar, text in zip(axes.barh(places, values, height, zorder=2, **style), texts, strict=True):
+        bar.set_gid(gid)
+        end = bar.get_width(), bar.get_y() + 0.5 * height
+        axes.annotate(text, end, (3, 0), textcoords="offset points", va="center", fontsize=8)
+
+
+def name_rows(axes: Axes, names: Sequence[str]) -> None:
+    """Name the rows of bars at 0, 1, ... from the top."""
+    axes.set_yticks(range(len(names)), [str(name) for name in names], fontsize=8)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.grid(False, axis="y")
 
 
 def percent(share: float) -> str:

@@ -26,19 +26,18 @@ from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.observation.attached_model import attach
-from vibroimpact.observation.comparable import (
-    LEFT_OUT,
-    campaign_problems,
-    channel_rows,
-    compared_channels,
-    comparison_problems,
-    left_out,
-    still_rows,
-    strain_rows,
-)
-from vibroimpact.observation.sensed_motion import differentiated, of_modes
 from vibroimpact.reduction.modal_model import ModalModel
+
+from .attached_model import attach
+from .comparable import (
+    LEFT_OUT,
+    channel_rows,
+    comparison_problems,
+    contact_force_rows,
+    left_out,
+    model_rows,
+)
+from .sensed_motion import differentiated, of_modes
 
 CONTRADICTED = ("swapped channels", "directions")  # checks whose channels are left out
 FEWEST_RECORDS = 2
@@ -64,18 +63,21 @@ def usable(
     """
     whole, checks = checked_campaign(campaign)
     if whole is not None and not refused(checks):
-        checks += [*channel_rows(whole), *still_rows(config, whole)]
+        checks += channel_rows(whole)
         checks += [
             check_row("model", "refuse", f"{problem}.")
             for problem in comparison_problems(config, whole)
         ]
     found = _left(whole, checks)
-    try:
-        more = [*strain_rows(config, found), *_contradicted(config, found)]
-    except CampaignError as error:
-        more = [check_row("places", "refuse", str(error))]
-    checks += more
-    return (_left(whole, checks) if more else found), checks
+    for rows_of in (model_rows, _against_model):
+        try:
+            more = rows_of(config, found)
+        except CampaignError as error:
+            more = [check_row("places", "refuse", str(error))]
+        if more:
+            checks += more
+            found = _left(whole, checks)
+    return found, checks
 
 
 def not_testable(campaign: xr.Dataset) -> list[str]:
@@ -103,21 +105,17 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
         raise Refused(refusing[0], checks)
     force, response = usable_signals(whole, checks)
     names = whole["channel_name"].values
-    out = {row["channel"] for row in checks if row["check"] in CONTRADICTED and _warns(row)}
-    known = compared_channels(whole)
-    kept = known & ~np.isin(names, [*left_out(checks), *filter(None, out)])
+    out = {
+        row["channel"]
+        for row in checks
+        if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None
+    }
+    kept = ~np.isin(names, [*left_out(checks), *filter(None, out)])
     moving = of_modes([str(kind) for kind in whole["channel_kind"].values])
     if not (kept & moving).any():
+        otherwise = "No channel that measures a motion or a strain is left after the checks."
         _refuse(
-            next(
-                (row["message"] for row in checks if row["check"] == LEFT_OUT),
-                next(
-                    iter(campaign_problems(whole)),
-                    "No channel that measures a motion or a strain is left after the checks:"
-                    " repair what they name.",
-                ),
-            ),
-            checks,
+            next((row["message"] for row in checks if row["check"] == LEFT_OUT), otherwise), checks
         )
     channels = np.flatnonzero(kept)
     records = np.flatnonzero(force)
@@ -131,16 +129,18 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     return whole.isel(record=records, channel=channels)
 
 
-def _warns(row):
-    return row["level"] == "warn" and row["record"] is not None and row["channel"] is not None
-
-
 def _refuse(sentence, checks):
     """Raise Refused with a row of checks that says why."""
     raise Refused(sentence, [*checks, check_row("content", "refuse", sentence)])
 
 
-def _contradicted(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
+def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
+    """Return rows for channels that do not go with the model attached to the campaign."""
+    model = attach(config, campaign)
+    return [*contact_force_rows(model, campaign), *_contradicted(model, campaign)]
+
+
+def _contradicted(model: ModalModel, campaign: xr.Dataset) -> list[dict[str, Any]]:
     """Return rows for channels that contradict the linear model at the lowest level: swapped,
     reversed, in another unit.
     """
@@ -149,7 +149,7 @@ def _contradicted(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
     spectra = None if record is None else transfer(measured, record)
     if record is None or spectra is None:
         return []
-    omega, model = 2.0 * np.pi * spectra.frequency, attach(config, campaign)
+    omega = 2.0 * np.pi * spectra.frequency
     others = np.ones((1, omega.size))
     if measured.force[record].shape[0] > 1:
         beside = transfer(

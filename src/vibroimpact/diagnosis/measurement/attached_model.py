@@ -1,9 +1,8 @@
 """The reduced model with the channels and forces of a campaign as its sensors and drives."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -19,8 +18,7 @@ from vibroimpact.reduction.reduced_model import build_model, reduced_basis
 
 from .moving_base import driven_by_base, further_drive_shapes
 from .named_places import point_at
-from .sensed_motion import moving, of_modes
-from .strain import STRAIN, gauged_model
+from .sensed_motion import STRAIN, moving, of_modes
 
 SAME_POINT_M = 1.0e-3
 
@@ -32,30 +30,24 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     config: a checked Config or StageSettings. basis: see build_model and attached_basis. The
     sensors are in the order of the channels: displacements, positive along channel_direction; for
     a strain gauge on a tube the strain of the outer fibre; for a contact force zero. With a
-    campaign on a moving base, the drives are the accelerations of the base. Raises CampaignError
-    when a channel or force is more than 5 mm off the structure, where it is no tube off its named
-    points, or a direction is no vector.
+    campaign on a moving base, the drives are the accelerations of the base. Raises ValueError for
+    a channel or force that is more than 5 mm off the structure, where it is no tube off its named
+    points, CampaignError for another number of supports; see comparable.comparison_problems.
     """
-    forces = ~base_channels(campaign)
-    places, directions, stored_names = (
-        np.concatenate([campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values])
-        for key in ("point", "direction", "name")
+    kinds, forces = campaign["channel_kind"].values, ~base_channels(campaign)
+    channels = len(kinds)
+    places, directions = (
+        np.concatenate(
+            [campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values[forces]]
+        ).astype(float)
+        for key in ("point", "direction")
     )
-    directions, names = directions.astype(float), [*map(str, stored_names)]
-    _require_directions(directions, names)
-    channels = campaign.sizes["channel"]
-    bases = directions[channels:][~forces]
-    on_structure = np.concatenate([np.ones(channels, bool), forces])
-    places, directions = places[on_structure], directions[on_structure]
-    names = [name for name, kept in zip(names, on_structure, strict=True) if kept]
-    gauged = np.flatnonzero(campaign["channel_kind"].values == STRAIN)
+    bases = campaign["force_channel_direction"].values[~forces].astype(float)
+    gauged = np.flatnonzero(kinds == STRAIN)
     config = driven_by_base(config, campaign)
-    try:
-        model, displacements = displacement_shapes(
-            config, places, {int(number): directions[number] for number in gauged}, basis
-        )
-    except ValueError as error:
-        raise CampaignError(_sentence(str(error), names)) from None
+    model, displacements = _displacement_shapes(
+        config, places, {int(number): directions[number] for number in gauged}, basis
+    )
     along = directions / np.linalg.norm(directions, axis=1)[:, None]
     # excitation.turn_deg turns the forces; the sensors keep their directions
     acting = along.copy()
@@ -63,29 +55,28 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = 
     for number in range(channels, len(places)) if angle else ():
         acting[number] = turned_direction(along[number], angle, turn_axis(config, places[number]))
     shapes = np.einsum("mpa,pa->mp", displacements, acting)
-    shapes[:, :channels] *= of_modes(campaign["channel_kind"].values)
+    shapes[:, :channels] *= of_modes(kinds)
     shapes[:, gauged] = model.sensor_shapes[:, 3 * len(places) :]
     drive_shapes = shapes[:, channels:]
     if len(bases):
-        others = further_drive_shapes(config, bases[1:], partial(build_model, motion_only=True))
+        others = further_drive_shapes(config, bases[1:])
         drive_shapes = np.concatenate([model.drive_shapes, *others], axis=1)
-    attached = replace(
+    return replace(
         model,
         gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
         sensor_shapes=shapes[:, :channels],
-        sensor_names=tuple(names[:channels]),
+        sensor_names=tuple(map(str, campaign["channel_name"].values)),
         sensor_positions=places[:channels],
         sensor_directions=along[:channels],
         drive_shapes=drive_shapes,
     )
-    return gauged_model(attached, gauged) if len(gauged) else attached
 
 
-def displacement_shapes(
+def _displacement_shapes(
     config: ConfigPart,
-    places: Sequence[Sequence[float]] | np.ndarray,
-    normals: Mapping[int, np.ndarray] | None = None,
-    basis: np.ndarray | None = None,
+    places: np.ndarray,
+    normals: Mapping[int, np.ndarray],
+    basis: np.ndarray | None,
 ) -> tuple[ModalModel, np.ndarray]:
     """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
 
@@ -98,7 +89,7 @@ def displacement_shapes(
     model = build_model(
         _with_places(config, places),
         motion_only=True,
-        gauges=[(f"place_{number}", normal) for number, normal in (normals or {}).items()],
+        gauges=[(f"place_{number}", normal) for number, normal in normals.items()],
         basis=basis,
     )
     moved = model.sensor_shapes[:, : 3 * len(places)]
@@ -119,19 +110,24 @@ def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> np.ndarray | Non
 def _with_places(config, places):
     """Return the configuration of a tube with named points place_0, ... as its sensors."""
     points = {f"place_{number}": tuple(map(float, place)) for number, place in enumerate(places)}
-    sensors = config.record.model_copy(update={"sensors": config_sensors(tuple(points))})
-    return config.model_copy(update={"points": {**config.points, **points}, "record": sensors})
+    return _sensed_at(config.model_copy(update={"points": {**config.points, **points}}), points)
+
+
+def _sensed_at(config, points):
+    """Return the configuration with sensors in all three directions at named points."""
+    sensors = Sensors(points=tuple(points), directions=("x", "y", "z"))
+    record = config.record.model_copy(update={"sensors": sensors})
+    return config.model_copy(update={"record": record})
 
 
 def _shapes_at_points(config, places):
-    """Return what displacement_shapes does of a structure that is no tube: at its named points."""
+    """Return what _displacement_shapes does of a structure that is no tube: at its named points."""
     names = [
         point_at(config.points, place, f"point place_{number}")
         for number, place in enumerate(places)
     ]
-    named = tuple(dict.fromkeys(names))
-    record = config.record.model_copy(update={"sensors": config_sensors(named)})
-    model = build_model(config.model_copy(update={"record": record}), motion_only=True)
+    named = [*dict.fromkeys(names)]
+    model = build_model(_sensed_at(config, named), motion_only=True)
     moved = model.sensor_shapes.reshape(model.modes, len(named), 3)
     return model, moved[:, [named.index(name) for name in names]]
 
@@ -172,24 +168,3 @@ def _ratio_of_points(campaign, model):
             f" ({', '.join(model.support_names)}): give one clearance for each, in that order"
         )
     return ratios[model.support_of_point]
-
-
-def config_sensors(points: tuple[str, ...]) -> Sensors:
-    """Return the section record.sensors with all three directions of named points."""
-    return Sensors(points=points, directions=("x", "y", "z"))
-
-
-def _require_directions(directions, names):
-    """Raise CampaignError for a direction that is not finite or has no length."""
-    for direction, name in zip(directions, names, strict=True):
-        if not np.isfinite(direction).all() or np.linalg.norm(direction) < 1.0e-6:
-            raise CampaignError(
-                f"channel {name} has the direction {direction.tolist()}: give a unit vector"
-            )
-
-
-def _sentence(message, names):
-    """Return a message with the channel's name in place of place_<number>."""
-    for number in reversed(range(len(names))):
-        message = message.replace(f"point place_{number}", f"channel {names[number]}")
-    return message

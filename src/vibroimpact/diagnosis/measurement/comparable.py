@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -27,10 +28,8 @@ from vibroimpact.structure.tube import build_structure
 from vibroimpact.units import UnitError, si_factor
 
 from .named_places import LEAST_COSINE, no_motion, point_at
-from .sensed_motion import CONTACT_FORCE, SENSED, across, support_at
+from .sensed_motion import CONTACT_FORCE, SENSED, STRAIN, across, support_at
 from .sensor_chain import NO_CHANNELS
-from .signals import Signals
-from .strain import STRAIN
 
 READ = ", ".join(SENSED).replace("_", " ")
 LEFT_OUT = "channels"  # name of the check
@@ -42,7 +41,7 @@ NO_DIRECTION = 1.0e-6  # a shorter vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
 
-def channel_faults(campaign: xr.Dataset) -> dict[int, str]:
+def _channel_faults(campaign: xr.Dataset) -> dict[int, str]:
     """Return {channel index: sentence} of the channels that can not be compared with any model."""
     faults = {}
     for channel in range(campaign.sizes["channel"]):
@@ -62,7 +61,7 @@ def channel_faults(campaign: xr.Dataset) -> dict[int, str]:
 
 def compared_channels(campaign: xr.Dataset) -> np.ndarray:
     """Return (channel,) bool, whether a channel is compared with a model."""
-    faults = channel_faults(campaign)
+    faults = _channel_faults(campaign)
     return np.array([channel not in faults for channel in range(campaign.sizes["channel"])])
 
 
@@ -71,70 +70,70 @@ def channel_rows(campaign: xr.Dataset) -> list[dict]:
     names = campaign["channel_name"].values
     return [
         _left_out(str(names[channel]), sentence)
-        for channel, sentence in channel_faults(campaign).items()
+        for channel, sentence in _channel_faults(campaign).items()
     ]
 
 
-def contact_force_rows(model: ModalModel, signals: Signals) -> list[dict]:
-    """Return a row of checks for each contact force that is left out of the comparison.
-
-    model: attached to the campaign. signals: of the campaign.
+def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
+    """Return a row of checks for each channel that a model gives nothing of: strains of a tube that
+    are no bending strains; of a structure of named points strains, and motions along which its
+    point has no degree of freedom.
     """
+    tube = config.structure.kind in TUBES
+    structure: Any = build_structure(config) if tube else build_point_structure(config)
     rows = []
-    for channel in np.flatnonzero(np.asarray(signals.kinds) == CONTACT_FORCE):
-        why = _not_a_support(model, channel)
-        if why is None and not signals.noise[channel] > 0.0:
-            why = (
-                "of which nothing but noise is left where the tube does not touch, and its noise is"
-                " not known: it is left out; give noise_floor_rms"
-            )
-        if why:
-            name = signals.names[channel]
-            rows.append(_left_out(name, f"{name} is a contact force {why}"))
-    return rows
-
-
-def strain_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
-    """Return a row of checks for each strain that is left out of the comparison with a tube."""
-    rows: list[dict] = []
-    if config.structure.kind not in TUBES:
-        return rows  # see still_rows
-    for channel in np.flatnonzero(campaign["channel_kind"].values == STRAIN):
-        normal, point = (
-            campaign[f"channel_{key}"].values[channel].astype(float)
-            for key in ("direction", "point")
-        )
-        why = _no_gauge(build_structure(config), point, unit_vector(normal))
-        if why:
-            name = str(campaign["channel_name"].values[channel])
-            rows.append(_left_out(name, f"{name} is a strain {why}"))
-    return rows
-
-
-def still_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
-    """Return a row of checks for each channel of which a structure of named points gives nothing: a
-    strain, and a motion along which its point has no degree of freedom.
-    """
-    if config.structure.kind in TUBES:
-        return []
-    rows, structure = [], build_point_structure(config)
     for channel in np.flatnonzero(compared_channels(campaign)):
         name, kind, place, direction = (
             campaign[f"channel_{key}"].values[channel]
             for key in ("name", "kind", "point", "direction")
         )
-        if kind == STRAIN:
-            rows.append(
-                _left_out(
-                    str(name),
-                    f"{name} is a strain, which a structure of named points does not tell: it is"
-                    " left out",
-                )
-            )
-        elif kind != CONTACT_FORCE and not _off(partial(point_at, config.points), place, ""):
+        why = ""
+        if kind == STRAIN and tube:
+            why = _no_gauge(structure, place.astype(float), unit_vector(direction.astype(float)))
+        elif kind == STRAIN:
+            why = "is a strain, which a structure of named points does not tell: it is left out"
+        elif kind != CONTACT_FORCE and not tube:
             still = no_motion(structure, config.points, place, direction)
-            if still:
-                rows.append(_left_out(str(name), f"{name} measures {still}: it is left out"))
+            why = f"measures {still}: it is left out" if still else ""
+        if why:
+            rows.append(_left_out(str(name), f"{name} {why}"))
+    return rows
+
+
+def contact_force_fault(
+    model: ModalModel, position: np.ndarray, direction: np.ndarray
+) -> str | None:
+    """Return why a contact force is left out of the comparison, None where it is not.
+
+    model: attached to the campaign. position (3,): m. direction (3,): of the channel.
+    """
+    support = support_at(model, position)
+    if support is None:
+        return (
+            "is a contact force at no support of the model"
+            f" ({', '.join(model.support_names) or 'it has none'}): it is left out; give as"
+            " channel_point the middle of its support"
+        )
+    if np.abs(across(model, support) @ unit_vector(direction)).max() < LEAST_COSINE:
+        return (
+            "is a contact force along the tube, in which direction"
+            f" {model.support_names[support]} has none in the model: it is left out"
+        )
+    return None
+
+
+def contact_force_rows(model: ModalModel, campaign: xr.Dataset) -> list[dict]:
+    """Return a row of checks for each contact force that is left out; arguments as of
+    contact_force_fault.
+    """
+    rows = []
+    for channel in np.flatnonzero(campaign["channel_kind"].values == CONTACT_FORCE):
+        name = str(campaign["channel_name"].values[channel])
+        why = contact_force_fault(
+            model, model.sensor_positions[channel], model.sensor_directions[channel]
+        )
+        if why:
+            rows.append(_left_out(name, f"{name} {why}"))
     return rows
 
 
@@ -147,33 +146,17 @@ def _no_gauge(structure, point, normal):
     along = abs(structure.centreline.direction(place) @ normal)
     if along > LEANS:
         return (
-            f"whose channel_direction is along the tube (cosine {along:.2f}): it is left out; give"
-            " the outward normal of the tube where the gauge is glued"
+            f"is a strain whose channel_direction is along the tube (cosine {along:.2f}): it is"
+            " left out; give the outward normal of the tube where the gauge is glued"
         )
     if structure.first_axis is None:
         return None
     nearest = np.abs(structure.section_axes(place) @ normal).max()
     if nearest < ON_AXIS:
         return (
-            "between the axes of a section that is not round (cosine"
+            "is a strain between the axes of a section that is not round (cosine"
             f" {nearest:.2f} with the nearest axis), where the model does not say how far off the"
             " centre the surface is: it is left out; glue gauges on an axis of the section"
-        )
-    return None
-
-
-def _not_a_support(model, channel):
-    """Return why a channel is not the force of a support of the model, None where it is."""
-    support = support_at(model, model.sensor_positions[channel])
-    if support is None:
-        return (
-            f"at no support of the model ({', '.join(model.support_names) or 'it has none'}): it is"
-            " left out; give as channel_point the middle of its support"
-        )
-    if np.abs(across(model, support) @ model.sensor_directions[channel]).max() < LEAST_COSINE:
-        return (
-            f"along the tube, in which direction {model.support_names[support]} has none in the"
-            " model: it is left out"
         )
     return None
 
@@ -187,7 +170,7 @@ def _left_out(name: str, sentence: str) -> dict:
     return check_row(LEFT_OUT, "warn", f"{sentence}.", channel=name)
 
 
-def model_problems(config: ConfigPart, on_base: bool = False) -> list[str]:
+def _model_problems(config: ConfigPart, on_base: bool) -> list[str]:
     """Return sentences on why a model can not be compared with any campaign.
 
     on_base: whether the campaign measured the motion of the base instead of a force.
@@ -214,7 +197,7 @@ def campaign_problems(campaign: xr.Dataset) -> list[str]:
     campaign: keeps the contract; its signals are not read.
     """
     problems = []
-    faults = channel_faults(campaign)
+    faults = _channel_faults(campaign)
     if len(faults) == campaign.sizes["channel"]:
         kinds = sorted({str(kind) for kind in campaign["channel_kind"].values})
         problems.append(
@@ -231,7 +214,7 @@ def campaign_problems(campaign: xr.Dataset) -> list[str]:
     problems += _mixed_problems(campaign, bases)
     for channel, name in enumerate(campaign["force_channel_name"].values):
         if bases[channel]:
-            if not _length_of(campaign, channel) > NO_DIRECTION:
+            if not _directed(campaign, "force_channel", channel):
                 problems.append(
                     f"base acceleration {name} has no known direction, but drives the model: give"
                     f" force_channel_direction[{channel}]"
@@ -260,7 +243,7 @@ def comparison_problems(config: ConfigPart, campaign: xr.Dataset) -> list[str]:
     campaign: as in campaign_problems.
     """
     on_base = bool(base_channels(campaign).any())
-    problems = [*model_problems(config, on_base), *campaign_problems(campaign)]
+    problems = [*_model_problems(config, on_base), *campaign_problems(campaign)]
     if config.structure.kind in TUBES:
         problems += _gap_problems(config, campaign)
     elif not config.points:
@@ -287,17 +270,16 @@ def _mixed_problems(campaign, bases):
         )
 
 
-def _length_of(campaign, channel):
-    """Return the length of the direction vector of a force channel, NaN where it is unknown."""
-    return float(np.linalg.norm(campaign["force_channel_direction"].values[channel].astype(float)))
+def _directed(campaign: xr.Dataset, what: str, channel: int) -> bool:
+    """Return whether the direction of a channel is known."""
+    direction = campaign[f"{what}_direction"].values[channel].astype(float)
+    return bool(np.linalg.norm(direction) > NO_DIRECTION)
 
 
 def _nowhere(campaign: xr.Dataset, what: str, channel: int) -> bool:
     """Return whether the place or the direction of a channel is unknown."""
-    point, direction = (
-        campaign[f"{what}_{key}"].values[channel].astype(float) for key in ("point", "direction")
-    )
-    return not (np.isfinite(point).all() and np.linalg.norm(direction) > NO_DIRECTION)
+    point = campaign[f"{what}_point"].values[channel].astype(float)
+    return not (np.isfinite(point).all() and _directed(campaign, what, channel))
 
 
 def _gap_problems(config, campaign):
@@ -351,10 +333,9 @@ def _push_problems(config, campaign):
             campaign[f"force_channel_{key}"].values[channel]
             for key in ("name", "point", "direction")
         )
-        if not _off(partial(point_at, config.points), place, ""):
-            still = no_motion(structure, config.points, place, direction)
-            if still:
-                yield f"force channel {name} acts {still}: give its degree of freedom a name"
+        still = no_motion(structure, config.points, place, direction)
+        if still:
+            yield f"force channel {name} acts {still}: give its degree of freedom a name"
 
 
 def _off(locate: Callable, point: np.ndarray, place: str) -> str | None:

@@ -11,10 +11,10 @@ from vibroimpact.campaign.force_kinds import base_channels, shown_load_unit
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.identified.records import usable_records
-from vibroimpact.diagnosis.usable import Refused, not_testable
-from vibroimpact.observation.attached_model import attach
-from vibroimpact.observation.comparable import comparison_problems
-from vibroimpact.observation.signals import signals_of
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.comparable import comparison_problems
+from vibroimpact.diagnosis.measurement.signals import signals_of
+from vibroimpact.diagnosis.measurement.usable import Refused, not_testable
 
 RATE, SECONDS, GAP = 2048.0, 16.0, 2.8886e-4
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

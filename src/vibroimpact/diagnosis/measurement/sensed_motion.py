@@ -1,5 +1,9 @@
 """What each channel of a campaign measures, as a quantity of the simulation: a displacement
 differentiated in time, the strain of an outer fibre, or the force of a support on the structure.
+
+Sensors are compared with each other to see how a mode moves them. A strain has another unit than a
+displacement, and grows with another power of the frequency: in free bending of a beam the largest
+strain is proportional to the largest velocity (F.V. Hunt, J. Acoust. Soc. Am. 32 (1960) 1123-1128).
 """
 
 from collections.abc import Collection, Sequence
@@ -9,8 +13,7 @@ import numpy as np
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.units import TIME_DERIVATIVES
 
-from .strain import STRAIN, as_displacements
-
+STRAIN = "strain"
 CONTACT_FORCE = "contact_force"
 SENSED = ("acceleration", "velocity", "displacement", STRAIN, CONTACT_FORCE)
 AT_SUPPORT_M = 5.0e-3  # largest distance from the line through a support's contact points
@@ -51,10 +54,22 @@ def differentiated(omega: np.ndarray, kind: str) -> np.ndarray:
     return -(omega**2) if order == 2 else (1j * omega) ** order
 
 
-def kind_groups(kinds: Sequence[str] | np.ndarray) -> dict[str, np.ndarray]:
-    """Return {kind: (channel,) bool} for every kind in kinds (channel,), in their order."""
-    kinds = np.asarray(kinds)
-    return {str(kind): kinds == kind for kind in dict.fromkeys(kinds.tolist())}
+def displacement_scale(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
+    """Return (channel,) the displacement that stands for a unit of what a channel measures.
+
+    It is 1 but for strains, which are divided by omega, as they go with a velocity, and scaled to
+    the largest of the other sensors. model: attached to the campaign.
+    """
+    shapes, gauges = np.abs(model.sensor_shapes), np.asarray(kinds) == STRAIN
+    size, scale = shapes.max(axis=0), np.ones(len(gauges))
+    if not gauges.any():
+        return scale
+    strains = (shapes[:, gauges] / np.maximum(model.omega, 1.0)[:, None]).max(axis=0)
+    others, largest = size[~gauges].max(initial=0.0), strains.max()
+    factor = others / largest if others > 0.0 and largest > 0.0 else 1.0
+    moves = size[gauges] > 0.0
+    scale[gauges] = np.where(moves, factor * strains / np.where(moves, size[gauges], 1.0), 1.0)
+    return scale
 
 
 def support_at(model: ModalModel, position: Sequence[float] | np.ndarray) -> int | None:
@@ -99,22 +114,6 @@ def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.nd
             across(model, support) @ model.sensor_directions[channel]
         )
     return weights
-
-
-def motion_there(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
-    """Return (mode, channel): the shape of each channel as a displacement.
-
-    A strain is scaled as in strain.as_displacements. A contact force has the mean displacement of
-    the contact points of its support, along its direction.
-    """
-    shapes = as_displacements(model).copy()
-    pressed = np.flatnonzero(~of_modes(kinds))
-    resultants = np.zeros((model.modes, 2 * len(model.support_names)))
-    for support in range(len(model.support_names)):
-        own = model.support_of_point == support
-        resultants[:, 2 * support : 2 * support + 2] = model.contact_shapes[:, own].mean(axis=1)
-    shapes[:, pressed] = resultants @ force_weights(model, kinds).T
-    return shapes
 
 
 def _distance(position, points):

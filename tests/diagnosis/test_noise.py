@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.band_campaign import campaign
-from vibroimpact.observation.signals import noise_of, signals_of
+from vibroimpact.diagnosis.measurement.signals import noise_of, signals_of
 
 RATE, BAND = 2048.0, (5.0, 200.0)
 

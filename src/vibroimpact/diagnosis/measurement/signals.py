@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.base_motion import base_motion, relative_to_base
+from vibroimpact.campaign.base_motion import relative_to_base
 from vibroimpact.campaign.force_kinds import shown_load_unit
 from vibroimpact.campaign.signals import campaign_signals, excited_band
 
@@ -37,8 +37,6 @@ class Signals:
     split, record_names (record,).
     noise (channel,): RMS of white measuring noise over the range to half the sampling frequency.
     from_rest: whether records begin at rest.
-    base (record, channel, sample): the base's own motion, subtracted from each channel; None where
-    forces drove the structure.
     """
 
     force: np.ndarray
@@ -54,22 +52,11 @@ class Signals:
     noise: np.ndarray
     from_rest: bool
     load_unit: str = "N"
-    base: np.ndarray | None = None
-
-    @property
-    def lowest(self) -> int:
-        """Return the record of the lowest load; of several the one with the widest gap."""
-        return lowest_of(self.load, self.gap)
 
     @property
     def edges(self) -> np.ndarray:
         """Return (BANDS + 1,) in Hz: the edges of logarithmic bands over the excited band."""
         return np.geomspace(*self.band_Hz, BANDS + 1)
-
-    @property
-    def noise_in_band(self) -> np.ndarray:
-        """Return (channel,): RMS of the noise within the excited band."""
-        return self.noise * np.sqrt((self.band_Hz[1] - self.band_Hz[0]) / (0.5 * self.rate))
 
     def fit(self) -> np.ndarray:
         """Return the records not of the split "holdout"; all records where all of them are."""
@@ -81,30 +68,18 @@ class Signals:
         return np.flatnonzero(self.split == "holdout")
 
 
-def lowest_of(load: np.ndarray, gap: np.ndarray) -> int:
-    """Return the index of the lowest of load (record,); of equal ones that of the widest gap.
-
-    Loads are rounded to SAME_LOAD digits, since repeats of one force differ by rounding.
-    """
-    return int(np.lexsort((-np.nan_to_num(gap, nan=np.inf), np.round(load, SAME_LOAD)))[0])
-
-
-def signals_of(campaign: xr.Dataset, longest_s: float | None = None) -> Signals:
-    """Return the Signals of a campaign Dataset, each record cut to longest_s where it is given.
-
-    Band, noise and loads are those of whole records.
-    """
-    absolute = campaign_signals(campaign).require_units()
-    measured = relative_to_base(absolute)
-    rate, samples = measured.rate, campaign.sizes["time"]
-    kept = samples if longest_s is None else min(samples, round(longest_s * rate))
-    force, response = measured.padded(samples)
+def signals_of(campaign: xr.Dataset) -> Signals:
+    """Return the Signals of a campaign Dataset."""
+    measured = relative_to_base(campaign_signals(campaign).require_units())
+    rate = measured.rate
+    force, response = measured.padded(campaign.sizes["time"])
     valid = np.isfinite(response).all(axis=1)
     force = np.where(valid[:, None], force, np.nan)
     band = excited_band(force, rate)
     load = np.sqrt(np.nanmean(force[:, 0] ** 2, axis=-1))
     gap = measured.gap
-    lowest = lowest_of(load, gap)
+    # of equal loads, as repeats of one force are but for rounding, that of the widest gap
+    lowest = np.lexsort((-np.nan_to_num(gap, nan=np.inf), np.round(load, SAME_LOAD)))[0]
     read = noise_of(campaign, (force[lowest], response[lowest]), rate, band, measured.factors)
     noise = np.maximum(read, RESOLUTION * np.sqrt(np.nanmean(response**2, axis=-1)).max(axis=0))
     # simulations get at least RESOLUTION of noise: a measurement with less is raised to that
@@ -112,8 +87,8 @@ def signals_of(campaign: xr.Dataset, longest_s: float | None = None) -> Signals:
     lacking = np.sqrt(noise[quiet] ** 2 - read[quiet] ** 2)[:, None]
     response[:, quiet] += lacking * rng.standard_normal(response[:, quiet].shape)
     return Signals(
-        force=force[..., :kept],
-        response=response[..., :kept],
+        force=force,
+        response=response,
         rate=rate,
         band_Hz=band,
         kinds=np.array(measured.kinds),
@@ -125,22 +100,7 @@ def signals_of(campaign: xr.Dataset, longest_s: float | None = None) -> Signals:
         noise=noise,
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
         load_unit=shown_load_unit(campaign),
-        base=_base_of(absolute, valid, kept),
     )
-
-
-def _base_of(absolute, valid, kept):
-    """Return the `base` of Signals, cut to `kept` samples.
-
-    absolute: CampaignSignals as measured. valid (record, sample) bool: NaN where it is False.
-    """
-    motions = base_motion(absolute)
-    if motions is None:
-        return None
-    out = np.full((len(motions), len(absolute.channels), valid.shape[-1]), np.nan)
-    for own, motion in zip(out, motions, strict=True):
-        own[:, : motion.shape[-1]] = motion
-    return np.where(valid[:, None], out, np.nan)[..., :kept]
 
 
 def noise_of(
@@ -170,7 +130,7 @@ def noise_of(
     frequency = np.fft.rfftfreq(valid.shape[-1], 1.0 / rate)
     quiet = (frequency > QUIET_ABOVE * band[1]) & (frequency < QUIET * 0.5 * rate)
     if quiet.sum() < LEAST_QUIET:
-        return unexplained(force, valid, rate, band)
+        return _unexplained(force, valid, rate, band)
     power = np.abs(np.fft.rfft(window * valid, axis=-1)) ** 2
     edges = _edges(*np.searchsorted(frequency, [band[0] / BELOW, QUIET * 0.5 * rate]))
     lines = np.diff(edges)
@@ -185,7 +145,7 @@ def noise_of(
     return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
 
 
-def unexplained(
+def _unexplained(
     force: np.ndarray, response: np.ndarray, rate: float, band: tuple[float, float]
 ) -> np.ndarray:
     """Return (channel,) RMS, over the range to half the rate, of the noise that is not coherent

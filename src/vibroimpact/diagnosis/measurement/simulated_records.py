@@ -2,24 +2,22 @@
 record it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-import xarray as xr
 
-from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.random_force import resample_measured
 from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO, SLOTS
 from vibroimpact.integration.kernels.lanes import LANES
-from vibroimpact.integration.output_filter import LEAST_STAGES
 from vibroimpact.integration.preload import seated
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .sensed_motion import force_weights, of_modes, orders
+from .stretches import NO_GAP_M
 
 # Largest random offset of an obstacle, as a share of the gap, drawn for every run. No plate is
 # centred better. With 1e-6, a tube driven in one plane takes most of a record to leave it: 12 dB
@@ -27,67 +25,27 @@ from .sensed_motion import force_weights, of_modes, orders
 # with a tube in its steady state.
 IMPERFECTION = 1.0e-3
 LOST = 0.25  # largest share of diverged runs in a batch: a measured structure did not diverge
-NO_GAP_M = 1.0  # where a record has no clearance
-
-
-def schedule_of(campaign: xr.Dataset, integration: ConfigPart, duration_s: float) -> Schedule:
-    """Return the Schedule of runs from rest at the campaign's sampling frequency.
-
-    integration: section of a configuration.
-    """
-    sampling = float(campaign.attrs["sampling_frequency"])
-    steps = steps_per_second(sampling, integration)
-    return Schedule(steps, sampling, 0.0, duration_s, integration.scheme)
-
-
-def steps_per_second(sampling: float, integration: ConfigPart) -> float:
-    """Return the integration steps per second of a run recorded at a sampling frequency in Hz.
-
-    They are at least those of the section `integration` and those that the output filter needs.
-    """
-    needed = int(np.ceil(integration.steps_per_second / (RATIO * sampling)))
-    return RATIO * max(LEAST_STAGES, needed) * sampling
-
-
-class Forces:
-    """The measured forces of a campaign at the integration step, cut to the schedule's length.
-
-    force (record, force_channel, time): N as measured. values(record) -> (step, force_channel) in
-    N, one more than the steps: the first is one step before time 0.
-    """
-
-    def __init__(self, force: np.ndarray, schedule: Schedule):
-        self.force, self.schedule = np.asarray(force, float), schedule
-        self.values: Callable[[int], np.ndarray] = lru_cache(maxsize=None)(self._values)
-
-    def _values(self, record):
-        rate, sampling = self.schedule.steps_per_second, self.schedule.sampling_frequency
-        valid = np.isfinite(self.force[record]).all(axis=0)
-        measured = self.force[record][:, : np.flatnonzero(valid)[-1] + 1]
-        fine = np.stack([resample_measured(row, sampling, rate) for row in measured], axis=-1)
-        out = np.zeros((self.schedule.steps + 2, fine.shape[1]))
-        kept = min(len(fine), len(out) - 1)
-        out[1 : 1 + kept] = fine[:kept]
-        return out
 
 
 def simulate_records(
     model: ModalModel,
     schedule: Schedule,
-    forces: Forces,
+    force: np.ndarray,
     runs: Sequence[tuple[int, float, int]],
     kinds: Sequence[str] | np.ndarray,
 ) -> np.ndarray:
     """Return (run, channel, sample) float32: the responses of runs, LANES of them at a time.
 
-    model: attached to the campaign. runs: (record, gap in m, seed) of each; a gap that is not
-    finite stands for none. kinds (channel,): see sensed_motion.SENSED.
+    model: attached to the campaign. force (record, force_channel, sample): N as measured, NaN
+    beyond the end of a record. runs: (record, gap in m, seed) of each; a gap that is not finite
+    stands for none. kinds (channel,): see sensed_motion.SENSED.
 
     Before a record begins, the structure is at rest under its dead loads, in contact where they
     press it against a support. The seed of a run draws small offsets of the obstacles, so that two
     runs of an impacting tube differ. A diverged run is NaN. Raises ValueError for another kind and
     for a contact force at no support, IntegrationError where more than LOST of a batch diverge.
     """
+    at_step = lru_cache(maxsize=None)(lambda record: _at_step(force[record], schedule))
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
     moves, weights = of_modes(kinds), force_weights(model, kinds)
     schedule = replace(schedule, derivatives=tuple(map(int, orders(kinds))))
@@ -113,21 +71,16 @@ def simulate_records(
 
         def drive(at, count, batch=batch, lead=lead, lost=lost):
             silent = min(max(lead - at, 0), count)
-            force = np.stack(
-                [
-                    forces.values(record)[max(at - lead, 0) : max(at - lead + count, 0)]
-                    for record, _, _ in batch
-                ],
-                axis=-1,
-            )
-            force[..., list(lost)] = 0.0
-            return np.pad(force, ((silent, 0), (0, 0), (0, 0)))
+            known = slice(max(at - lead, 0), max(at - lead + count, 0))
+            acting = np.stack([at_step(record)[known] for record, _, _ in batch], axis=-1)
+            acting[..., list(lost)] = 0.0
+            return np.pad(acting, ((silent, 0), (0, 0), (0, 0)))
 
-        def receive(at, _, motion, force, first=first, size=len(batch)):
+        def receive(at, _, motion, contact, first=first, size=len(batch)):
             rows, columns = slice(first, first + size), slice(at, at + motion.shape[-1])
             out[rows, moves, columns] = motion[:, moves]
             if len(weights):
-                out[rows, ~moves, columns] = weights @ force[:, : weights.shape[1]]
+                out[rows, ~moves, columns] = weights @ contact[:, : weights.shape[1]]
 
         while True:
             try:
@@ -138,6 +91,19 @@ def simulate_records(
                     raise error.of([f"run {run} of record {at}" for at, _, run in batch]) from error
                 lost.add(error.case)
         out[[first + case for case in lost]] = np.nan
+    return out
+
+
+def _at_step(force, schedule):
+    """Return (step, force_channel) in N, one more than the steps: the first is one step before time
+    0. force (force_channel, sample).
+    """
+    measured = force[:, : np.flatnonzero(np.isfinite(force).all(axis=0))[-1] + 1]
+    sampling, rate = schedule.sampling_frequency, schedule.steps_per_second
+    fine = np.stack([resample_measured(row, sampling, rate) for row in measured], axis=-1)
+    out = np.zeros((schedule.steps + 2, fine.shape[1]))
+    kept = min(len(fine), len(out) - 1)
+    out[1 : 1 + kept] = fine[:kept]
     return out
 
 

@@ -44,11 +44,15 @@ def no_motion(
     place: np.ndarray,
     direction: np.ndarray,
 ) -> str:
-    """Return along what, at which point, a structure does not move, empty where it does.
+    """Return along what, at which point, a structure does not move; empty where it does, and where
+    no point is.
 
     points: {name: (3,)} m. place (3,): m. direction (3,): of a channel or a force there.
     """
-    point, along = point_at(points, place, "it"), unit_vector(direction)
+    try:
+        point, along = point_at(points, place, "it"), unit_vector(direction)
+    except ValueError:
+        return ""
     axes = [AXES[axis] for axis in structure.directions.get(point, ())]
     if np.linalg.norm(along[axes]) >= LEAST_COSINE:
         return ""

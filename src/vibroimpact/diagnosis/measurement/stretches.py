@@ -13,8 +13,9 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.output_filter import LEAST_STAGES, PASS_FRACTION
-from vibroimpact.observation.sensed_motion import of_modes, orders
-from vibroimpact.observation.signals import Signals
+
+from .sensed_motion import of_modes, orders
+from .signals import Signals
 
 SLOWEST_HZ = 2000.0  # records are compared at this rate at least, or at their own
 FADE_S = 1.0  # at the ends of a record, before it is integrated
@@ -57,9 +58,9 @@ class Rates:
         """Return the integration steps per second."""
         return self.sampling * self.steps_per_sample
 
-    def schedule(self, duration_s: float, scheme: str) -> Schedule:
-        """Return the Schedule of a stretch."""
-        return Schedule(self.steps_per_second, self.sampling, 0.0, duration_s, scheme)
+    def schedule(self, duration_s: float, scheme: str, start_up_s: float = 0.0) -> Schedule:
+        """Return the Schedule of a stretch, recorded from the end of its start-up on."""
+        return Schedule(self.steps_per_second, self.sampling, start_up_s, duration_s, scheme)
 
 
 def rates_of(sampling: float, integration: ConfigPart) -> Rates:
@@ -68,9 +69,13 @@ def rates_of(sampling: float, integration: ConfigPart) -> Rates:
     integration: section of a configuration, whose steps per second are the least.
     """
     decimation = max(int(sampling / SLOWEST_HZ), 1)
-    rate = sampling / decimation
-    stages = max(LEAST_STAGES, int(np.ceil(integration.steps_per_second / (RATIO * rate))))
-    return Rates(decimation, rate, RATIO * stages)
+    return whole_rates(sampling / decimation, integration, decimation)
+
+
+def whole_rates(sampling: float, integration: ConfigPart, decimation: int = 1) -> Rates:
+    """Return the Rates of runs that are recorded at a frequency in Hz; arguments as of rates_of."""
+    stages = max(LEAST_STAGES, int(np.ceil(integration.steps_per_second / (RATIO * sampling))))
+    return Rates(decimation, sampling, RATIO * stages)
 
 
 def held_band(signals: Signals, rates: Rates, first_mode_Hz: float) -> tuple[float, float]:

@@ -8,9 +8,9 @@ import pytest
 from tests import own_matrices
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.reading import ConfigError, check_config
-from vibroimpact.observation.attached_model import attach
-from vibroimpact.observation.comparable import comparison_problems, still_rows
-from vibroimpact.observation.named_places import point_at
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.comparable import comparison_problems, model_rows
+from vibroimpact.diagnosis.measurement.named_places import point_at
 from vibroimpact_truth.model_file import model_of
 
 
@@ -88,8 +88,8 @@ def test_place_of_an_unknown_point_is_refused(values, folder):
 )
 def test_what_a_point_does_not_give_is_left_out(values, folder, campaign, changes, text):
     config = own_matrices.checked(values, folder)
-    assert still_rows(config, campaign) == []
-    (row,) = still_rows(config, with_channel(campaign, **changes))
+    assert model_rows(config, campaign) == []
+    (row,) = model_rows(config, with_channel(campaign, **changes))
     assert row["channel"] == campaign["channel_name"].values[0]
     assert text in row["message"]
 

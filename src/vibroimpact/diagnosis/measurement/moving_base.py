@@ -4,15 +4,13 @@ Motions are relative to the base, supports and obstacles move with it, and the d
 those of excitation.force_vectors.
 """
 
-from collections.abc import Callable, Sequence
-
 import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.config.excitation import BandSignal, BaseMotion, highest_frequency
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.reduced_model import build_model
 
 LOWEST_HZ = 1.0  # of a signal where the model states no band; a comparison does not depend on it
 DEFAULT_HIGHEST_HZ = 200.0
@@ -24,33 +22,25 @@ def driven_by_base(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
 
     config: a checked Config. A base_motion keeps its signal, a band-limited force its band.
     """
-    if not base_channels(campaign).any():
+    bases = base_channels(campaign)
+    if not bases.any():
         return config
-    direction = base_directions(campaign)[0]
+    direction = campaign["force_channel_direction"].values[bases][0]
     # identification works from the force of a study, not from a motion of the base
     return config.model_copy(
         update={"excitation": _along(config.excitation, direction), "identification": None}
     )
 
 
-def base_directions(campaign: xr.Dataset) -> np.ndarray:
-    """Return (base channel, 3): the stated directions of the accelerations of the base."""
-    directions = campaign["force_channel_direction"].values.astype(float)
-    return directions[base_channels(campaign)]
-
-
-def further_drive_shapes(
-    config: ConfigPart,
-    directions: Sequence[Sequence[float]] | np.ndarray,
-    build: Callable[[ConfigPart], ModalModel],
-) -> list[np.ndarray]:
+def further_drive_shapes(config: ConfigPart, directions: np.ndarray) -> list[np.ndarray]:
     """Return [(mode, 1)] drive shapes per m/s² of the base along directions (base channel, 3).
 
-    config: of the model. build: returns the ModalModel of a configuration.
+    config: of the model.
     """
     return [
-        build(
-            config.model_copy(update={"excitation": _along(config.excitation, direction)})
+        build_model(
+            config.model_copy(update={"excitation": _along(config.excitation, direction)}),
+            motion_only=True,
         ).drive_shapes
         for direction in directions
     ]
