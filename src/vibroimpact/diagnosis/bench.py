@@ -21,6 +21,7 @@ from .measurement.stretches import Stretch
 
 BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
 FIRST_BAND = 4  # lines in the lowest
+NUDGE, LOST = 3.0e-6, 1.0e-2  # relative change of frequencies; of the power of the lines
 END_S = 0.3  # of a run: before its end
 
 
@@ -142,6 +143,18 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     out[index >= 0] = found[index[index >= 0]]
     gain = np.stack([bench.structure.measuring(point).gain for point in points])
     return out * gain[:, None, :, None].astype(np.float32)
+
+
+def holds(bench: Bench, modes: int) -> np.ndarray:
+    """Return (stretch,) bool: whether the model as given is held there.
+
+    Where it is, two runs that differ by a millionth stay together. Where the sensors are too few,
+    impacts drive them apart.
+    """
+    lines = holding_lines(bench, [Point(), Point(frequency=(NUDGE,) * modes)])
+    apart = (lines[1] - lines[0]) * whitening(bench, lines[0])
+    power = np.sum(np.abs(apart) ** 2, axis=(1, 2)) / counts(bench, lines[0]).sum(axis=(1, 2))
+    return np.nan_to_num(power, nan=np.inf) < LOST
 
 
 def band_edges(lines: int) -> np.ndarray:

@@ -58,10 +58,15 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "contact_stiffness": [(0.02,), (0.2,), (4.0,)],
     "contact_damping": [(1.0e-3,)],
     "dry_friction": [(0.3,)],
+    "coulomb_friction": [(0.1,), (0.5,)],
     "support_offset": _ways(0.6),
     "preload": _ways(1.5),
     "hertz": [(0.02,), (0.1,)],
-    "plate_flexibility": [(0.05, 0.3), (0.2, 0.3), (0.7, 0.3), (2.5, 0.3)],
+    "plate_flexibility": [
+        (stiffness, mass)
+        for mass in (0.07, 0.16, 0.4)
+        for stiffness in (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)
+    ],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
     "saturation_stiffness": [(2.0, 1.0)],
     "clearance": [(0.2, 4.0), (0.6, 4.0)],
@@ -97,7 +102,7 @@ def _turns(effect_id: str, across: bool) -> list[tuple[float | None, int]]:
     if effect_id == "one_sided_stop":
         return [(0.0, PLACES), (180.0, PLACES)]
     if across and effect_id != "added_mass":
-        return [(None, PLACES), (ACROSS_DEG, PLACES // 2)]
+        return [(None, PLACES), (ACROSS_DEG, PLACES)]
     return [(None, PLACES)]
 
 

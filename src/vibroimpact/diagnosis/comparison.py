@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from .bench import Bench
-from .constants import SHARP, STRETCH_S, WIDE
+from .bench import Bench, holds
+from .constants import STRENGTH, STRETCH_S
 from .coordinates import Coordinate, nuisance_coordinates
-from .explanations import Structure
+from .explanations import Structure, seen
 from .measurement.signals import Signals
 from .measurement.stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 from .sizes import sizes_of
@@ -54,7 +54,7 @@ class Comparison:
         }.items():
             object.__setattr__(self, name, value)
         order = self.by_load(self.signals.fit())
-        highest = self._cut([(order[-1], self.start(order[-1], 0, STRETCH_S))], STRETCH_S)[0]
+        highest = self._cut([(order[-1], self.start(order[-1], 0))], STRETCH_S)[0]
         sizes = sizes_of(
             model, self.signals, highest, rates.steps_per_second, self.structure.values
         )
@@ -62,14 +62,20 @@ class Comparison:
 
     @property
     def modes(self) -> int:
-        """Return the number of modes up to the upper end of the band."""
-        return int(np.sum(self.structure.with_terms(()).frequencies < self.band[1]))
+        """Return the number of modes up to the upper end of the band that are seen."""
+        return len(self._seen)
+
+    @cached_property
+    def _seen(self):
+        """Return the numbers of the modes of the model as given that are seen in the band."""
+        model = self.structure.with_terms(())
+        return np.flatnonzero(seen(model) & (model.frequencies < self.band[1]))
 
     def nuisances(self) -> list[Coordinate]:
         """Return the coordinates of the nuisances: of the modes in the band and of all channels."""
         model = self.structure.with_terms(())
         ratio = model.damping / (2.0 * np.maximum(model.omega, 1.0e-12))
-        return nuisance_coordinates(ratio[: self.modes], len(self.structure.names))
+        return nuisance_coordinates(ratio[self._seen], len(self.structure.names))
 
     @cached_property
     def across(self) -> bool:
@@ -85,26 +91,24 @@ class Comparison:
 
     def fitted(self) -> Bench:
         """Return the Bench that explanations are fitted on: low, middle and high loads."""
-        return self._bench(self._spread(self.signals.fit(), FITTED, STRETCH_S), STRETCH_S, SHARP)
+        return self._bench(self._spread(self._held(self.signals.fit()), FITTED))
 
     def screened(self) -> Bench:
-        """Return the Bench of screening: the higher loads, strong dampers."""
-        places = self._spread(self.signals.fit(), FITTED, STRETCH_S)[-SCREENED:]
-        return self._bench(places, STRETCH_S, WIDE)
+        """Return the Bench of screening: the higher loads."""
+        return self.fitted().on(slice(-SCREENED, None))
 
     def apart(self) -> Bench:
         """Return the Bench of stretches that took no part: of held-out records, or late ones of the
         others where there are none.
         """
-        held_out = self.signals.holdout()
-        if len(held_out):
-            places = self._spread(held_out, APART, STRETCH_S)
-        else:
-            places = [
-                (record, self.start(record, 2, STRETCH_S))
-                for record, _ in self._spread(self.signals.fit(), FITTED, STRETCH_S)
-            ]
-        return self._bench(places, STRETCH_S, SHARP)
+        held_out = self._held(self.signals.holdout())
+        if held_out:
+            return self._bench(self._spread(held_out, APART))
+        late = [
+            (record, self.start(record, 2))
+            for record, _ in self._spread(self._held(self.signals.fit()), FITTED)
+        ]
+        return self._bench(late)
 
     def led(self, bench: Bench, lead_s: float) -> tuple[tuple[Stretch, ...], float]:
         """Return (the stretches of a Bench with what came before them, seconds of that): lead_s, or
@@ -115,13 +119,27 @@ class Comparison:
         places = [(stretch.record, stretch.start_s - lead) for stretch in bench.stretches]
         return self._cut(places, duration + lead), lead
 
-    def start(self, record: int, number: int, duration_s: float) -> float:
+    @cached_property
+    def lost(self) -> tuple[int, ...]:
+        """Return the records that do not hold the model as given: its sensors are too few for the
+        impacts there, and the lines of what is not held tell nothing.
+        """
+        records = range(len(self.signals.load))
+        bench = self._bench([(record, self.start(record, 0)) for record in records])
+        return tuple(np.flatnonzero(~holds(bench, self.modes)).tolist())
+
+    def _held(self, records):
+        """Return those of records that hold the model; that of the lowest load where none does."""
+        held = [int(record) for record in records if record not in self.lost]
+        return held or self.by_load(records)[:1]
+
+    def start(self, record: int, number: int) -> float:
         """Return where the number-th stretch of a record begins, s."""
         whole = valid_samples(self.signals, record) / self.signals.rate
-        last = max(whole - duration_s - 1.2, 0.0)
-        return float(min(BEGIN * whole + number * duration_s, last))
+        last = max(whole - STRETCH_S - 1.2, 0.0)
+        return float(min(BEGIN * whole + number * STRETCH_S, last))
 
-    def _spread(self, records, count, duration_s):
+    def _spread(self, records, count):
         """Return [(record, start)]: so many stretches of records, from the lowest load to the
         highest.
         """
@@ -132,7 +150,7 @@ class Comparison:
         for record in chosen:
             number = seen.get(record, 0)
             seen[record] = number + 1
-            places.append((record, self.start(record, number, duration_s)))
+            places.append((record, self.start(record, number)))
         return places
 
     def _cut(self, places, duration_s):
@@ -143,16 +161,16 @@ class Comparison:
             )
         )
 
-    def _bench(self, places, duration_s, strength):
-        """Return the Bench of places; strength over the impedance."""
+    def _bench(self, places):
+        """Return the Bench of places."""
         low, high = self.band
         scheme = self.structure.config.integration.scheme
         return Bench(
             self.structure,
-            self._cut(list(dict.fromkeys(places)), duration_s),
-            self.rates.schedule(duration_s, scheme),
+            self._cut(list(dict.fromkeys(places)), STRETCH_S),
+            self.rates.schedule(STRETCH_S, scheme),
             (INSIDE[0] * low, INSIDE[1] * high),
-            strength * self.impedance,
+            STRENGTH * self.impedance,
             self.threads,
             self.band[1],
         )

@@ -8,9 +8,7 @@ FREQUENCY_SD = 0.003
 DAMPING_SD = 0.15
 GAIN_SD = 0.02
 
-# Strength of the dampers over the impedance of the structure at its sensors: wide and smooth, and
-# narrow and sharp.
-WIDE, SHARP = 10.0, 5.0
+STRENGTH = 5.0  # of the dampers, over the impedance of the structure at its sensors
 # Share of the lines that count as independent. A window ties neighbours together, and errors of a
 # model repeat from line to line, as noise does not.
 INDEPENDENT = 0.1
@@ -30,6 +28,9 @@ RIVAL, RIVAL_SHARE = (
 )  # difference of rivals that counts e-fold, and its share of the gain
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
 NOTHING_LEFT = 0.7  # log power over the floor, below which no further effect is looked for
+# Excess in dB of the spectra of free runs over their floor, at which something is missing though
+# the holding force tells nothing.
+FREE_EXCESS_DB = 1.5
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
 

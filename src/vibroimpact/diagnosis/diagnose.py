@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
@@ -30,6 +31,7 @@ from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
+from .constants import FREE_EXCESS_DB
 from .decision import Decision, ambiguity, decide
 from .evidence import evidence_of
 from .explanations import Point, Structure
@@ -282,6 +284,13 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     ):
         withdrawn = {"effects": effects, "misfit": misfits}
         decision = replace(decision, verdict="unknown", **_without_best(decision))
+    if decision.verdict == "none" and _stays_off(misfits["holdout"] or misfits["fit"]):
+        decision = replace(
+            decision,
+            verdict="unknown",
+            nothing=decision.something_else,
+            something_else=decision.nothing,
+        )
     content = {
         **_decided(decision, effects),
         "regions": (
@@ -290,7 +299,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
-        "checks": _contract(found.checks),
+        "checks": _contract([*found.checks, *_lost_rows(found)]),
         "not_run": list(found.searched.failed),
         "not_testable": found.not_testable(),
         "provenance": found.provenance,
@@ -338,6 +347,13 @@ def _effects(found: _Found) -> list[dict[str, Any]]:
     fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
     rows = found.effect_rows(decision.best)
     return [row | {"law_fits": fits} for row in rows]
+
+
+def _stays_off(misfit: dict[str, Any]) -> bool:
+    """Return whether spectra of free runs are far above their floor."""
+    if misfit["before_dB"] is None or misfit["floor_dB"] is None:
+        return False
+    return misfit["before_dB"] - misfit["floor_dB"] > FREE_EXCESS_DB
 
 
 def _without_best(decision: Decision) -> dict[str, Any]:
@@ -397,6 +413,23 @@ def _sentence(conclusion):
     if conclusion in ("none", "unknown"):
         return f"The verdict is {conclusion}: no effect was added, modes are corrected."
     return "The model with the effects that the campaign shows to be missing; modes are corrected."
+
+
+def _lost_rows(found: _Found) -> list[dict[str, Any]]:
+    """Return the rows of checks for records that do not hold the model."""
+    lost = () if found.comparison is None else found.comparison.lost
+    names = [str(found.signals.record_names[record]) for record in lost]
+    return [
+        check_row(
+            "not held",
+            "warn",
+            f"record {name}: the sensors are too few to hold the model through its impacts. It is"
+            " compared by its spectra alone; more sensors help, between the supports and in both"
+            " directions.",
+            record=name,
+        )
+        for name in names
+    ]
 
 
 def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:

@@ -25,6 +25,7 @@ from .measurement.sensor_chain import Measuring
 from .measurement.stretches import rates_of
 
 KEPT_MODELS = 256
+SEEN = 1.0e-3  # of the largest shape at a sensor or force: what is less is not seen
 # Modes are kept to so many times the sampling frequency of the records. Those above change the
 # holding force of a right model by 1 % at the highest load, and cost a third of the time.
 MODES_TO = 3.0
@@ -61,7 +62,8 @@ class Term:
 class Point:
     """Terms, and the nuisances as logarithms of factors.
 
-    frequency, damping (mode,): of the modes from the lowest on. gain (channel,): of the channels.
+    frequency, damping (mode,): of the modes that sensors or forces see, from the lowest on.
+    gain (channel,): of the channels.
     """
 
     terms: tuple[Term, ...] = ()
@@ -148,8 +150,7 @@ class Structure:
         if not any(point.frequency) and not any(point.damping):
             return model
         factor, damping = (
-            np.exp(np.resize(np.r_[own, np.zeros(model.modes)], model.modes))
-            for own in (point.frequency, point.damping)
+            np.exp(_on_modes(own, seen(model))) for own in (point.frequency, point.damping)
         )
         omega, damping = model.omega * factor, model.damping * damping * factor
         order = np.argsort(omega, kind="stable")
@@ -169,3 +170,20 @@ class Structure:
             if term.effect.measured:
                 chain = chain.with_fault(term.effect_id, term.parameters, term.location, names)
         return chain
+
+
+def seen(model: ModalModel) -> np.ndarray:
+    """Return (mode,) bool: which modes a sensor or a force sees.
+
+    That of a plate which the tube does not touch is not among them: it leaves the others their
+    numbers.
+    """
+    shapes = np.abs(np.hstack([model.sensor_shapes, model.drive_shapes]))
+    return np.max(shapes / np.maximum(shapes.max(axis=0), 1.0e-300), axis=1) > SEEN
+
+
+def _on_modes(values, chosen):
+    """Return (mode,) values of the chosen modes in their order, 0 of the others and beyond."""
+    out, places = np.zeros(chosen.size), np.flatnonzero(chosen)[: len(values)]
+    out[places] = values[: len(places)]
+    return out

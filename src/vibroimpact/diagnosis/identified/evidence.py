@@ -15,7 +15,7 @@ import xarray as xr
 from vibroimpact.integration.steady_response import steady_elements
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
-from ..constants import SHARP
+from ..constants import STRENGTH
 from ..evidence import HOLDING_BANDS, LAW_STRETCHES, PLACES, SERIES, STATES
 from .spectra import PERIODS_BEFORE, steady_lines
 from .trial import LocalTerm, Records, Trial
@@ -99,7 +99,7 @@ def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict:
     """Return the RMS of the holding force by band: (1/c + Y) u = v_s - v of linear modes with the
     mobility Y between the sensors, v_s measured and v of the free response.
     """
-    strength = SHARP * modes.omega[~modes.residual].min() / np.max(modes.shapes**2)
+    strength = STRENGTH * modes.omega[~modes.residual].min() / np.max(modes.shapes**2)
     edges = np.geomspace(levels[0].frequency[0], levels[0].frequency[-1], HOLDING_BANDS + 1)
     channels = len(modes.names)
     found = np.zeros((len(STATES), len(levels), channels, HOLDING_BANDS))
