@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.diagnosis.decision import ambiguity, decide
+from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
 
@@ -29,6 +29,13 @@ def decided(*hypotheses, rest=0.3):
 def test_no_gain_is_nothing_missing():
     found = decided(hypothesis(0.01, "gap@all"), hypothesis(-0.2, "hertz@all"))
     assert found.verdict == "none" and found.nothing > 0.95
+
+
+@pytest.mark.parametrize(("before", "verdict"), [(1.2, "none"), (4.6, "unknown"), (None, "none")])
+def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
+    found = beside_spectra(decided(), {"before_dB": before, "floor_dB": 1.0})
+    assert found.verdict == verdict
+    assert (found.nothing > 0.9) == (verdict == "none") == (found.something_else < 0.1)
 
 
 def test_a_clear_gain_is_named():

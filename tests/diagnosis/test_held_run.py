@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.diagnosis.played import played
-from vibroimpact.diagnosis.bench import holding_lines, mean_log_power
-from vibroimpact.diagnosis.explanations import Point, Term
+from vibroimpact.diagnosis.bench import holding_lines, holds, mean_log_power
+from vibroimpact.diagnosis.explanations import Point, Term, seen
 from vibroimpact.integration.held_run import HeldLane, hold
 
 SOFT = Point((Term("contact_stiffness", "all", (1.0e6,)),))
@@ -51,6 +51,20 @@ def test_held_motion_follows_the_impacts(bench):
     measured = bench.stretches[-1].motion[1::up][: bench.schedule.samples].T
     error = records.motion[-1] - measured
     assert error.std() < 0.01 * measured.std()
+
+
+def test_sensors_hold_the_model_through_impacts_and_free_runs_are_lost(bench, comparison):
+    assert holds(bench, comparison.modes).all()
+    free = replace(bench, strength=1.0e-6 * bench.strength)
+    assert not holds(free, comparison.modes)[-1]
+
+
+def test_the_modes_of_a_plate_leave_the_others_their_numbers(bench):
+    plate = Term("plate_flexibility", "left", (1.0e5, 0.4))
+    given, moved = (bench.structure.model(Point(terms, (0.01, 0.02))) for terms in ((), (plate,)))
+    own = moved.frequencies[seen(moved)][:4]
+    assert moved.modes > given.modes
+    np.testing.assert_allclose(own, given.frequencies[seen(given)][:4], rtol=1e-6)
 
 
 def test_a_wrong_contact_shows_in_the_holding_force(bench):

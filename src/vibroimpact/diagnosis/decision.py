@@ -7,8 +7,8 @@ above its floor with the best hypothesis.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import expit
@@ -79,7 +79,7 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
     chance = np.exp((gains - best) / width)
-    chance *= (1.0 - no_effect) * (1.0 - unexplained) / chance.sum()
+    chance *= (1.0 - no_effect) * (1.0 - unexplained) / max(chance.sum(), 1.0)
     ranked = tuple(
         (each, float(own))
         for each, own in zip(hypotheses, chance, strict=True)
@@ -87,6 +87,25 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     ) or tuple(zip(hypotheses[:1], map(float, chance[:1]), strict=True))
     return Decision(
         _verdict(no_effect, unexplained, share, ranked), ranked, nothing, unexplained, rest, share
+    )
+
+
+def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> Decision:
+    """Return the Decision given the distances of free runs: nothing is not said where spectra are
+    far above their floor. Some laws act on motion that a held run does not have, such as whirling.
+
+    misfit: {before_dB, floor_dB}, None where not known.
+    """
+    before, floor = misfit["before_dB"], misfit["floor_dB"]
+    if decision.verdict != "none" or before is None or floor is None:
+        return decision
+    if before - floor < constants.FREE_EXCESS_DB:
+        return decision
+    return replace(
+        decision,
+        verdict="unknown",
+        nothing=decision.something_else,
+        something_else=decision.nothing,
     )
 
 

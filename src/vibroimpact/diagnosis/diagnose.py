@@ -31,8 +31,7 @@ from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
-from .constants import FREE_EXCESS_DB
-from .decision import Decision, ambiguity, decide
+from .decision import Decision, ambiguity, beside_spectra, decide
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
@@ -284,13 +283,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     ):
         withdrawn = {"effects": effects, "misfit": misfits}
         decision = replace(decision, verdict="unknown", **_without_best(decision))
-    if decision.verdict == "none" and _stays_off(misfits["holdout"] or misfits["fit"]):
-        decision = replace(
-            decision,
-            verdict="unknown",
-            nothing=decision.something_else,
-            something_else=decision.nothing,
-        )
+    decision = beside_spectra(decision, misfits["holdout"] or misfits["fit"])
     content = {
         **_decided(decision, effects),
         "regions": (
@@ -347,13 +340,6 @@ def _effects(found: _Found) -> list[dict[str, Any]]:
     fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
     rows = found.effect_rows(decision.best)
     return [row | {"law_fits": fits} for row in rows]
-
-
-def _stays_off(misfit: dict[str, Any]) -> bool:
-    """Return whether spectra of free runs are far above their floor."""
-    if misfit["before_dB"] is None or misfit["floor_dB"] is None:
-        return False
-    return misfit["before_dB"] - misfit["floor_dB"] > FREE_EXCESS_DB
 
 
 def _without_best(decision: Decision) -> dict[str, Any]:
