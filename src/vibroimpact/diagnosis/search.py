@@ -111,8 +111,8 @@ def search(
         ranked = _screened(at, base.point)
         failed = tuple(sorted({*failed, *_never_run(ranked)}))
         raced = _race(at, ranked, base.point)
-        new = _finals(at, [each.point for each in raced[:FINALISTS]], nothing)
-        found |= {each.point.name: each for each in new if np.isfinite(each.gain)}
+        new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing))
+        found |= {each.point.name: each for each in new}
         if not new:
             break
         best = max(new, key=lambda each: each.gain)
@@ -121,8 +121,9 @@ def search(
         if best.apart - base.apart < needed_gain(base.apart):
             break
         if size > 1:
-            found |= _exchanged(at, best, nothing, log)
-            best = max(found.values(), key=lambda each: each.gain)
+            others = _without_first(at, best, nothing, log)
+            found |= {each.point.name: each for each in others}
+            best = max([best, *others], key=_worth)
         base = best
         if size < most:
             floors[best.point.name] = level, floor = floor_of(comparison, best.fit)
@@ -130,6 +131,11 @@ def search(
                 break
     ranked_found = sorted(found.values(), key=lambda each: -each.gain)
     return Search(nothing, tuple(ranked_found), floors, failed)
+
+
+def _worth(hypothesis: Hypothesis) -> float:
+    """Return the gain of a Hypothesis less what each effect must bring."""
+    return hypothesis.apart - len(hypothesis.point.terms) * needed_gain(hypothesis.apart)
 
 
 def _screened(at: _Benches, base: Point) -> list[Screened]:
@@ -249,14 +255,28 @@ def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[flo
     return float(total / lines), float(np.sqrt((cells - 1) * left_out.var()))
 
 
-def _exchanged(at, best, nothing, log):
-    """Return {name: Hypothesis} of pairs in which the first effect of the best is exchanged."""
-    out = {}
-    for kept in best.point.terms[1:]:
-        base = replace(best.point, terms=(kept,))
-        ranked = _screened(at, base)
-        raced = [each for each in _race(at, ranked, base)[:2] if each.point.name not in out]
-        for each in _finals(at, [each.point for each in raced], nothing):
-            out[each.point.name] = each
-            log(f"exchanged: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
+def _without_first(
+    at: _Benches, best: Hypothesis, nothing: Hypothesis, log: Callable[[str], None]
+) -> list[Hypothesis]:
+    """Return Hypotheses in which the first effect of the best is dropped or, where that costs,
+    exchanged: it was chosen before the others were known.
+    """
+    base = replace(best.point, terms=best.point.terms[1:])
+    out = _kept(at, _finals(at, [base], nothing))
+    if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
+        raced = _race(at, _screened(at, base), base)[:2]
+        out += _kept(at, _finals(at, [each.point for each in raced], nothing))
+    for each in out:
+        log(f"without the first: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
     return out
+
+
+def _kept(at: _Benches, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Return the Hypotheses that could be run and in which no effect is within the priors."""
+    rate, sizes = at.comparison.signals.rate, at.comparison.sizes
+    return [
+        each
+        for each in found
+        if np.isfinite(each.gain)
+        and not any(within_priors(term, rate, sizes) for term in each.point.terms)
+    ]
