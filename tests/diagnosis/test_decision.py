@@ -33,9 +33,17 @@ def test_no_gain_is_nothing_missing():
 
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "none"), (4.6, "unknown"), (None, "none")])
 def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
-    found = beside_spectra(decided(), {"before_dB": before, "floor_dB": 1.0})
+    found = beside_spectra(decided(), {"before_dB": before, "after_dB": before, "floor_dB": 1.0})
     assert found.verdict == verdict
     assert (found.nothing > 0.9) == (verdict == "none") == (found.something_else < 0.1)
+
+
+def test_an_effect_that_leaves_spectra_far_off_is_refuted():
+    named = decided(hypothesis(1.5, "contact_damping@all"))
+    misfit = {"before_dB": 16.0, "after_dB": 2.0, "floor_dB": 1.0}
+    assert beside_spectra(named, misfit).verdict == "named"
+    found = beside_spectra(named, misfit | {"after_dB": 6.0})
+    assert found.verdict == "unknown" and found.something_else > 0.9 and not found.ranked
 
 
 def test_a_clear_gain_is_named():

@@ -28,9 +28,9 @@ RIVAL, RIVAL_SHARE = (
 )  # difference of rivals that counts e-fold, and its share of the gain
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
 NOTHING_LEFT = 0.7  # log power over the floor, below which no further effect is looked for
-# Excess in dB of the spectra of free runs over their floor, at which something is missing though
-# the holding force tells nothing.
-FREE_EXCESS_DB = 1.0
+# Excess in dB of the spectra of free runs over their floor. Of the model as given: something is
+# missing, even if the holding force tells nothing. Of the completed model: it is refuted.
+FREE_EXCESS_DB, REFUTED_DB = 1.5, 3.0
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
 

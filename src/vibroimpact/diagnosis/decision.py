@@ -91,21 +91,35 @@ def decide(search: Search, level: float, floor: float) -> Decision:
 
 
 def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> Decision:
-    """Return the Decision given the distances of free runs: nothing is not said where spectra are
-    far above their floor. Some laws act on motion that a held run does not have, such as whirling.
+    """Return the Decision given the distances of free runs.
 
-    misfit: {before_dB, floor_dB}, None where not known.
+    Nothing is not said where spectra are far above their floor: some laws act on motion that a held
+    run does not have, such as whirling. Nor is an effect that leaves them far above.
+
+    misfit: {before_dB, after_dB, floor_dB}, None where not known.
     """
-    before, floor = misfit["before_dB"], misfit["floor_dB"]
-    if decision.verdict != "none" or before is None or floor is None:
+    before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
+    if before is None or after is None or floor is None:
         return decision
-    if before - floor < constants.FREE_EXCESS_DB:
-        return decision
+    if decision.verdict == "none" and before - floor > constants.FREE_EXCESS_DB:
+        return replace(
+            decision,
+            verdict="unknown",
+            nothing=decision.something_else,
+            something_else=decision.nothing,
+        )
+    if decision.verdict in ("named", "ambiguous") and after - floor > constants.REFUTED_DB:
+        return refuted(decision)
+    return decision
+
+
+def refuted(decision: Decision) -> Decision:
+    """Return the Decision whose best hypothesis is refuted: what it had goes to something else."""
     return replace(
         decision,
         verdict="unknown",
-        nothing=decision.something_else,
-        something_else=decision.nothing,
+        ranked=decision.ranked[1:],
+        something_else=decision.something_else + decision.ranked[0][1],
     )
 
 

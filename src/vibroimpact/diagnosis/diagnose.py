@@ -31,7 +31,7 @@ from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
-from .decision import Decision, ambiguity, beside_spectra, decide
+from .decision import Decision, ambiguity, beside_spectra, decide, refuted
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
@@ -273,17 +273,16 @@ def _contract(checks):
 def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     """Return the Diagnosis of a campaign that was compared.
 
-    What makes held-out records worse is not offered: it is withdrawn, and the verdict is unknown.
+    What makes held-out records worse, or leaves them far off, is not offered: it is withdrawn, and
+    the verdict is unknown.
     """
-    decision, withdrawn = found.decision, None
-    misfits = _misfits(found)
-    effects = _effects(found)
-    if decision.verdict not in ("none", "unknown") and makes_worse(
-        misfits["holdout"] or misfits["fit"]
-    ):
+    misfits, effects, withdrawn = _misfits(found), _effects(found), None
+    told = misfits["holdout"] or misfits["fit"]
+    decision = found.decision if found.comparison is None else beside_spectra(found.decision, told)
+    if decision.verdict not in ("none", "unknown") and makes_worse(told):
+        decision = refuted(decision)
+    if decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
         withdrawn = {"effects": effects, "misfit": misfits}
-        decision = replace(decision, verdict="unknown", **_without_best(decision))
-    decision = beside_spectra(decision, misfits["holdout"] or misfits["fit"])
     content = {
         **_decided(decision, effects),
         "regions": (
@@ -340,17 +339,6 @@ def _effects(found: _Found) -> list[dict[str, Any]]:
     fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
     rows = found.effect_rows(decision.best)
     return [row | {"law_fits": fits} for row in rows]
-
-
-def _without_best(decision: Decision) -> dict[str, Any]:
-    """Return the probabilities of a Decision whose best hypothesis is refuted: what it had goes to
-    something else.
-    """
-    refuted = decision.ranked[0][1]
-    return {
-        "ranked": decision.ranked[1:],
-        "something_else": decision.something_else + refuted,
-    }
 
 
 def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any]:

@@ -111,7 +111,7 @@ def search(
         ranked = _screened(at, base.point)
         failed = tuple(sorted({*failed, *_never_run(ranked)}))
         raced = _race(at, ranked, base.point)
-        new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing))
+        new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing), nothing)
         found |= {each.point.name: each for each in new}
         if not new:
             break
@@ -120,7 +120,7 @@ def search(
             log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
         if best.apart - base.apart < needed_gain(base.apart):
             break
-        if size > 1:
+        if len(best.point.terms) > 1:
             others = _without_first(at, best, nothing, log)
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_worth)
@@ -262,21 +262,23 @@ def _without_first(
     exchanged: it was chosen before the others were known.
     """
     base = replace(best.point, terms=best.point.terms[1:])
-    out = _kept(at, _finals(at, [base], nothing))
+    out = _kept(at, _finals(at, [base], nothing), nothing)
     if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
         raced = _race(at, _screened(at, base), base)[:2]
-        out += _kept(at, _finals(at, [each.point for each in raced], nothing))
+        out += _kept(at, _finals(at, [each.point for each in raced], nothing), nothing)
     for each in out:
         log(f"without the first: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
     return out
 
 
-def _kept(at: _Benches, found: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """Return the Hypotheses that could be run and in which no effect is within the priors."""
+def _kept(at: _Benches, found: Sequence[Hypothesis], nothing: Hypothesis) -> list[Hypothesis]:
+    """Return the Hypotheses that could be run, without the effects that are within the priors."""
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
-    return [
-        each
-        for each in found
-        if np.isfinite(each.gain)
-        and not any(within_priors(term, rate, sizes) for term in each.point.terms)
-    ]
+    out = []
+    for each in found:
+        terms = tuple(term for term in each.point.terms if not within_priors(term, rate, sizes))
+        if terms and len(terms) < len(each.point.terms):
+            [each] = _finals(at, [replace(each.point, terms=terms)], nothing) or [each]
+        if terms and np.isfinite(each.gain):
+            out.append(each)
+    return out

@@ -60,6 +60,6 @@ def not_offered(withdrawn: Mapping[str, Any]) -> str:
     records, misfit = next(iter((farther or known).items()))
     return (
         f"# No model is offered: {effects} was added, and {records} are\n"
-        f"# {'farther off' if farther else 'hardly nearer'} with it,"
+        f"# {'farther off' if farther else 'still off'} with it,"
         f" {misfit['before_dB']:.2f} dB before and {misfit['after_dB']:.2f} dB after.\n"
     )
