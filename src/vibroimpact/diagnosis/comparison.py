@@ -28,12 +28,14 @@ class Comparison:
 
     checks: rows of what was left out and why. impedance: of the structure at its sensors, N s/m:
     the first frequency over the largest square of a mode shape. band: in which motion is held, Hz.
+    with_lost: whether records that do not hold the model are compared all the same.
     """
 
     signals: Signals
     structure: Structure
     checks: tuple[Mapping[str, Any], ...] = ()
     threads: int = 1
+    with_lost: bool = False
     rates: Rates = field(init=False)
     band: tuple[float, float] = field(init=False)
     impedance: float = field(init=False)
@@ -130,7 +132,7 @@ class Comparison:
 
     def _held(self, records):
         """Return those of records that hold the model; that of the lowest load where none does."""
-        held = [int(record) for record in records if record not in self.lost]
+        held = [int(each) for each in records if self.with_lost or each not in self.lost]
         return held or self.by_load(records)[:1]
 
     def start(self, record: int, number: int) -> float:

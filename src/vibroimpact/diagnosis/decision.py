@@ -90,6 +90,11 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     )
 
 
+def gains(search: Search) -> bool:
+    """Return whether some hypothesis of a Search gains more than nothing does."""
+    return max(map(worth, search.hypotheses), default=0.0) > constants.NULL_GAIN
+
+
 def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> Decision:
     """Return the Decision given the distances of free runs.
 

@@ -31,7 +31,7 @@ from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
-from .decision import Decision, ambiguity, beside_spectra, decide, refuted
+from .decision import Decision, ambiguity, beside_spectra, decide, gains, refuted
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
@@ -122,6 +122,13 @@ def run_diagnosis(
         unseen = not_testable(found)
         effects = [each for each in EFFECTS.values() if each.reported not in unseen]
         searched = search(comparison, EFFORTS[effort], effects, log)
+        if comparison.lost and not gains(searched):
+            # a model that lacks much is not held where the right one is
+            log("nothing gains on the records that hold the model: the others are compared too")
+            wider = replace(comparison, with_lost=True)
+            again = search(wider, EFFORTS[effort], effects, log)
+            if gains(again):
+                comparison, searched = wider, again
     with watch("floor"):
         best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
         played = searched.floors.get(best.point.name)
