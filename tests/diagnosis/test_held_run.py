@@ -53,7 +53,7 @@ def test_held_motion_follows_the_impacts(bench):
     assert error.std() < 0.01 * measured.std()
 
 
-def test_sensors_hold_the_model_through_impacts_and_free_runs_are_lost(bench, comparison):
+def test_whether_sensors_hold_the_model_through_impacts(bench, comparison):
     assert holds(bench, comparison.modes).all()
     free = replace(bench, strength=1.0e-6 * bench.strength)
     assert not holds(free, comparison.modes)[-1]
