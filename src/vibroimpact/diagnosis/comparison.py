@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .bench import Bench, holds
-from .constants import STRENGTH, STRETCH_S
+from .constants import SCREENED_S, STRENGTH, STRETCH_S
 from .coordinates import Coordinate, nuisance_coordinates
 from .explanations import Structure, seen
 from .measurement.signals import Signals
@@ -97,7 +97,8 @@ class Comparison:
 
     def screened(self) -> Bench:
         """Return the Bench of screening: the higher loads."""
-        return self.fitted().on(slice(-SCREENED, None))
+        places = self._spread(self._held(self.signals.fit()), FITTED)[-SCREENED:]
+        return self._bench(places, SCREENED_S)
 
     def apart(self) -> Bench:
         """Return the Bench of stretches that took no part: of held-out records, or late ones of the
@@ -163,14 +164,14 @@ class Comparison:
             )
         )
 
-    def _bench(self, places):
+    def _bench(self, places, duration_s=STRETCH_S):
         """Return the Bench of places."""
         low, high = self.band
         scheme = self.structure.config.integration.scheme
         return Bench(
             self.structure,
-            self._cut(list(dict.fromkeys(places)), STRETCH_S),
-            self.rates.schedule(STRETCH_S, scheme),
+            self._cut(list(dict.fromkeys(places)), duration_s),
+            self.rates.schedule(duration_s, scheme),
             (INSIDE[0] * low, INSIDE[1] * high),
             STRENGTH * self.impedance,
             self.threads,
