@@ -56,7 +56,7 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "gap": [(0.4,), (0.65,), (1.5,), (2.5,)],
     "added_mass": [(0.15,), (0.8,)],
     "contact_stiffness": [(0.02,), (0.2,), (4.0,)],
-    "contact_damping": [(1.0e-3,)],
+    "contact_damping": [(3.0e-4,)],
     "dry_friction": [(0.3,)],
     "hunt_crossley": [(0.3,)],
     "modal_damping": [(3.0,)],
