@@ -58,7 +58,6 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "contact_stiffness": [(0.02,), (0.2,), (4.0,)],
     "contact_damping": [(3.0e-4,)],
     "dry_friction": [(0.3,)],
-    "hunt_crossley": [(0.3,)],
     "modal_damping": [(3.0,)],
     "quadratic_drag": [(0.5,), (3.0,)],
     "fluid_added_mass_damping": [(0.1, 2.0), (0.5, 6.0)],
