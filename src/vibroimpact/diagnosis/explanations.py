@@ -27,7 +27,7 @@ from .measurement.stretches import rates_of
 KEPT_MODELS = 256
 SEEN = 1.0e-3  # of the largest shape at a sensor or force: what is less is not seen
 # Modes are kept to so many times the sampling frequency of the records. Those above change the
-# holding force of a right model by 1 % at the highest load, and cost a third of the time.
+# holding force of a right model by 1 % of its power at the highest load.
 MODES_TO = 3.0
 # Arrays of a ModalModel whose first axis is the mode, beside omega and damping.
 BY_MODE = tuple(name for name in MODE_FIELDS if name not in ("omega", "damping"))

@@ -42,8 +42,7 @@ class Hypothesis:
     """A fitted explanation.
 
     gain: of the objective over nothing, in mean log power, on the fitted stretches. apart, error:
-    the same on stretches that took no part, with its standard error. apart_cells (stretch, band):
-    what `apart` is the mean of, weighted.
+    the same on stretches that took no part, with its standard error.
     """
 
     fit: Fit
@@ -78,7 +77,7 @@ class Search:
 
 @dataclass(frozen=True, eq=False)
 class _Benches:
-    """The benches of a Comparison, each made once, and the lines of nothing on the last."""
+    """The benches of a Comparison, each made once."""
 
     comparison: Comparison
     screened: Bench
@@ -184,7 +183,7 @@ def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
 def _finals(
     at: _Benches, points: Sequence[Point], nothing: Hypothesis | None = None
 ) -> list[Hypothesis]:
-    """Return the Hypotheses of points, fitted with all nuisances at sharp dampers.
+    """Return the Hypotheses of points, fitted with all nuisances.
 
     The columns of the nuisances are those at the first point; for the best fit they are found
     again where it ends, as long as that helps.
