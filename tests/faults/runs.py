@@ -2,6 +2,7 @@
 that can be stopped in the middle.
 """
 
+import hashlib
 import os
 import signal
 import subprocess
@@ -57,6 +58,13 @@ class Runs:
             assert time.monotonic() < end, f"no {pattern}"
             time.sleep(0.01)
 
+    def wait_until_ended(self, jobs):
+        """Wait until none of the processes of these numbers is at work."""
+        end = time.monotonic() + PATIENCE_S
+        while any(Path(f"/proc/{job}/exe").exists() for job in jobs):  # that of a zombie is gone
+            assert time.monotonic() < end, f"still at work: {jobs}"
+            time.sleep(0.01)
+
     def jobs(self, process):
         """The processes that a running snakemake has started, and theirs."""
         parents = {}
@@ -85,7 +93,7 @@ class Runs:
 
 
 def bits(results, *kinds):
-    """{file: bits of its variables, or of the whole table} of the result files of some kinds."""
+    """{file: digest of its variables, or of the whole table} of the result files of some kinds."""
     return {
         path.relative_to(results).as_posix(): content_of(path)
         for kind in kinds
@@ -94,12 +102,20 @@ def bits(results, *kinds):
 
 
 def content_of(path):
-    """The bits of a result file."""
+    """{variable: digest} of a record, the digest of another file."""
     if path.suffix != ".nc":
-        return path.read_bytes()
+        return digest(path.read_bytes())
     with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
-        return {
-            name: list(variable[...]) if variable.dtype is str else variable[...].tobytes()
-            for name, variable in file.variables.items()
-        }
+        return {name: digest(bytes_of(variable)) for name, variable in file.variables.items()}
+
+
+def bytes_of(variable):
+    """The bytes of a netCDF variable."""
+    values = variable[...]
+    return "\0".join(values).encode() if variable.dtype is str else values.tobytes()
+
+
+def digest(content):
+    """The digest of bytes: what differs is told in a line."""
+    return hashlib.sha256(content).hexdigest()
