@@ -8,6 +8,7 @@ import pytest
 from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
+from vibroimpact.verdict.misfit import closed_fraction
 
 VALUES = {"support_offset": (1e-5, 1e-5)}
 
@@ -19,6 +20,12 @@ def hypothesis(gain, *places):
         for effect, location in (place.split("@") for place in places)
     )
     return Hypothesis(SimpleNamespace(point=Point(terms)), gain, gain, 0.05)
+
+
+def misfit(before, after, floor=1.0):
+    """The distances of free runs in dB, before and after."""
+    closed = None if before is None else closed_fraction(before, after, floor)
+    return {"before_dB": before, "after_dB": after, "floor_dB": floor, "closed_fraction": closed}
 
 
 def decided(*hypotheses, rest=0.3):
@@ -33,17 +40,21 @@ def test_no_gain_is_nothing_missing():
 
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "none"), (4.6, "unknown"), (None, "none")])
 def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
-    found = beside_spectra(decided(), {"before_dB": before, "after_dB": before, "floor_dB": 1.0})
+    found = beside_spectra(decided(), misfit(before, before))
     assert found.verdict == verdict
     assert (found.nothing > 0.9) == (verdict == "none") == (found.something_else < 0.1)
 
 
 def test_an_effect_that_leaves_spectra_far_off_is_refuted():
     named = decided(hypothesis(1.5, "contact_damping@all"))
-    misfit = {"before_dB": 16.0, "after_dB": 2.0, "floor_dB": 1.0}
-    assert beside_spectra(named, misfit).verdict == "named"
-    found = beside_spectra(named, misfit | {"after_dB": 6.0})
+    assert beside_spectra(named, misfit(16.0, 2.0)).verdict == "named"
+    found = beside_spectra(named, misfit(8.0, 6.0))
     assert found.verdict == "unknown" and found.something_else > 0.9 and not found.ranked
+
+
+def test_an_effect_that_spoils_spectra_without_excess_is_nothing():
+    found = beside_spectra(decided(hypothesis(0.3, "dry_friction@all")), misfit(1.1, 20.0))
+    assert found.verdict == "none" and found.nothing > 0.9 and not found.ranked
 
 
 def test_a_clear_gain_is_named():

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -26,14 +25,13 @@ INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 class Comparison:
     """Signals of a campaign beside a Structure.
 
-    checks: rows of what was left out and why. impedance: of the structure at its sensors, N s/m:
+    impedance: of the structure at its sensors, N s/m:
     the first frequency over the largest square of a mode shape. band: in which motion is held, Hz.
     with_lost: whether records that do not hold the model are compared all the same.
     """
 
     signals: Signals
     structure: Structure
-    checks: tuple[Mapping[str, Any], ...] = ()
     threads: int = 1
     with_lost: bool = False
     rates: Rates = field(init=False)

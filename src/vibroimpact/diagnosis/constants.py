@@ -31,6 +31,9 @@ NOTHING_LEFT = 0.7  # log power over the floor, below which no further effect is
 # Excess in dB of the spectra of free runs over their floor. Of the model as given: something is
 # missing, even if the holding force tells nothing. Of the completed model: it is refuted.
 FREE_EXCESS_DB, REFUTED_DB = 1.5, 3.0
+# Of an effect that free runs alone show: the least share of the excess that it closes, and the
+# difference of rivals that counts e-fold.
+CLOSED, FREE_RIVAL_DB = 0.6, 1.0
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
 

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.special import expit
 
 from vibroimpact.verdict.content import Conclusion
+from vibroimpact.verdict.misfit import makes_worse
 
 from . import constants
 from .search import Hypothesis, Search
@@ -95,37 +96,51 @@ def gains(search: Search) -> bool:
     return max(map(worth, search.hypotheses), default=0.0) > constants.NULL_GAIN
 
 
+def far_off(misfit: Mapping[str, float | None]) -> bool:
+    """Return whether spectra of free runs are far above their floor after completion, or can not be
+    had; misfit: {after_dB, floor_dB}.
+    """
+    after, floor = misfit["after_dB"], misfit["floor_dB"]
+    return after is None or floor is None or after - floor > constants.FREE_EXCESS_DB
+
+
 def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> Decision:
     """Return the Decision given the distances of free runs.
 
     Nothing is not said where spectra are far above their floor: some laws act on motion that a held
-    run does not have, such as whirling. Nor is an effect that leaves them far above.
+    run does not have, such as whirling. An effect that makes spectra worse, or that leaves most of
+    a large excess, is refuted; where there was no excess, nothing is missing.
 
-    misfit: {before_dB, after_dB, floor_dB}, None where not known.
+    misfit: {before_dB, after_dB, floor_dB, closed_fraction}, None where not known.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
         return decision
-    if decision.verdict == "none" and before - floor > constants.FREE_EXCESS_DB:
+    closed = misfit["closed_fraction"]
+    if decision.verdict == "none" and far_off(misfit):
         return replace(
             decision,
             verdict="unknown",
             nothing=decision.something_else,
             something_else=decision.nothing,
         )
-    if decision.verdict in ("named", "ambiguous") and after - floor > constants.REFUTED_DB:
-        return refuted(decision)
-    return decision
+    if decision.verdict in ("none", "unknown"):
+        return decision
+    if makes_worse(misfit):
+        return refuted(decision, in_favour_of_nothing=closed is None)
+    far = after - floor > constants.REFUTED_DB and (closed or 0.0) < constants.PARTLY
+    return refuted(decision) if far and decision.verdict in ("named", "ambiguous") else decision
 
 
-def refuted(decision: Decision) -> Decision:
-    """Return the Decision whose best hypothesis is refuted: what it had goes to something else."""
-    return replace(
-        decision,
-        verdict="unknown",
-        ranked=decision.ranked[1:],
-        something_else=decision.something_else + decision.ranked[0][1],
-    )
+def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
+    """Return the Decision whose best hypothesis is refuted: what it had goes to something else, or
+    to nothing.
+    """
+    chance = decision.ranked[0][1]
+    left = replace(decision, ranked=decision.ranked[1:])
+    if in_favour_of_nothing and decision.something_else < 0.5:
+        return replace(left, verdict="none", nothing=decision.nothing + chance)
+    return replace(left, verdict="unknown", something_else=decision.something_else + chance)
 
 
 def worth(hypothesis: Hypothesis) -> float:
@@ -154,6 +169,11 @@ def _verdict(
         return "partly_explained" if part else "unknown"
     if no_effect >= 0.5:
         return "none"
+    return conclusion(ranked)
+
+
+def conclusion(ranked: Sequence[tuple[Hypothesis, float]]) -> Conclusion:
+    """Return whether the first of hypotheses is named, given (hypothesis, probability)."""
     total = sum(chance for _, chance in ranked)
     return "named" if ranked[0][1] >= constants.NAMED * total else "ambiguous"
 

@@ -31,11 +31,12 @@ from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
-from .decision import Decision, ambiguity, beside_spectra, decide, gains, refuted
+from .decision import Decision, ambiguity, beside_spectra, decide, far_off, gains, refuted
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
-from .free_runs import FreeRuns, distance, free_runs, regions
+from .free_runs import FreeRuns, distance, free_runs, regions, with_after
+from .free_search import free_search
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
 from .identified.structure_file import model_of
@@ -111,38 +112,53 @@ def run_diagnosis(
     if isinstance(config, MeasuredStructure):
         return _run_identified(campaign, config, EFFORTS[effort], provenance or {}, log)
     watch, known = Stopwatch(), SIMULATED["records"]
+    checks: list[dict[str, Any]] = []
     try:
         with watch("reading and checks"):
             found, checks = usable(campaign, config)
             whole = with_channel_points(config, found)
             comparison = Comparison(signals_of(found), Structure(whole, found), threads=threads)
+        with watch("free runs"):
+            runs = free_runs(comparison.structure, comparison.signals, None)
+        with watch("search"):
+            comparison, searched = _searched(comparison, runs, EFFORTS[effort], log)
     except Refused as refusal:
-        return Diagnosis(_refused(refusal, provenance or {}, watch))
-    with watch("search"):
-        unseen = not_testable(found)
-        effects = [each for each in EFFECTS.values() if each.reported not in unseen]
-        searched = search(comparison, EFFORTS[effort], effects, log)
-        if comparison.lost and not gains(searched):
-            # a model that lacks much is not held where the right one is
-            log("nothing gains on the records that hold the model: the others are compared too")
-            wider = replace(comparison, with_lost=True)
-            again = search(wider, EFFORTS[effort], effects, log)
-            if gains(again):
-                comparison, searched = wider, again
+        return Diagnosis(_refused(refusal, checks, provenance or {}, watch))
     with watch("floor"):
         best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
         played = searched.floors.get(best.point.name)
         level, floor = played or floor_of(comparison, best.fit)
     decision = decide(searched, level, floor)
     with watch("free runs"):
-        chosen = None if decision.verdict in ("none", "unknown") else decision.best
-        runs = free_runs(
-            comparison.structure, comparison.signals, None if chosen is None else chosen.point
-        )
+        if decision.verdict not in ("none", "unknown") and decision.best is not None:
+            point = decision.best.point
+            runs = with_after(runs, comparison.structure, comparison.signals, point)
+        decision, runs = free_search(comparison, searched, decision, runs, log)
     return _concluded(
         _Found(comparison.signals, searched, decision, runs, checks, provenance or {}, comparison),
         _cost(watch, SIMULATED["records"] - known),
     )
+
+
+def _searched(
+    comparison: Comparison, runs: FreeRuns, most: int, log: Log
+) -> tuple[Comparison, Search]:
+    """Return (the Comparison that told more, its Search); runs: of the model as given.
+
+    A model that lacks much is not held where the right one is: where nothing gains on the records
+    that hold it, and its spectra are far off, the others are compared too.
+    """
+    unseen = not_testable(comparison.structure.campaign)
+    effects = [each for each in EFFECTS.values() if each.reported not in unseen]
+    searched = search(comparison, most, effects, log)
+    told = distance(runs, comparison.signals, comparison.signals.fit())
+    if comparison.lost and far_off(told) and not gains(searched):
+        log("nothing gains on the records that hold the model: the others are compared too")
+        wider = replace(comparison, with_lost=True)
+        again = search(wider, most, effects, log)
+        if gains(again):
+            return wider, again
+    return comparison, searched
 
 
 def _run_identified(
@@ -167,7 +183,7 @@ def _run_identified(
             chosen = None if decision.verdict in ("none", "unknown") else decision.best
             runs = own.free_runs(chosen)
     except Refused as refusal:
-        return Diagnosis(_refused(refusal, provenance, watch), without_model=True)
+        return Diagnosis(_refused(refusal, [], provenance, watch), without_model=True)
     return _concluded(
         _Found(signals, searched, decision, runs, checks, provenance, identified=own),
         _cost(watch, SIMULATED["records"] - known),
@@ -259,11 +275,13 @@ def evidence(diagnosis: Diagnosis) -> xr.Dataset:
     return evidence_of(diagnosis.comparison, diagnosis.search.nothing.point, after)
 
 
-def _refused(refusal: Refused, provenance, watch) -> Verdict:
-    """Return the verdict on a campaign that can not be tested."""
+def _refused(refusal: Refused, checks, provenance, watch) -> Verdict:
+    """Return the verdict on a campaign that can not be tested; checks: rows beside those of the
+    refusal.
+    """
     empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
     return not_testable_verdict(
-        _contract(refusal.checks),
+        _contract([*checks, *refusal.checks]),
         provenance,
         next_measurement=str(refusal),
         misfit=MisfitBySplit(fit=empty, holdout=empty),
@@ -284,11 +302,11 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     the verdict is unknown.
     """
     misfits, effects, withdrawn = _misfits(found), _effects(found), None
-    told = misfits["holdout"] or misfits["fit"]
-    decision = found.decision if found.comparison is None else beside_spectra(found.decision, told)
-    if decision.verdict not in ("none", "unknown") and makes_worse(told):
-        decision = refuted(decision)
-    if decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
+    decision = _verified(found, misfits["holdout"] or misfits["fit"])
+    if decision.verdict == "none" and effects:  # refuted, and nothing is missing
+        found = replace(found, decision=decision, runs=replace(found.runs, after=found.runs.before))
+        misfits, effects = _misfits(found), []
+    elif decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
         withdrawn = {"effects": effects, "misfit": misfits}
     content = {
         **_decided(decision, effects),
@@ -327,6 +345,14 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         completed,
         found.identified is not None,
     )
+
+
+def _verified(found: _Found, told: dict[str, Any]) -> Decision:
+    """Return the Decision given the distances of free runs."""
+    if found.comparison is not None:
+        return beside_spectra(found.decision, told)
+    worse = found.decision.verdict not in ("none", "unknown") and makes_worse(told)
+    return refuted(found.decision) if worse else found.decision
 
 
 def _misfits(found: _Found) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from .measurement.signals import Signals
 from .measurement.simulated_records import simulate_records
 from .measurement.stretches import valid_samples, whole_rates
 
-SEEDS = 2
+SEEDS = 4  # whirling may begin in one run and not in another
 SETTLE_S = 1.0  # at the start of a record
 ABOVE_NOISE_DB = 6.0
 SEGMENT_S = 2.0
@@ -57,8 +57,21 @@ def free_runs(structure: Structure, signals: Signals, after: Point | None) -> Fr
     )
 
 
-def _simulated(structure, signals, point):
-    """Return (record, seed, channel, sample): free runs of a Point, as the sensors record them.
+def with_after(
+    runs: FreeRuns,
+    structure: Structure,
+    signals: Signals,
+    after: Point,
+    records: Sequence[int] | None = None,
+) -> FreeRuns:
+    """Return FreeRuns with another Point after completion; on some records alone where given."""
+    values = _simulated(structure, signals, after, records)
+    return replace(runs, after=_psd(values, signals)[1])
+
+
+def _simulated(structure, signals, point, records=None):
+    """Return (record, seed, channel, sample): free runs of a Point, as the sensors record them, NaN
+    of other records than those given.
 
     Where the exact step makes a damped contact grow by itself, Newmark's is taken.
     """
@@ -70,18 +83,20 @@ def _simulated(structure, signals, point):
     raw = replace(model, sensor_shapes=model.sensor_shapes / structure.scale)
     runs = [
         (record, float(signals.gap[record]), seed)
-        for record in range(len(signals.load))
+        for record in (range(len(signals.load)) if records is None else records)
         for seed in range(SEEDS)
     ]
-    shape = (len(signals.load), SEEDS, len(signals.names), samples)
+    out = np.full((len(signals.load), SEEDS, len(signals.names), samples), np.nan, np.float32)
     for scheme in dict.fromkeys((integration.scheme, "newmark")):
         schedule = rates.schedule(samples / signals.rate, scheme)
         try:
             found = simulate_records(raw, schedule, force, runs, signals.kinds)
         except IntegrationError:
             continue
-        return found.reshape(shape) * chain.gain[:, None].astype(np.float32)
-    return np.full(shape, np.nan, np.float32)
+        own = found.reshape(-1, *out.shape[1:]) * chain.gain[:, None].astype(np.float32)
+        out[list(dict.fromkeys(record for record, _, _ in runs))] = own
+        break
+    return out
 
 
 def _psd(values, signals):

@@ -30,14 +30,24 @@ class Screened:
     gain: float
 
 
+@dataclass(frozen=True, eq=False)
+class Screening:
+    """Screened, best first, and the ids of effects of which no trial and no derivative could be
+    run.
+    """
+
+    ranked: tuple[Screened, ...]
+    failed: tuple[str, ...] = ()
+
+
 def screen(
     bench: Bench,
     base: Point,
     effects: Sequence[Effect],
     sizes: Mapping[str, float],
     across: bool,
-) -> list[Screened]:
-    """Return Screened of all effects at all places beside the terms of a Point, best first."""
+) -> Screening:
+    """Return the Screening of all effects at all places beside the terms of a Point."""
     structure = bench.structure
     places = [
         (effect, location)
@@ -49,8 +59,17 @@ def screen(
         base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
     ]
     lines = holding_lines(bench, [base])[0]
-    near = [point for point, _ in predicted(bench, lines, neutral, sizes)[:TRIED]]
-    return _ranked(bench, lines, far + near)
+    near = [point for point, _ in predicted(bench, lines, neutral, sizes)]
+    ranked = _ranked(bench, lines, far + near[:TRIED])
+    ran = {_last(point) for point in near}
+    ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
+    tried = {_last(point) for point in far + neutral}
+    return Screening(tuple(ranked), tuple(sorted(tried - ran)))
+
+
+def _last(point: Point) -> str:
+    """Return the id of the last effect of a Point."""
+    return point.terms[-1].effect_id
 
 
 def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Screened]:
@@ -95,6 +114,9 @@ def predicted(
         if not all(key in derivative for key in own):
             continue
         white = sum(derivative[key] for key in own)
+        if not np.isfinite(white).any():  # no step of any parameter could be run
+            continue
+        white = np.nan_to_num(white)
         x = to_vector(point, rows)
         step = _best_step(white.reshape(len(rows), -1), (lines * weight).ravel())
         moved = np.clip(x + step, *bounds(rows))
@@ -128,7 +150,7 @@ def _derivatives(bench, white, weight, points, rows_of):
     for first in range(0, len(moved), AT_A_TIME):
         found = holding_lines(bench, moved[first : first + AT_A_TIME])
         for own, (term, step) in zip(found, owners[first : first + AT_A_TIME], strict=True):
-            column = np.nan_to_num((own * weight - white) / step)
+            column = (own * weight - white) / step
             out.setdefault((term.effect_id, term.location), []).append(column)
     return {key: np.stack(found) for key, found in out.items()}
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.effects.effect import Effect
 from vibroimpact.effects.registry import EFFECTS
 
@@ -27,7 +28,8 @@ from .coordinates import effect_coordinates
 from .explanations import Point
 from .floor import floor_of
 from .gauss_newton import Fit, columns, fit
-from .screening import Screened, screen
+from .measurement.usable import Refused
+from .screening import Screened, Screening, screen
 
 RACED, FINALISTS = 8, 3
 PER_EFFECT = 2  # places of one effect in a race
@@ -66,13 +68,15 @@ class Search:
     """What was found: nothing, and hypotheses, best first.
 
     floors {name of a Point: (mean log power, that of a model in which nothing else is missing)},
-    where known. failed: effects of which no value could be run.
+    where known. failed: effects of which no value could be run. screened {name of a Point: what was
+    screened beside it, best first}.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
     floors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     failed: tuple[str, ...] = ()
+    screened: Mapping[str, Sequence[Screened]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +96,10 @@ def search(
     effects: Sequence[Effect] | None = None,
     log: Callable[[str], None] = lambda text: None,
 ) -> Search:
-    """Return the Search of a Comparison for up to `most` effects at once."""
+    """Return the Search of a Comparison for up to `most` effects at once.
+
+    Raises Refused where the model as given can not be run.
+    """
     at = _Benches(
         comparison,
         comparison.screened(),
@@ -100,16 +107,18 @@ def search(
         comparison.apart(),
         list(EFFECTS.values()) if effects is None else effects,
     )
-    nothing = _finals(at, [Point()])[0]
+    nothing = _nothing(at)
     log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
     found: dict[str, Hypothesis] = {}
     base = nothing
     failed: tuple[str, ...] = ()
     floors: dict[str, tuple[float, float]] = {}
+    screened: dict[str, Sequence[Screened]] = {}
     for size in range(1, most + 1):
-        ranked = _screened(at, base.point)
-        failed = tuple(sorted({*failed, *_never_run(ranked)}))
-        raced = _race(at, ranked, base.point)
+        screening = _screened(at, base.point)
+        screened[base.point.name] = screening.ranked
+        failed = tuple(sorted({*failed, *screening.failed}))
+        raced = _race(at, screening.ranked, base.point)
         new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing), nothing)
         found |= {each.point.name: each for each in new}
         if not new:
@@ -129,7 +138,20 @@ def search(
             if level - floor < NOTHING_LEFT:
                 break
     ranked_found = sorted(found.values(), key=lambda each: -each.gain)
-    return Search(nothing, tuple(ranked_found), floors, failed)
+    return Search(nothing, tuple(ranked_found), floors, failed, screened)
+
+
+def _nothing(at: _Benches) -> Hypothesis:
+    """Return the Hypothesis that nothing is missing. Raises Refused where it can not be run."""
+    if found := _finals(at, [Point()]):
+        return found[0]
+    names = [at.comparison.signals.record_names[each.record] for each in at.fitted.stretches]
+    sentence = (
+        f"The model as given, held to the records {', '.join(map(str, names))}, can not be"
+        " integrated: its motion grows without bound, or a contact is too stiff for the step."
+        " Check the units of the model and of the records, and integration.steps_per_second."
+    )
+    raise Refused(sentence, [check_row("model", "refuse", sentence)])
 
 
 def _worth(hypothesis: Hypothesis) -> float:
@@ -137,20 +159,13 @@ def _worth(hypothesis: Hypothesis) -> float:
     return hypothesis.apart - len(hypothesis.point.terms) * needed_gain(hypothesis.apart)
 
 
-def _screened(at: _Benches, base: Point) -> list[Screened]:
-    """Return the Screened effects beside those of a Point, none of them twice: two of one kind at
-    neighbouring places are one that is not where it was looked for.
+def _screened(at: _Benches, base: Point) -> Screening:
+    """Return the Screening of the effects beside those of a Point, none of them twice: two of one
+    kind at neighbouring places are one that is not where it was looked for.
     """
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
     return screen(at.screened, base, others, at.comparison.sizes, at.comparison.across)
-
-
-def _never_run(ranked: Sequence[Screened]) -> tuple[str, ...]:
-    """Return the ids of effects of which no screened point could be run."""
-    tried = {each.point.terms[-1].effect_id for each in ranked}
-    ran = {each.point.terms[-1].effect_id for each in ranked if np.isfinite(each.gain)}
-    return tuple(sorted(tried - ran))
 
 
 def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
@@ -263,7 +278,7 @@ def _without_first(
     base = replace(best.point, terms=best.point.terms[1:])
     out = _kept(at, _finals(at, [base], nothing), nothing)
     if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
-        raced = _race(at, _screened(at, base), base)[:2]
+        raced = _race(at, _screened(at, base).ranked, base)[:2]
         out += _kept(at, _finals(at, [each.point for each in raced], nothing), nothing)
     for each in out:
         log(f"without the first: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")

@@ -89,6 +89,10 @@ class ModalLayout:
 
     def modal(self, dt: float) -> Modal:
         """The kernel's Modal for a step of dt [s]."""
+        return self._modal(dt)
+
+    @cache  # noqa: B019 (a layout lives as long as its run)
+    def _modal(self, dt: float) -> Modal:
         step = self.step(dt)
         row_start, force_row_start, channels = [0], [], []
         shapes: list[np.ndarray] = []

@@ -1,0 +1,73 @@
+"""What only free motion shows is looked for by free runs; what can not be run is refused."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from vibroimpact.config.reading import check_config
+from vibroimpact.diagnosis.decision import decide
+from vibroimpact.diagnosis.explanations import Point, Structure, Term
+from vibroimpact.diagnosis.free_runs import free_runs
+from vibroimpact.diagnosis.free_search import free_search
+from vibroimpact.diagnosis.measurement.usable import Refused
+from vibroimpact.diagnosis.screening import Screened
+from vibroimpact.diagnosis.search import Hypothesis, Search, search
+from vibroimpact.effects.registry import EFFECTS
+
+HIDDEN = Point((Term("quadratic_drag", "tube", (60.0,)),))
+TRIED = (
+    Point((Term("dry_friction", "all", (0.3,)),)),
+    Point((Term("quadratic_drag", "tube", (40.0,)),)),
+    Point((Term("modal_damping", "all", (1.2,)),)),
+)
+
+
+@pytest.fixture(scope="module")
+def played(comparison):
+    """(Comparison, FreeRuns of the model as given) beside free runs of the model with drag."""
+    runs = free_runs(comparison.structure, comparison.signals, HIDDEN)
+    return comparison, replace(runs, measured=runs.after[:, 0], after=runs.before)
+
+
+def searched(*points):
+    """A search in which nothing gains, and the points that were screened."""
+    nothing = Hypothesis(SimpleNamespace(point=Point()), 0.0, 0.0, 0.0)
+    return Search(nothing, (), screened={"nothing": [Screened(point, 0.0) for point in points]})
+
+
+def test_what_closes_the_spectra_of_free_runs_is_named(played):
+    comparison, runs = played
+    search_of_nothing = searched(*TRIED)
+    none = decide(search_of_nothing, 5.0, 5.0)
+    found, after = free_search(comparison, search_of_nothing, none, runs)
+    assert none.verdict == "none" and found.verdict == "named"
+    assert found.best.ids == ("quadratic_drag",) and found.nothing == 0.0
+    assert (after.after != runs.after).any() and (after.before == runs.before).all()
+    fit = found.best.fit
+    low, high = (fit.rows[0].to_value(fit.x[0] + way * fit.deviation[0]) for way in (-1, 1))
+    assert low < 60.0 < high
+
+
+def test_nothing_is_named_where_no_trial_closes_the_spectra(played):
+    comparison, runs = played
+    search_of_nothing = searched(TRIED[2])
+    none = decide(search_of_nothing, 5.0, 5.0)
+    assert free_search(comparison, search_of_nothing, none, runs) == (none, runs)
+
+
+def test_no_free_trial_is_made_where_spectra_agree(played):
+    comparison, runs = played
+    agreed = replace(runs, measured=runs.before[:, 0])
+    none = decide(searched(*TRIED), 5.0, 5.0)
+    assert free_search(comparison, searched(*TRIED), none, agreed) == (none, agreed)
+
+
+def test_a_model_that_can_not_be_run_is_refused(comparison):
+    """A spring that pulls ever harder to one side has no bounded motion."""
+    values, effect = comparison.structure.values, EFFECTS["quadratic_stiffness"]
+    values = effect.apply(values, {"coefficient": -4.0e12}, effect.locations(values)[0])
+    leaning = Structure(check_config(values, "leaning"), comparison.structure.campaign)
+    with pytest.raises(Refused, match="can not be integrated") as refusal:
+        search(replace(comparison, structure=leaning))
+    assert [row["level"] for row in refusal.value.checks] == ["refuse"]
