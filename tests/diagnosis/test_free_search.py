@@ -33,7 +33,7 @@ def played(comparison):
 def searched(*points):
     """A search in which nothing gains, and the points that were screened."""
     nothing = Hypothesis(SimpleNamespace(point=Point()), 0.0, 0.0, 0.0)
-    return Search(nothing, (), screened={"nothing": [Screened(point, 0.0) for point in points]})
+    return Search(nothing, (), screened=tuple(Screened(point, 0.0) for point in points))
 
 
 def test_what_closes_the_spectra_of_free_runs_is_named(played):

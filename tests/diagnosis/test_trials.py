@@ -13,7 +13,7 @@ def test_every_effect_has_trials_that_can_be_run(comparison):
     structure, bench = comparison.structure, comparison.screened()
     failed = []
     for effect in EFFECTS.values():
-        place = locations(effect, structure.values, structure.names, True)[:1]
+        place = locations(effect, structure.values, structure.names, True, 8)[:1]
         terms = [term for each in place for term in far_terms(effect, each, comparison.sizes)]
         lines = holding_lines(bench, [Point((term,)) for term in terms]) if terms else np.zeros(1)
         if not np.isfinite(lines).reshape(len(lines), -1).all(axis=1).any():

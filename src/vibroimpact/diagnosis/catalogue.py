@@ -22,7 +22,7 @@ AT_A_POINT = (
     "clearance",
     "one_sided_stop",
 )
-PLACES = 8  # along a tube, for what acts at a point; the place is fitted from there
+PLACES = 8  # along a tube, for a law that acts at a point; the place is fitted from there
 ACROSS_DEG = 90.0
 ALL_FIRST = ("foliate_trefoil", "foliate_hexafoil", "hertz")  # tried at all supports alone
 # Logarithm of a factor, within which two good codes of one structure differ: two standard
@@ -81,32 +81,34 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
 }
 
 
-def locations(effect: Effect, values: Values, channels: Sequence[str], across: bool) -> list[str]:
-    """Return the places where an effect is tried.
+def locations(
+    effect: Effect, values: Values, channels: Sequence[str], across: bool, places: int
+) -> list[str]:
+    """Return where an effect is tried.
 
     values: configuration in plain values. channels: names. across: whether the structure is seen
-    to move across its force.
+    to move across its force. places: along a tube, for a mass: a heavy one moves all modes, and is
+    told within a quarter of the shortest wave alone.
     """
     if effect.measured:
         return in_the_chain(channels)
     length = on_structure.length_m(values)
     if effect.id in AT_A_POINT and length is not None:
+        count = places if effect.id == "added_mass" else PLACES
         return [
             on_structure.between(length * (number + 0.5) / count, turned)
-            for turned, count in _turns(effect.id, across)
+            for turned in _turns(effect.id, across)
             for number in range(count)
         ]
     found = effect.locations(values)
     return found[:1] if effect.id in ALL_FIRST else found
 
 
-def _turns(effect_id: str, across: bool) -> list[tuple[float | None, int]]:
-    """Return [(direction in degrees from that of the force, places along a tube)]."""
+def _turns(effect_id: str, across: bool) -> tuple[float | None, ...]:
+    """Return directions in degrees from that of the force, None where an effect has none."""
     if effect_id == "one_sided_stop":
-        return [(0.0, PLACES), (180.0, PLACES)]
-    if across and effect_id != "added_mass":
-        return [(None, PLACES), (ACROSS_DEG, PLACES)]
-    return [(None, PLACES)]
+        return 0.0, 180.0
+    return (None, ACROSS_DEG) if across and effect_id != "added_mass" else (None,)
 
 
 def far_terms(effect: Effect, location: str, sizes: Mapping[str, float]) -> Iterator[Term]:

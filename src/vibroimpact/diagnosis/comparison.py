@@ -17,6 +17,7 @@ from .measurement.stretches import Rates, Stretch, held_band, rates_of, stretche
 from .sizes import sizes_of
 
 FITTED, SCREENED, APART = 3, 2, 4  # stretches
+ALONG = (6, 24)  # places of a mass along a tube, at least and at most
 BEGIN = 0.2  # of a record: where its first stretch begins
 INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 
@@ -83,6 +84,14 @@ class Comparison:
         moving = self.fitted().moving[-1, :, 0]
         directions = self.structure.with_terms(()).sensor_directions[moving]
         return len(directions) > 0 and int(np.linalg.matrix_rank(directions, tol=0.3)) > 1
+
+    @property
+    def along(self) -> int:
+        """Return the number of places of a mass along a tube: as many as modes up to the end of the
+        band, two in each half wave of the highest one.
+        """
+        model = self.structure.with_terms(())
+        return int(np.clip(np.sum(model.frequencies < self.band[1]), *ALONG))
 
     def by_load(self, records: Sequence[int] | np.ndarray) -> list[int]:
         """Return records in the order of their load over the gap."""

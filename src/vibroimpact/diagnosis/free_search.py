@@ -48,17 +48,15 @@ def free_search(
 ) -> tuple[Decision, FreeRuns]:
     """Return (Decision, FreeRuns): those given where free runs show nothing more.
 
-    runs: of the model as given, and of the best hypothesis where the decision names one.
+    runs: of the model as given. Beside a hypothesis that is named nothing more is looked for.
     """
-    named = decision.best if decision.verdict in ("named", "ambiguous") else None
-    base = searched.nothing if named is None else named
     told = distance(runs, comparison.signals, comparison.signals.fit())
-    if told["after_dB"] is None or not far_off(told):
+    named = decision.verdict not in ("none", "unknown")
+    if named or told["after_dB"] is None or not far_off(told):
         return decision, runs
-    known = replace(runs, before=runs.after)
-    records = _farthest(comparison, known)
-    away = distance(known, comparison.signals, records)["after_dB"]
-    trials = _run(comparison, _candidates(searched, base.point), known, records)
+    records = _farthest(comparison, runs)
+    away = distance(runs, comparison.signals, records)["after_dB"]
+    trials = _run(comparison, _candidates(searched), runs, records)
     for trial in trials[:3]:
         log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
     if not trials or trials[0].closed < CLOSED:
@@ -69,7 +67,9 @@ def free_search(
             best.setdefault(tuple(sorted(trial.point.ids)), trial)
     weight = np.exp([(trials[0].away - trial.away) / FREE_RIVAL_DB for trial in best.values()])
     chance = trials[0].closed * weight / weight.sum()
-    found = [_hypothesis(comparison, trial, base, known, records) for trial in best.values()]
+    found = [
+        _hypothesis(comparison, searched.nothing, trial, runs, records) for trial in best.values()
+    ]
     ranked = tuple(zip(found, map(float, chance), strict=True))
     decision = replace(
         decision,
@@ -92,16 +92,16 @@ def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
     return sorted(excess, key=lambda record: -excess[record])[:RECORDS]
 
 
-def _candidates(searched: Search, base: Point) -> list[Point]:
-    """Return the points that screening found best beside a Point, with its nuisances."""
+def _candidates(searched: Search) -> list[Point]:
+    """Return the points that screening found best, with the nuisances of nothing."""
     chosen: dict[str, Point] = {}
     per_effect: dict[str, int] = {}
-    for each in searched.screened.get(base.name, ()):
+    for each in searched.screened:
         name, effect = each.point.name, each.point.terms[-1].effect_id
         if name in chosen or per_effect.get(effect, 0) >= PER_EFFECT or not np.isfinite(each.gain):
             continue
         per_effect[effect] = per_effect.get(effect, 0) + 1
-        chosen[name] = base.beside(each.point.terms[-1])
+        chosen[name] = searched.nothing.point.beside(each.point.terms[-1])
     return list(chosen.values())[:RUN_FREE]
 
 
@@ -120,8 +120,8 @@ def _run(
 
 def _hypothesis(
     comparison: Comparison,
+    nothing: Hypothesis,
     trial: _Trial,
-    base: Hypothesis,
     known: FreeRuns,
     records: Sequence[int],
 ) -> Hypothesis:
@@ -147,7 +147,7 @@ def _hypothesis(
     deviation = np.ones(len(rows))
     deviation[last] = max(np.ptp([x[last], *alike]), row.step)
     lines = [
-        holding_lines(bench, [base.point, trial.point])
+        holding_lines(bench, [nothing.point, trial.point])
         for bench in (comparison.fitted(), comparison.apart())
     ]
     fitted = comparison.fitted()
@@ -155,4 +155,4 @@ def _hypothesis(
     gain = (before - after) / effective_lines(fitted, lines[0][0])
     apart, error = difference(comparison.apart(), *lines[1])
     fit = Fit(trial.point, tuple(rows), x, lines[0][1], after, np.diag(1.0 / deviation**2))
-    return Hypothesis(fit, base.gain + gain, base.apart + apart, error)
+    return Hypothesis(fit, gain, apart, error)

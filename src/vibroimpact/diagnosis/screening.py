@@ -46,13 +46,17 @@ def screen(
     effects: Sequence[Effect],
     sizes: Mapping[str, float],
     across: bool,
+    along: int,
 ) -> Screening:
-    """Return the Screening of all effects at all places beside the terms of a Point."""
+    """Return the Screening of all effects at all places beside the terms of a Point.
+
+    sizes, across, along: see Comparison.
+    """
     structure = bench.structure
     places = [
         (effect, location)
         for effect in effects
-        for location in locations(effect, structure.values, structure.names, across)
+        for location in locations(effect, structure.values, structure.names, across, along)
     ]
     far = [base.beside(term) for each in places for term in far_terms(*each, sizes)]
     neutral = [

@@ -68,15 +68,15 @@ class Search:
     """What was found: nothing, and hypotheses, best first.
 
     floors {name of a Point: (mean log power, that of a model in which nothing else is missing)},
-    where known. failed: effects of which no value could be run. screened {name of a Point: what was
-    screened beside it, best first}.
+    where known. failed: effects of which no value could be run. screened: what was screened
+    beside nothing, best first.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
     floors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     failed: tuple[str, ...] = ()
-    screened: Mapping[str, Sequence[Screened]] = field(default_factory=dict)
+    screened: tuple[Screened, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,10 +113,10 @@ def search(
     base = nothing
     failed: tuple[str, ...] = ()
     floors: dict[str, tuple[float, float]] = {}
-    screened: dict[str, Sequence[Screened]] = {}
+    screened: tuple[Screened, ...] = ()
     for size in range(1, most + 1):
         screening = _screened(at, base.point)
-        screened[base.point.name] = screening.ranked
+        screened = screened or screening.ranked
         failed = tuple(sorted({*failed, *screening.failed}))
         raced = _race(at, screening.ranked, base.point)
         new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing), nothing)
@@ -165,7 +165,8 @@ def _screened(at: _Benches, base: Point) -> Screening:
     """
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
-    return screen(at.screened, base, others, at.comparison.sizes, at.comparison.across)
+    own = at.comparison
+    return screen(at.screened, base, others, own.sizes, own.across, own.along)
 
 
 def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
