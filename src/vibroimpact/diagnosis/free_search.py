@@ -15,8 +15,8 @@ import numpy as np
 
 from .bench import effective_lines, holding_lines, misfit
 from .comparison import Comparison
-from .constants import CLOSED, FREE_RIVAL_DB
-from .coordinates import effect_coordinates, to_point, to_vector
+from .constants import CLOSED, FREE_RIVAL_DB, LEAST_GAIN
+from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import Decision, conclusion, far_off
 from .explanations import Point
 from .free_runs import FreeRuns, distance, with_after
@@ -24,8 +24,9 @@ from .gauss_newton import Fit
 from .search import Hypothesis, Search, difference
 
 RUN_FREE, PER_EFFECT = 12, 4  # points, and those of one effect
-RECORDS = 3  # those whose spectra are farthest off
-FACTORS = (0.1, 0.3, 3.0, 10.0)  # of the first value of an effect, that are tried
+SCANNED = 2  # of them, whose first value is changed by FACTORS
+RECORDS = 2  # those whose spectra are farthest off
+FACTORS = (0.1, 0.3, 3.0, 10.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,26 +58,27 @@ def free_search(
     records = _farthest(comparison, runs)
     away = distance(runs, comparison.signals, records)["after_dB"]
     trials = _run(comparison, _candidates(searched), runs, records)
-    for trial in trials[:3]:
-        log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
-    if not trials or trials[0].closed < CLOSED:
-        return decision, runs
+    scanned = [point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point)]
+    trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
+    trials = _not_contradicted(comparison, searched, trials)
     best: dict[tuple[str, ...], _Trial] = {}
     for trial in trials:
-        if trial.away - trials[0].away < FREE_RIVAL_DB * np.log(10.0):
-            best.setdefault(tuple(sorted(trial.point.ids)), trial)
+        if trial.closed >= CLOSED:
+            best.setdefault(tuple(trial.point.ids), trial)
+    for trial in list(best.values())[:3]:
+        log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
+    if not best:
+        return decision, runs
+    closed = next(iter(best.values())).closed
     weight = np.exp([(trials[0].away - trial.away) / FREE_RIVAL_DB for trial in best.values()])
-    chance = trials[0].closed * weight / weight.sum()
-    found = [
-        _hypothesis(comparison, searched.nothing, trial, runs, records) for trial in best.values()
-    ]
-    ranked = tuple(zip(found, map(float, chance), strict=True))
+    found = [_hypothesis(comparison, searched.nothing, each, trials) for each in best.values()]
+    ranked = tuple(zip(found, map(float, closed * weight / weight.sum()), strict=True))
     decision = replace(
         decision,
         verdict=conclusion(ranked),
         ranked=ranked,
         nothing=0.0,
-        something_else=1.0 - trials[0].closed,
+        something_else=1.0 - closed,
     )
     runs = with_after(runs, comparison.structure, comparison.signals, found[0].point)
     return decision, runs
@@ -115,44 +117,65 @@ def _run(
         told = distance(runs, comparison.signals, records)
         if told["after_dB"] is not None:
             out.append(_Trial(point, told["after_dB"], told["closed_fraction"] or 0.0))
-    return sorted(out, key=lambda trial: trial.away)
+    return sorted(out, key=_away)
+
+
+def _not_contradicted(
+    comparison: Comparison, searched: Search, trials: Sequence[_Trial]
+) -> list[_Trial]:
+    """Return the trials with which the holding force is no larger than without."""
+    bench = comparison.fitted()
+    before, *after = holding_lines(bench, [searched.nothing.point, *(t.point for t in trials)])
+    highest = misfit(bench, before) + LEAST_GAIN * effective_lines(bench, before)
+    return [t for t, own in zip(trials, after, strict=True) if misfit(bench, own) < highest]
+
+
+def _away(trial: _Trial) -> float:
+    """Return the distance of a trial's spectra."""
+    return trial.away
+
+
+def _first_value(point: Point, rows: Sequence[Coordinate]) -> int:
+    """Return the number of the coordinate of the first parameter of the last term."""
+    return next(
+        number
+        for number, row in enumerate(rows)
+        if row.kind == "term" and row.index == len(point.terms) - 1
+    )
+
+
+def _scan(comparison: Comparison, point: Point) -> list[Point]:
+    """Return a Point with other values of the first parameter of its last term."""
+    rows = effect_coordinates(point.terms, comparison.sizes)
+    x, at = to_vector(point, rows), _first_value(point, rows)
+    out = []
+    for factor in FACTORS:
+        moved = x.copy()
+        value = factor * rows[at].to_value(x[at])
+        moved[at] = np.clip(rows[at].from_value(value), rows[at].low, rows[at].high)
+        out.append(to_point(moved, rows, point))
+    return out
 
 
 def _hypothesis(
-    comparison: Comparison,
-    nothing: Hypothesis,
-    trial: _Trial,
-    known: FreeRuns,
-    records: Sequence[int],
+    comparison: Comparison, nothing: Hypothesis, own: _Trial, trials: Sequence[_Trial]
 ) -> Hypothesis:
-    """Return the Hypothesis of a trial. The interval of its first value holds what is no worse."""
-    rows = effect_coordinates(trial.point.terms, comparison.sizes)
-    x = to_vector(trial.point, rows)
-    last = next(
-        number
-        for number, row in enumerate(rows)
-        if row.kind == "term" and row.index == len(trial.point.terms) - 1
-    )
-    row, value = rows[last], trial.point.terms[-1].values[0]
-    others = []
-    for factor in FACTORS:
-        moved = x.copy()
-        moved[last] = np.clip(row.from_value(factor * value), row.low, row.high)
-        others.append(to_point(moved, rows, trial.point))
+    """Return the Hypothesis of a trial. The interval of its first value holds those of all trials
+    that are no worse.
+    """
+    rows = effect_coordinates(own.point.terms, comparison.sizes)
+    x, at = to_vector(own.point, rows), _first_value(own.point, rows)
     alike = [
-        to_vector(other.point, rows)[last]
-        for other in _run(comparison, others, known, records)
-        if other.away - trial.away < FREE_RIVAL_DB
+        to_vector(trial.point, rows)[at]
+        for trial in trials
+        if trial.point.name == own.point.name and trial.away - own.away < FREE_RIVAL_DB
     ]
     deviation = np.ones(len(rows))
-    deviation[last] = max(np.ptp([x[last], *alike]), row.step)
-    lines = [
-        holding_lines(bench, [nothing.point, trial.point])
-        for bench in (comparison.fitted(), comparison.apart())
-    ]
-    fitted = comparison.fitted()
-    before, after = (misfit(fitted, own) for own in lines[0])
-    gain = (before - after) / effective_lines(fitted, lines[0][0])
-    apart, error = difference(comparison.apart(), *lines[1])
-    fit = Fit(trial.point, tuple(rows), x, lines[0][1], after, np.diag(1.0 / deviation**2))
-    return Hypothesis(fit, gain, apart, error)
+    deviation[at] = max(np.ptp(alike), rows[at].step)
+    fitted, apart = comparison.fitted(), comparison.apart()
+    before, after = holding_lines(fitted, [nothing.point, own.point])
+    value = misfit(fitted, after)
+    gain = (misfit(fitted, before) - value) / effective_lines(fitted, before)
+    told = difference(apart, *holding_lines(apart, [nothing.point, own.point]))
+    fit = Fit(own.point, tuple(rows), x, after, value, np.diag(1.0 / deviation**2))
+    return Hypothesis(fit, gain, *told)
