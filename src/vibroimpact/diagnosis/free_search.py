@@ -16,6 +16,7 @@ import numpy as np
 from .bench import effective_lines, holding_lines, misfit
 from .comparison import Comparison
 from .constants import CLOSED, FREE_RIVAL_DB, LEAST_GAIN
+from .completed import NINETY_SD
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import Decision, conclusion, far_off
 from .explanations import Point
@@ -160,18 +161,11 @@ def _scan(comparison: Comparison, point: Point) -> list[Point]:
 def _hypothesis(
     comparison: Comparison, nothing: Hypothesis, own: _Trial, trials: Sequence[_Trial]
 ) -> Hypothesis:
-    """Return the Hypothesis of a trial. The interval of its first value holds those of all trials
-    that are no worse.
-    """
+    """Return the Hypothesis of a trial, compared with nothing."""
     rows = effect_coordinates(own.point.terms, comparison.sizes)
     x, at = to_vector(own.point, rows), _first_value(own.point, rows)
-    alike = [
-        to_vector(trial.point, rows)[at]
-        for trial in trials
-        if trial.point.name == own.point.name and trial.away - own.away < FREE_RIVAL_DB
-    ]
     deviation = np.ones(len(rows))
-    deviation[at] = max(np.ptp(alike), rows[at].step)
+    deviation[at] = _reach(x[at], at, own, trials, rows) / NINETY_SD
     fitted, apart = comparison.fitted(), comparison.apart()
     before, after = holding_lines(fitted, [nothing.point, own.point])
     value = misfit(fitted, after)
@@ -179,3 +173,20 @@ def _hypothesis(
     told = difference(apart, *holding_lines(apart, [nothing.point, own.point]))
     fit = Fit(own.point, tuple(rows), x, after, value, np.diag(1.0 / deviation**2))
     return Hypothesis(fit, gain, *told)
+
+
+def _reach(
+    x: float, at: int, own: _Trial, trials: Sequence[_Trial], rows: Sequence[Coordinate]
+) -> float:
+    """Return how far from a value x its interval reaches: to the next values on both sides that are
+    worse, and to all that are not.
+    """
+    tried = [
+        (to_vector(trial.point, rows)[at], trial.away - own.away < FREE_RIVAL_DB)
+        for trial in trials
+        if trial.point.name == own.point.name
+    ]
+    alike = [value for value, good in tried if good]
+    below = max((value for value, _ in tried if value < min(alike)), default=min(alike))
+    above = min((value for value, _ in tried if value > max(alike)), default=max(alike))
+    return max(x - below, above - x, rows[at].step)
