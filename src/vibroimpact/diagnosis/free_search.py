@@ -15,8 +15,8 @@ import numpy as np
 
 from .bench import effective_lines, holding_lines, misfit
 from .comparison import Comparison
-from .constants import CLOSED, FREE_RIVAL_DB, LEAST_GAIN
 from .completed import NINETY_SD
+from .constants import CLOSED, FREE_RIVAL_DB, LEAST_GAIN
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import Decision, conclusion, far_off
 from .explanations import Point
