@@ -148,17 +148,26 @@ def _searched(
     A model that lacks much is not held where the right one is: where nothing gains on the records
     that hold it, and its spectra are far off, the others are compared too.
     """
-    unseen = not_testable(comparison.structure.campaign)
+    structure, signals = comparison.structure, comparison.signals
+    unseen = not_testable(structure.campaign)
     effects = [each for each in EFFECTS.values() if each.reported not in unseen]
-    searched = search(comparison, most, effects, log)
-    told = distance(runs, comparison.signals, comparison.signals.fit())
-    if comparison.lost and far_off(told) and not gains(searched):
+
+    def left(point: Point) -> bool:
+        return _far(with_after(runs, structure, signals, point), signals)
+
+    searched = search(comparison, most, effects, log, left)
+    if comparison.lost and _far(runs, signals) and not gains(searched):
         log("nothing gains on the records that hold the model: the others are compared too")
         wider = replace(comparison, with_lost=True)
-        again = search(wider, most, effects, log)
+        again = search(wider, most, effects, log, left)
         if gains(again):
             return wider, again
     return comparison, searched
+
+
+def _far(runs: FreeRuns, signals: Signals) -> bool:
+    """Return whether spectra after completion are far off on the fitted records."""
+    return far_off(distance(runs, signals, signals.fit()))
 
 
 def _run_identified(

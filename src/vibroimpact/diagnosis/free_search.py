@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vibroimpact.verdict.misfit import excess
+
 from .bench import effective_lines, holding_lines, misfit
 from .comparison import Comparison
 from .completed import NINETY_SD
@@ -112,12 +114,16 @@ def _run(
     comparison: Comparison, points: Sequence[Point], known: FreeRuns, records: Sequence[int]
 ) -> list[_Trial]:
     """Return the trials of points on records, the one nearest to the measured spectra first."""
+    given = distance(known, comparison.signals, records)
+    away, scatter = given["after_dB"] or 0.0, given["floor_dB"] or 0.0
     out = []
     for point in points:
         runs = with_after(known, comparison.structure, comparison.signals, point, records)
         told = distance(runs, comparison.signals, records)
-        if told["after_dB"] is not None:
-            out.append(_Trial(point, told["after_dB"], told["closed_fraction"] or 0.0))
+        if (after := told["after_dB"]) is not None and (floor := told["floor_dB"]) is not None:
+            # a floor that grows, as where one run whirls and another does not, closes nothing
+            closed = 1.0 - excess(after, min(floor, scatter)) / max(excess(away, scatter), 1.0e-9)
+            out.append(_Trial(point, after, closed))
     return sorted(out, key=_away)
 
 

@@ -95,8 +95,12 @@ def search(
     most: int = MOST_EFFECTS,
     effects: Sequence[Effect] | None = None,
     log: Callable[[str], None] = lambda text: None,
+    spectra_left: Callable[[Point], bool] = lambda point: False,
 ) -> Search:
     """Return the Search of a Comparison for up to `most` effects at once.
+
+    spectra_left: whether spectra of free runs of a Point are far off: then one more effect is
+    looked for, even if the holding force is near its floor.
 
     Raises Refused where the model as given can not be run.
     """
@@ -135,7 +139,7 @@ def search(
         base = best
         if size < most:
             floors[best.point.name] = level, floor = floor_of(comparison, best.fit)
-            if level - floor < NOTHING_LEFT:
+            if level - floor < NOTHING_LEFT and not spectra_left(best.point):
                 break
     ranked_found = sorted(found.values(), key=lambda each: -each.gain)
     return Search(nothing, tuple(ranked_found), floors, failed, screened)
