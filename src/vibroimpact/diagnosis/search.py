@@ -133,7 +133,7 @@ def search(
         if best.apart - base.apart < needed_gain(base.apart):
             break
         if len(best.point.terms) > 1:
-            others = _without_first(at, best, nothing, log)
+            others = _without_first(at, best, base, nothing, log)
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_worth)
         base = best
@@ -275,14 +275,22 @@ def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[flo
 
 
 def _without_first(
-    at: _Benches, best: Hypothesis, nothing: Hypothesis, log: Callable[[str], None]
+    at: _Benches,
+    best: Hypothesis,
+    before: Hypothesis,
+    nothing: Hypothesis,
+    log: Callable[[str], None],
 ) -> list[Hypothesis]:
-    """Return Hypotheses in which the first effect of the best is dropped or, where that costs,
-    exchanged: it was chosen before the others were known.
+    """Return Hypotheses in which the first effect of the best is dropped or exchanged: it was
+    chosen before the others were known.
+
+    before: the best one of one effect less. The first effect is exchanged where dropping it costs,
+    but less than half of what was gained before: it may have stood for another one.
     """
     base = replace(best.point, terms=best.point.terms[1:])
     out = _kept(at, _finals(at, [base], nothing), nothing)
-    if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
+    cost = best.apart - max((each.apart for each in out), default=0.0)
+    if needed_gain(best.apart - cost) <= cost < 0.5 * before.apart:
         raced = _race(at, _screened(at, base).ranked, base)[:2]
         out += _kept(at, _finals(at, [each.point for each in raced], nothing), nothing)
     for each in out:
