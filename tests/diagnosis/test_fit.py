@@ -58,3 +58,11 @@ def test_a_mass_is_found_where_it_sits(comparison):
     assert place == pytest.approx(800.0, abs=5.0) and term.values[0] == pytest.approx(
         0.06, rel=0.02
     )
+
+
+def test_a_named_gain_holds_all_of_the_gain_of_its_channel():
+    point = Point((Term("sensor_gain", "b", (1.3,)),), gain=(0.01, 0.08))
+    found = point.with_own_gains(["a", "b"])
+    assert found.terms[0].values[0] == pytest.approx(1.3 * np.exp(0.08))
+    assert found.gain == (0.01, 0.0)
+    assert Point(gain=(0.01,)).with_own_gains(["a", "b"]).gain == (0.01,)

@@ -4,7 +4,7 @@ that both make.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
@@ -80,6 +80,19 @@ class Point:
     def ids(self) -> list[str]:
         """Return the ids of the effects as they are reported."""
         return [term.effect.reported for term in self.terms]
+
+    def with_own_gains(self, names: Sequence[str]) -> Point:
+        """Return the Point whose named sensor gains hold all of the gain of their channels: what
+        a nuisance held of it too is the same thing. names (channel,): of the channels.
+        """
+        gain, terms = list(self.gain), []
+        for term in self.terms:
+            number = names.index(term.location) if term.location in names else len(gain)
+            if term.effect_id == "sensor_gain" and number < len(gain):
+                term = replace(term, values=(term.values[0] * float(np.exp(gain[number])),))
+                gain[number] = 0.0
+            terms.append(term)
+        return replace(self, terms=tuple(terms), gain=tuple(gain))
 
     def beside(self, term: Term) -> Point:
         """Return the Point with one more term."""

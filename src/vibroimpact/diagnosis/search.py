@@ -231,6 +231,7 @@ def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
 
 def _final(at: _Benches, point: Point, known: np.ndarray) -> Fit:
     """Return the Fit of a Point's effects and of the nuisances, whose columns are known."""
+    point = point.with_own_gains(at.comparison.structure.names)
     rows = [*effect_coordinates(point.terms, at.comparison.sizes), *at.comparison.nuisances()]
     return fit(at.fitted, point, rows, FINAL_PASSES, known)
 
