@@ -14,7 +14,7 @@ MAX_ENTRIES = 8  # a few variants beside the unchanged model
 
 
 class Memo:
-    """The last MAX_ENTRIES results by key; the oldest is dropped first."""
+    """The last MAX_ENTRIES results by key; what was not asked for the longest is dropped first."""
 
     def __init__(self) -> None:
         self.results: dict[Hashable, Any] = {}
@@ -27,6 +27,7 @@ class Memo:
                 while len(self.results) >= MAX_ENTRIES:
                     self.results.pop(next(iter(self.results)))
                 self.results[key] = make()
+            self.results[key] = self.results.pop(key)  # the last one that was asked for
             return self.results[key]
 
 

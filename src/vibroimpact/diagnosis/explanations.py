@@ -18,6 +18,7 @@ from vibroimpact.effects.places import with_place
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.force_vectors import MODE_FIELDS
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.reduced_model import Basis
 
 from .measurement.attached_model import attach, attached_basis
 from .measurement.sensed_motion import displacement_scale
@@ -111,7 +112,7 @@ class Structure:
     campaign: xr.Dataset
     values: Values = field(init=False)
     scale: np.ndarray = field(init=False)
-    basis: np.ndarray | None = field(init=False)
+    basis: Basis | None = field(init=False)
     dropped: int = field(init=False)
     with_terms: Callable[[tuple[Term, ...]], ModalModel] = field(init=False)
 

@@ -15,6 +15,7 @@ from .bench import Bench, holding_lines, misfit, whitening
 from .catalogue import far_terms, locations, neutral_term, parts
 from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_vector
 from .explanations import Point
+from .sensor_starts import sensor_terms
 
 AT_A_TIME = 64  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict
@@ -63,6 +64,8 @@ def screen(
         base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
     ]
     lines = holding_lines(bench, [base])[0]
+    wanted = {effect.id for effect in effects}
+    far += [base.beside(t) for t in sensor_terms(bench, base) if t.effect_id in wanted]
     near = [point for point, _ in predicted(bench, lines, neutral, sizes)]
     ranked = _ranked(bench, lines, far + near[:TRIED])
     ran = {_last(point) for point in near}

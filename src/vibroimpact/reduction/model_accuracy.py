@@ -69,7 +69,8 @@ def model_accuracy(config: ConfigPart) -> list[dict[str, Any]]:
     structure, local_rows = full_structure(config)
     if keeps_all_modes(structure):
         return []
-    omega, shapes = reduced_basis(config)
+    known = reduced_basis(config)
+    omega, shapes = known.omega, known.shapes
     scale = _lowest_elastic(omega)
     moved = _spring_rows(structure, local_rows)
     meshes = [(structure.stiffness, structure.mass, moved)]

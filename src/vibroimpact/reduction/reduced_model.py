@@ -1,6 +1,7 @@
 """The reduced model of a configuration: structure -> Ritz basis -> ModalModel."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ from .ritz_basis import (
     FAMILIES,
     DofGroup,
     basis_vectors,
+    group_numbers,
     orthonormal_basis,
     rigid_body_shift,
     uncoupled_groups,
@@ -43,11 +45,22 @@ UNHELD = 1.0e-6  # of the largest modal force: more than this on a mode without 
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is rigid-body motion
 
 
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """What a structure is reduced on: omega (mode,) rad/s, shapes (dof, mode), and, of a tube, the
+    arc lengths of its nodes (node,) in m.
+    """
+
+    omega: np.ndarray
+    shapes: np.ndarray
+    nodes: np.ndarray | None = None
+
+
 def build_model(
     config: ConfigPart,
     motion_only: bool = False,
     gauges: Sequence[tuple[str, np.ndarray]] = (),
-    basis: np.ndarray | None = None,
+    basis: Basis | None = None,
 ) -> ModalModel:
     """Return the ModalModel of a configuration.
 
@@ -56,19 +69,20 @@ def build_model(
     motion_only: leave out the shape line and the stresses.
     gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
         behind those of record.sensors, its shape a strain per unit amplitude.
-    basis: (dof, vector) of another configuration, see reduced_basis, that the structure is reduced
-        on; its own basis is made where None, or where its degrees of freedom are others. A variant
-        that differs in point masses or local elements needs no basis of its own.
+    basis: of another configuration, see reduced_basis, on whose mesh the structure is built and
+        that it is reduced on; its own basis is made where None, or where its degrees of freedom are
+        others. A variant that differs in point masses, local elements or stops at a point needs no
+        mesh and no basis of its own.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
     unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload
     has no static equilibrium, or the initial state is not representable (see initial_state).
     """
     tube = config.structure.kind in TUBES
-    structure, local_rows = full_structure(config)
+    structure, local_rows = full_structure(config, nodes=None if basis is None else basis.nodes)
     point_rows = _point_rows(structure, config)
-    if basis is not None and len(basis) == structure.dofs and not keeps_all_modes(structure):
-        omega, shapes = _modes_in(structure, local_rows, basis)
+    if basis is not None and len(basis.shapes) == structure.dofs:
+        omega, shapes = _modes_in(structure, local_rows, basis.shapes)
         full_frequencies = omega / (2.0 * np.pi)
     else:
         omega, shapes, full_frequencies = _modes(structure, local_rows, config)
@@ -100,17 +114,19 @@ def build_model(
     return model
 
 
-def full_structure(config: ConfigPart, halved: bool = False) -> tuple[Any, np.ndarray]:
+def full_structure(
+    config: ConfigPart, halved: bool = False, nodes: np.ndarray | None = None
+) -> tuple[Any, np.ndarray]:
     """Return (TubeStructure or PointStructure with its point masses, rows of the local elements).
 
     The rows are (row, dof), relative displacements of the elements and of the dampers of a chain.
 
-    halved: with each element of a tube's mesh cut in two.
+    halved, nodes: of a tube's mesh, see structure.tube.build_structure.
 
     Raises ValueError, see build_model.
     """
     if config.structure.kind in TUBES:
-        structure: Any = build_structure(config, halved)
+        structure: Any = build_structure(config, halved, nodes)
     else:
         structure = build_point_structure(config)
     point_rows = _point_rows(structure, config)
@@ -124,11 +140,11 @@ def full_structure(config: ConfigPart, halved: bool = False) -> tuple[Any, np.nd
     return with_point_masses(structure, config.masses, point_rows), local_rows
 
 
-def reduced_basis(config: ConfigPart) -> tuple[np.ndarray, np.ndarray]:
-    """Return (omega (mode,) rad/s, shapes (dof, mode)) of the basis before any correction."""
+def reduced_basis(config: ConfigPart) -> Basis:
+    """Return the Basis of a configuration before any correction."""
     structure, local_rows = full_structure(config)
     omega, shapes, _ = _modes(structure, local_rows, config)
-    return omega, shapes
+    return Basis(omega, shapes, getattr(structure, "node_arc_length", None))
 
 
 def _refuse_false_rigid_modes(
@@ -273,11 +289,11 @@ def _modes_in(
     A vector is exactly 0.0 outside its uncoupled group, and so are the shapes.
     """
     rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
-    matrices = map(sparse.csr_array, (structure.mass, structure.stiffness))
-    arrays = [array for each in matrices for array in (each.data, each.indices, each.indptr)]
+    mass, stiffness = map(sparse.csr_array, (structure.mass, structure.stiffness))
+    arrays = [array for each in (mass, stiffness) for array in (each.data, each.indices)]
     return BASES.get(
-        content_key("within", basis, rows != 0.0, *arrays),
-        lambda: _within(uncoupled_groups(structure.mass, structure.stiffness, rows), basis),
+        content_key("within", basis, group_numbers(mass, stiffness, rows), *arrays),
+        lambda: _within(uncoupled_groups(mass, stiffness, rows), basis),
     )
 
 

@@ -72,6 +72,15 @@ class DofGroup:
         return linalg.cholesky(self.stiffness + self.shift * self.mass, lower=True)
 
 
+def group_numbers(
+    mass: sparse.csr_array, stiffness: sparse.csr_array, rows: np.ndarray
+) -> np.ndarray:
+    """Return (dof,) the number of each degree of freedom's group, see uncoupled_groups."""
+    moved = sparse.csr_array((rows != 0.0).astype(float))
+    pattern = (mass != 0).astype(float) + (stiffness != 0).astype(float) + moved.T @ moved
+    return csgraph.connected_components(pattern, directed=False)[1]
+
+
 def uncoupled_groups(
     mass: sparse.csr_array, stiffness: sparse.csr_array, contact_rows: np.ndarray
 ) -> list[DofGroup]:
@@ -84,9 +93,7 @@ def uncoupled_groups(
     contact_rows: (..., dof).
     """
     rows = contact_rows.reshape(-1, mass.shape[0])
-    moved = sparse.csr_array((rows != 0.0).astype(float))
-    pattern = (mass != 0).astype(float) + (stiffness != 0).astype(float) + moved.T @ moved
-    _, component = csgraph.connected_components(pattern, directed=False)
+    component = group_numbers(mass, stiffness, rows)
     groups = []
     for number in range(component.max() + 1):
         dofs = np.flatnonzero(component == number)

@@ -176,38 +176,41 @@ def element_geometry(start: np.ndarray, end: np.ndarray) -> tuple[float, np.ndar
     return float(np.linalg.norm(chord)), np.array([tangent, np.cross(second, tangent), second])
 
 
-def build_structure(config: ConfigPart, halved: bool = False) -> TubeStructure:
+def build_structure(
+    config: ConfigPart, halved: bool = False, nodes: np.ndarray | None = None
+) -> TubeStructure:
     """Return the TubeStructure of a configuration (its parts `structure` and `supports`).
 
-    halved: with each element of the mesh cut in two.
+    halved: with each element of the mesh cut in two. nodes (node,): their arc lengths in m, where
+    the mesh is that of another configuration; contact points may then lie within elements.
 
     Raises ValueError when a support is off the tube, or no degree of freedom is left.
     """
     line = build_centreline(config.structure)
     contact = place_contact_points(line, config.supports)
-    key = (
-        repr(config.structure),
-        contact.arc_length.tobytes(),
-        contact.support.tobytes(),
-        contact.pair.tobytes(),
-        halved,
-    )
-    built = STRUCTURES.get(key, lambda: _built(config, line, contact, halved))
+    if nodes is None:
+        nodes = _mesh(config, line, contact, halved)
+    key = (repr(config.structure), nodes.tobytes())
+    built = STRUCTURES.get(key, lambda: _built(config, line, contact, nodes))
     return replace(built, contact=contact)
 
 
-def _built(
-    config: ConfigPart, line: Centreline, contact: ContactPoints, halved: bool
-) -> TubeStructure:
-    """Return the TubeStructure on a mesh with nodes at contact points and at the ends of fluids."""
-    structure = config.structure
-    stretches = fluid_stretches(structure, line)
+def _mesh(config: ConfigPart, line: Centreline, contact: ContactPoints, halved: bool) -> np.ndarray:
+    """Return (node,) arc lengths in m: there are nodes at contact points and at ends of fluids."""
     owner = 2 * contact.support + contact.pair  # the two pairs of bars of a lattice are apart
     groups = [contact.arc_length[owner == number] for number in np.unique(owner)]
+    stretches = fluid_stretches(config.structure, line)
     groups += [np.array([place]) for each in stretches for place in (each.begin, each.end)]
-    node_arc_length = mesh_arc_lengths(line, structure.mesh, groups)
-    if halved:
-        node_arc_length = halved_mesh(node_arc_length)
+    node_arc_length = mesh_arc_lengths(line, config.structure.mesh, groups)
+    return halved_mesh(node_arc_length) if halved else node_arc_length
+
+
+def _built(
+    config: ConfigPart, line: Centreline, contact: ContactPoints, node_arc_length: np.ndarray
+) -> TubeStructure:
+    """Return the TubeStructure on a mesh of nodes (node,) at arc lengths in m."""
+    structure = config.structure
+    stretches = fluid_stretches(structure, line)
     nodes = np.array([line.position(place) for place in node_arc_length])
     middles = 0.5 * (node_arc_length[1:] + node_arc_length[:-1])
     beam = section_beam(structure.section, structure.material, structure.theory)

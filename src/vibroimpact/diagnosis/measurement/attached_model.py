@@ -14,7 +14,7 @@ from vibroimpact.config.schema import Sensors
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.reduction.reduced_model import build_model, reduced_basis
+from vibroimpact.reduction.reduced_model import Basis, build_model, reduced_basis
 
 from .moving_base import driven_by_base, further_drive_shapes
 from .named_places import point_at
@@ -23,7 +23,7 @@ from .sensed_motion import STRAIN, moving, of_modes
 SAME_POINT_M = 1.0e-3
 
 
-def attach(config: ConfigPart, campaign: xr.Dataset, basis: np.ndarray | None = None) -> ModalModel:
+def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None) -> ModalModel:
     """Return the ModalModel of `config` with the campaign's channels as sensors and its forces as
     drives, without shape line and stresses.
 
@@ -76,7 +76,7 @@ def _displacement_shapes(
     config: ConfigPart,
     places: np.ndarray,
     normals: Mapping[int, np.ndarray],
-    basis: np.ndarray | None,
+    basis: Basis | None,
 ) -> tuple[ModalModel, np.ndarray]:
     """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
 
@@ -96,15 +96,15 @@ def _displacement_shapes(
     return model, moved.reshape(model.modes, len(places), 3)
 
 
-def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> np.ndarray | None:
-    """Return the basis (dof, vector) of a tube attached to a campaign, which variants of it are
+def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> Basis | None:
+    """Return the Basis of a tube attached to a campaign, which variants of it are
     reduced on; None of another structure, which is small.
     """
     if config.structure.kind not in TUBES:
         return None
     forces = campaign["force_channel_point"].values[~base_channels(campaign)]
     places = np.concatenate([campaign["channel_point"].values, forces])
-    return reduced_basis(_with_places(driven_by_base(config, campaign), places))[1]
+    return reduced_basis(_with_places(driven_by_base(config, campaign), places))
 
 
 def _with_places(config, places):
