@@ -19,21 +19,16 @@ STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that
 # and as a share of what is gained without it.
 LEAST_GAIN, LEAST_SHARE = 0.05, 0.1
 
-
 # Decision: gains in mean log power on stretches that took no part.
-NULL_GAIN, NULL_WIDTH = 0.12, 0.02  # at which an effect is as likely as nothing, and how sharply
-RIVAL, RIVAL_SHARE = (
-    0.02,
-    0.04,
-)  # difference of rivals that counts e-fold, and its share of the gain
+NULL_GAIN = 0.12  # at which an effect is as likely as nothing
+# Difference of rivals that counts e-fold, and what is added to it as a share of the gain.
+RIVAL, RIVAL_SHARE = 0.02, 0.04
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
 NOTHING_LEFT = 0.7  # log power over the floor, below which no further effect is looked for
-# Excess in dB of the spectra of free runs over their floor. Of the model as given: something is
-# missing, even if the holding force tells nothing. Of the completed model: it is refuted.
-FREE_EXCESS_DB, REFUTED_DB = 1.5, 3.0
-# Of an effect that free runs alone show: the least share of the excess that it closes, and the
-# difference of rivals that counts e-fold.
-CLOSED, FREE_RIVAL_DB = 0.6, 1.0
+# Excess in dB of the spectra of free runs over their floor, with which something is missing, even
+# if the holding force tells nothing. A completed model that leaves twice as much is refuted.
+FREE_EXCESS_DB = 1.5
+FREE_RIVAL_DB = 1.0  # difference of rivals that free runs tell, that counts e-fold
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
 

@@ -75,7 +75,7 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     best = float(gains[0]) if gains.size else 0.0
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
-    no_effect = float(expit((constants.NULL_GAIN - best) / constants.NULL_WIDTH))
+    no_effect = float(expit((constants.NULL_GAIN - best) / constants.RIVAL))
     nothing = no_effect * (1.0 - unexplained)
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
@@ -128,7 +128,7 @@ def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> De
         return decision
     if makes_worse(misfit):
         return refuted(decision, in_favour_of_nothing=closed is None)
-    far = after - floor > constants.REFUTED_DB and (closed or 0.0) < constants.PARTLY
+    far = after - floor > 2.0 * constants.FREE_EXCESS_DB and (closed or 0.0) < constants.PARTLY
     return refuted(decision) if far and decision.verdict in ("named", "ambiguous") else decision
 
 

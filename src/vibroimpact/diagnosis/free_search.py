@@ -18,7 +18,7 @@ from vibroimpact.verdict.misfit import excess
 from .bench import effective_lines, holding_lines, misfit
 from .comparison import Comparison
 from .completed import NINETY_SD
-from .constants import CLOSED, FREE_RIVAL_DB, LEAST_GAIN
+from .constants import FREE_RIVAL_DB, LEAST_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import Decision, conclusion, far_off
 from .explanations import Point
@@ -66,7 +66,7 @@ def free_search(
     trials = _not_contradicted(comparison, searched, trials)
     best: dict[tuple[str, ...], _Trial] = {}
     for trial in trials:
-        if trial.closed >= CLOSED:
+        if trial.closed >= PARTLY:
             best.setdefault(tuple(trial.point.ids), trial)
     for trial in list(best.values())[:3]:
         log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
