@@ -15,6 +15,9 @@ from vibroimpact import __version__
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 
+# Read when numpy is first imported. The matrices are small: threads would wait for each other, and
+# take up to ten times the CPU. Runs are what is done side by side.
+ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
 NETCDF = (".nc", ".nc4", ".cdf")
 # How netCDF files begin, of the classic format and of HDF5.
 SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
@@ -26,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments: those of the command line where None. Raises SystemExit with code 2 for arguments
     that are no command.
     """
+    for name, value in ONE_THREAD.items():
+        os.environ.setdefault(name, value)
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
     try:

@@ -44,7 +44,7 @@ def test_what_closes_the_spectra_of_free_runs_is_named(played):
     search_of_nothing = searched(*TRIED)
     none = decide(search_of_nothing, 5.0, 5.0)
     found, after = free_search(comparison, search_of_nothing, none, runs)
-    assert none.verdict == "none" and found.verdict == "named"
+    assert none.verdict == "none" and found.verdict == "named" and found.by_free_runs
     assert found.best.ids == ("quadratic_drag",) and found.nothing == 0.0
     assert (after.after != runs.after).any() and (after.before == runs.before).all()
     fit = found.best.fit

@@ -34,7 +34,8 @@ class Decision:
     ranked: hypotheses, one per set of effects, with their probabilities, most probable first.
     nothing, something_else: probabilities. best: the most probable hypothesis, None where there is
     none. rest: log power over the floor that the best leaves. share: of what is beyond the floor,
-    that the best explains.
+    that the best explains. by_free_runs: whether spectra of free runs alone tell it, see
+    free_search.
     """
 
     verdict: Conclusion
@@ -43,6 +44,7 @@ class Decision:
     something_else: float
     rest: float
     share: float
+    by_free_runs: bool = False
 
     @property
     def best(self) -> Hypothesis | None:

@@ -325,7 +325,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
-        "checks": _contract([*found.checks, *_lost_rows(found)]),
+        "checks": _contract([*found.checks, *_lost_rows(found), *_free_rows(decision)]),
         "not_run": list(found.searched.failed),
         "not_testable": found.not_testable(),
         "provenance": found.provenance,
@@ -446,6 +446,18 @@ def _lost_rows(found: _Found) -> list[dict[str, Any]]:
         )
         for name in names
     ]
+
+
+def _free_rows(decision: Decision) -> list[dict[str, Any]]:
+    """Return the row of checks for what spectra of free runs alone tell."""
+    if not decision.by_free_runs or decision.verdict in ("none", "unknown"):
+        return []
+    sentence = (
+        "The holding force does not show what is missing, spectra of free runs do: they compare"
+        " statistics of a chaotic motion. The kind of the effect and its place are told, its value"
+        " within the interval only."
+    )
+    return [check_row("told by free runs", "warn", sentence)]
 
 
 def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:

@@ -82,6 +82,7 @@ def free_search(
         ranked=ranked,
         nothing=0.0,
         something_else=1.0 - closed,
+        by_free_runs=True,
     )
     runs = with_after(runs, comparison.structure, comparison.signals, found[0].point)
     return decision, runs
