@@ -20,7 +20,7 @@ from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.identified import identified
-from vibroimpact.diagnosis.identified.long_records import long_record_lines
+from vibroimpact.diagnosis.identified.levels import long_record_lines
 from vibroimpact.diagnosis.identified.records import unsettled_periods
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.records import read_record, read_table

@@ -31,22 +31,20 @@ ENOUGH, WIDER = 0.999, 1.3
 SHARPEST = 0.4  # of the sampling frequency: the end of any band
 
 
-def with_places(stated: MeasuredStructure, campaign: xr.Dataset) -> MeasuredStructure:
-    """Return what is stated with places, by default those of default_places.
+def places_of(stated: MeasuredStructure, campaign: xr.Dataset) -> dict[str, dict[str, float]]:
+    """Return the places as stated, by default those of default_places.
 
     Raises ConfigError for names that are no channel of the campaign, and places that are not given.
     """
     names = [str(name) for name in campaign["channel_name"].values]
     directions = campaign["channel_direction"].values.astype(float)
     places = stated.places or default_places(names, directions)
-    known = f"the usable channels are {', '.join(names)}"
+    channels = [] if stated.drive is None else [(f"drive = '{stated.drive}'", stated.drive)]
+    channels += [(f"places.{place}.{name}", name) for place, row in places.items() for name in row]
     problems = [
-        f"structure.{key} is no channel of the campaign: {known}"
-        for key, name in (
-            ("drive" if stated.drive is None else f"drive = '{stated.drive}'", stated.drive),
-            *((f"places.{place}.{name}", name) for place, row in places.items() for name in row),
-        )
-        if name is not None and name not in names
+        f"structure.{key} is no channel of the campaign: the usable channels are {', '.join(names)}"
+        for key, name in channels
+        if name not in names
     ]
     problems += [
         f"structure.{key}: '{name}' is at no place: the places are {', '.join(places)}"
@@ -56,18 +54,19 @@ def with_places(stated: MeasuredStructure, campaign: xr.Dataset) -> MeasuredStru
     ]
     if problems:
         raise ConfigError(problems)
-    return stated.model_copy(update={"places": places})
+    return places
 
 
-def with_laws(stated: MeasuredStructure, tried: Sequence[str]) -> MeasuredStructure:
-    """Return what is stated with candidates at the places that are tried, the best one first, and
-    additions there.
+def laws_of(
+    stated: MeasuredStructure, tried: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return (candidates, additions), "law.place" each: as stated, by default at the places that
+    are tried, the best one first, and at the best one.
     """
     candidates = stated.candidates or tuple(f"{law}.{at}" for at in tried for law in LAWS_TRIED)
-    additions = tuple(f"{law}.{tried[0]}" for law in SECOND_LAWS)
     if stated.additions is not None:
-        additions = stated.additions
-    return stated.model_copy(update={"candidates": candidates, "additions": additions})
+        return candidates, stated.additions
+    return candidates, tuple(f"{law}.{tried[0]}" for law in SECOND_LAWS)
 
 
 def default_places(names: Sequence[str], directions: np.ndarray) -> dict[str, dict[str, float]]:

@@ -14,7 +14,7 @@ import yaml
 from vibroimpact.contact.local_elements import COLUMNS
 from vibroimpact.records import plain_values
 
-from .trial import LocalTerm, Trial
+from .trial import Trial
 
 # Shapes hold one direction per channel; which way it points in space is the sensor's affair.
 AXIS, DIRECTION = "x", [1.0, 0.0, 0.0]
@@ -25,35 +25,33 @@ DECIMATION = 25  # of two stages: steps are a multiple of it
 Places = Mapping[str, Mapping[str, float]]
 
 
-def configuration(
-    name: str, trial: Trial, places: Places, band_Hz: Sequence[float], loads: Sequence[float]
-) -> dict[str, Any]:
-    """Return the configuration of a Trial as plain values, with loads in N RMS.
+def configuration_text(
+    trial: Trial, places: Places, band_Hz: Sequence[float], loads: Sequence[float], sentence: str
+) -> str:
+    """Return the YAML text of the configuration of a Trial, with loads in N RMS; sentence: its
+    first line, a comment.
 
     Points carry the channels' names with underscores; a place that no two channels show is a point
     of its own.
     """
     modes, names = trial.modes, [_point(own) for own in trial.modes.names]
-    hidden = {
-        term.place: term.along(modes) for term in trial.terms if not _joins_points(places, term)
-    }
+    hidden = [term for term in trial.terms if not is_relative(places.get(term.place, {}))]
+    rows = zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
     described = [
         {
             "frequency_Hz": frequency,
             "damping_ratio": ratio,
             "residual": residual,
             "shape": {own: {AXIS: value} for own, value in zip(names, row, strict=True)}
-            | {_point(place): {AXIS: along[mode]} for place, along in hidden.items()},
+            | {_point(term.place): {AXIS: term.along(modes)[mode]} for term in hidden},
         }
-        for mode, (frequency, ratio, residual, row) in enumerate(
-            zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
-        )
+        for mode, (frequency, ratio, residual, row) in enumerate(rows)
     ]
     first = modes.frequency[~modes.residual].min()
     highest, lowest = max(band_Hz[1], modes.frequency.max()), max(band_Hz[0], 0.1 * first)
     rate = int(np.ceil(STEPS_PER_CYCLE * highest / DECIMATION)) * DECIMATION
     values = {
-        "study": f"{name}_updated",
+        "study": "identified_updated",
         "structure": {"kind": "identified", "modes": described},
         "elements": [*_elements(trial, places)],
         "excitation": {
@@ -78,12 +76,8 @@ def configuration(
             "sampling_frequency_Hz": rate // DECIMATION,
         },
     }
-    return plain_values(values)
-
-
-def configuration_text(values: dict[str, Any], sentence: str) -> str:
-    """Return the YAML text of a configuration; sentence: its first line, a comment."""
-    text = yaml.safe_dump(values, sort_keys=False, width=150, default_flow_style=None)
+    plain = plain_values(values)
+    text = yaml.safe_dump(plain, sort_keys=False, width=150, default_flow_style=None)
     return (
         f"# {sentence}\n# Units are in the keys; shapes are in kg^-1/2. There is no gap: gap_m is"
         f" not used.\n{text}"
@@ -94,7 +88,7 @@ def location(place: str, row: Mapping[str, float] | None) -> str:
     """Return a place {channel: coefficient} in words; None: one that no channel shows."""
     if row is None:
         return "elsewhere: no channel shows the place; its share in every mode was fitted"
-    ends = [name for name, _ in sorted(row.items(), key=lambda item: item[1])]
+    ends = sorted(row, key=lambda name: row[name])
     if not is_relative(row):
         told = " ".join(f"{weight:+g} {name}" for name, weight in row.items())
         return f"{place}: along {told}"
@@ -110,11 +104,6 @@ def is_relative(row: Mapping[str, float]) -> bool:
     return sorted(row.values()) in ([1.0], [-1.0, 1.0])
 
 
-def _joins_points(places: Places, term: LocalTerm) -> bool:
-    """Return whether a term joins points that channels show."""
-    return term.place in places and is_relative(places[term.place])
-
-
 def _point(name: str) -> str:
     """Return a channel's or place's name as the name of a point."""
     plain = re.sub(r"[^A-Za-z0-9_]", "_", name)
@@ -124,10 +113,10 @@ def _point(name: str) -> str:
 def _elements(trial: Trial, places: Places) -> Iterator[dict[str, Any]]:
     """Yield the entries of all elements: between two points, or a point and the ground."""
     for number, term in enumerate(trial.terms):
-        ends = {"point": _point(term.place)}
-        if _joins_points(places, term):
+        row, ends = places.get(term.place, {}), {"point": _point(term.place)}
+        if is_relative(row):
             # the displacement counts from the channel with -1 to the one with +1
-            signs = {weight: _point(name) for name, weight in places[term.place].items()}
+            signs = {weight: _point(name) for name, weight in row.items()}
             ends = {"point": signs[1.0]}
             ends |= {"other_point": signs[-1.0]} if -1.0 in signs else {}
         table = term.effect.columns(term.values)
