@@ -105,17 +105,17 @@ def evidence_of(
     motion (mechanical False), what has units of mechanics is left out.
     """
     held = np.array([level.split == "holdout" for level in records.levels])
-    texts = {
-        "channel_name": ("channel", before.modes.names),
-        "channel_kind": ("channel", before.modes.kinds),
-        "record_name": ("stretch", [level.name for level in records.levels]),
-        "split": ("stretch", [level.split for level in records.levels]),
-        "part": ("stretch", np.where(held, "apart", "fitted")),
-    }
-    loads = [level.load_rms for level in records.levels]
+    rows = [(level.name, level.split, level.load_rms) for level in records.levels]
+    names, splits, loads = (np.array(column, object) for column in zip(*rows, strict=True))
     out = xr.Dataset(
-        {name: (dim, np.array(values, object)) for name, (dim, values) in texts.items()}
-        | {"load": ("stretch", loads, {"units": "N"})},
+        {
+            "channel_name": ("channel", np.array(before.modes.names, object)),
+            "channel_kind": ("channel", np.array(before.modes.kinds, object)),
+            "record_name": ("stretch", names),
+            "split": ("stretch", splits),
+            "part": ("stretch", np.where(held, "apart", "fitted").astype(object)),
+            "load": ("stretch", loads.astype(float), {"units": "N"}),
+        },
         coords={"state": list(STATES), "series": list(SERIES)},
         attrs={"before": before.name, "after": after.name, "held": "nothing"},
     ).assign({name: campaign[name].variable for name in PLACES if name in campaign})

@@ -40,8 +40,7 @@ def levels_of(
     modes: Mapping[str, IdentifiedModes] | None = None,
     band_Hz: tuple[float, float] = (0.0, np.inf),
 ) -> list[LevelLines]:
-    """Return the LevelLines of a campaign in ascending load, in SI or, where a channel is generic,
-    its own units.
+    """Return the LevelLines of a campaign in ascending load, in SI or a generic channel's units.
 
     modes {record: modes}, band_Hz: for the transient of records without period, see
     long_record_lines; records have none where the attribute whole_records says so. Raises

@@ -12,6 +12,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from ..decision import worth
 from ..search import Hypothesis, Search
 from .fit import fitted
 from .linear_models import Family, LinearModels, linear_errors, stiffness_unit
@@ -68,9 +69,8 @@ def search_laws(setting: Setting, most: int, log: Log) -> Search:
     best = leading(found, nothing)
     others = [term for term in setting.additions if term.name not in _names(best)]
     while best is not nothing and others and most > 1:
-        own = _raced(
-            [_beside(cast(Trial, best.point), term, setting) for term in others], setting, log
-        )
+        known = cast(Trial, best.point)
+        own = _raced([_beside(known, term, setting) for term in others], setting, log)
         found += own
         further = leading(own, nothing)
         if further.apart < best.apart + LEAST_GAIN:
@@ -139,7 +139,7 @@ def left_and_floor(setting: Setting, searched: Search) -> tuple[float, float]:
     Of records without period a share of a change by level is shown wrongly: their start is that of
     a force repeated for ever, until it is forgotten.
     """
-    best = max(searched.hypotheses, key=lambda each: min(each.gain, each.apart), default=None)
+    best = max(searched.hypotheses, key=worth, default=None)
     left = np.log(np.mean(setting.reference[1] ** 2)) - (0.0 if best is None else best.apart)
     modes, fitted_to = setting.linear.base, setting.fitted
     missed = float(np.mean(linear_errors(modes, fitted_to.levels[0], fitted_to.band_Hz) ** 2))
@@ -161,10 +161,9 @@ def _alone(term: LocalTerm, setting: Setting) -> list[Trial]:
     softest = float(0.25 / np.sum(along**2 / family.modes.omega**2))
     changed = float(np.max(np.abs(family.k + 1j * sizes.omega * family.c)))
     values = term.effect.starts(replace(sizes, stiffness=min(changed, softest)))
-    places = (linear.base, family.modes, linear.joint)
-    return _best(
-        [Trial(own, (replace(term, values=v),)) for own in places for v in values], records
-    )
+    terms = [replace(term, values=own) for own in values]
+    models = (linear.base, family.modes, linear.joint)
+    return _best([Trial(modes, (own,)) for modes in models for own in terms], records)
 
 
 def _beside(known: Trial, term: LocalTerm, setting: Setting) -> list[Trial]:
@@ -186,13 +185,10 @@ def _beside(known: Trial, term: LocalTerm, setting: Setting) -> list[Trial]:
         along = own.along(modes)
         driven = along * modes.shapes[:, modes.drive]
         moved = [driven @ modes.receptance(frequency) for frequency in records.frequencies]
-        sizes = _scales(records, moved)
-        values = term.effect.starts(replace(sizes, stiffness=stiffness_unit(modes, along)))
-        some = [replace(own, values=each) for each in values]
-        some = some if term.row is not None else some[:FREE_VALUES]
-        out += _best(
-            [replace(known, modes=base, terms=(*known.terms, one)) for one in some], records
-        )
+        sizes = replace(_scales(records, moved), stiffness=stiffness_unit(modes, along))
+        tried = term.effect.starts(sizes)[: FREE_VALUES if term.row is None else None]
+        terms = [(*known.terms, replace(own, values=values)) for values in tried]
+        out += _best([replace(known, modes=base, terms=each) for each in terms], records)
     return out
 
 

@@ -15,15 +15,9 @@ from vibroimpact.config.reading import ConfigError
 from vibroimpact.spectra.periodic_lines import LevelLines
 from vibroimpact.units import TIME_DERIVATIVES, si_unit
 
-LAWS_TRIED = (
-    "cubic_stiffness",
-    "quadratic_stiffness",
-    "quadratic_drag",
-    "saturation_stiffness",
-    "clearance",
-    "single_friction",
-    "coulomb_friction",
-)
+from .local_laws import LAWS
+
+LAWS_TRIED = [law for law in LAWS if law not in ("saturation_damping", "few_frictions")]
 SECOND_LAWS = ("quadratic_stiffness", "cubic_stiffness", "quadratic_drag", "single_friction")
 MOST_PLACES = 60  # that are ranked
 # Share of the velocity's power below the end of the band, and how much wider the band is.

@@ -34,29 +34,17 @@ def configuration_text(
     Points carry the channels' names with underscores; a place that no two channels show is a point
     of its own.
     """
-    modes, names = trial.modes, [_point(own) for own in trial.modes.names]
-    hidden = [term for term in trial.terms if not is_relative(places.get(term.place, {}))]
-    rows = zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
-    described = [
-        {
-            "frequency_Hz": frequency,
-            "damping_ratio": ratio,
-            "residual": residual,
-            "shape": {own: {AXIS: value} for own, value in zip(names, row, strict=True)}
-            | {_point(term.place): {AXIS: term.along(modes)[mode]} for term in hidden},
-        }
-        for mode, (frequency, ratio, residual, row) in enumerate(rows)
-    ]
+    modes = trial.modes
     first = modes.frequency[~modes.residual].min()
     highest, lowest = max(band_Hz[1], modes.frequency.max()), max(band_Hz[0], 0.1 * first)
     rate = int(np.ceil(STEPS_PER_CYCLE * highest / DECIMATION)) * DECIMATION
     values = {
         "study": "identified_updated",
-        "structure": {"kind": "identified", "modes": described},
+        "structure": {"kind": "identified", "modes": _modes(trial, places)},
         "elements": [*_elements(trial, places)],
         "excitation": {
             "kind": "band_limited",
-            "point": names[modes.drive],
+            "point": _point(modes.names[modes.drive]),
             "direction": DIRECTION,
             "band_Hz": [lowest, band_Hz[1]],
         },
@@ -82,6 +70,23 @@ def configuration_text(
         f"# {sentence}\n# Units are in the keys; shapes are in kg^-1/2. There is no gap: gap_m is"
         f" not used.\n{text}"
     )
+
+
+def _modes(trial: Trial, places: Places) -> list[dict[str, Any]]:
+    """Return the entries of all modes, with the shapes of channels and of places of their own."""
+    modes, names = trial.modes, [_point(own) for own in trial.modes.names]
+    hidden = [term for term in trial.terms if not is_relative(places.get(term.place, {}))]
+    rows = zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
+    return [
+        {
+            "frequency_Hz": frequency,
+            "damping_ratio": ratio,
+            "residual": residual,
+            "shape": {own: {AXIS: value} for own, value in zip(names, row, strict=True)}
+            | {_point(term.place): {AXIS: term.along(modes)[mode]} for term in hidden},
+        }
+        for mode, (frequency, ratio, residual, row) in enumerate(rows)
+    ]
 
 
 def location(place: str, row: Mapping[str, float] | None) -> str:
