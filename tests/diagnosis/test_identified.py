@@ -4,6 +4,7 @@ name.
 
 import functools
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.identified import identified
 from vibroimpact.diagnosis.identified.levels import long_record_lines
 from vibroimpact.diagnosis.identified.records import unsettled_periods
+from vibroimpact.diagnosis.identified.trial import Trial
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
@@ -103,6 +105,38 @@ def test_cubic_spring_is_found_in_random_records():
     assert verdict.effects[0].id == "cubic_stiffness"
     value = verdict.effects[0].parameters["cubic_stiffness"].value
     assert value == pytest.approx(two_masses.CUBIC, rel=0.1)
+
+
+def test_a_joint_is_named_with_a_turned_sensor_at_the_drive():
+    campaign = two_masses.campaign("cubic", turned=True)
+    verdict = run_diagnosis(campaign, STATED).verdict
+    assert (verdict.verdict, verdict.ambiguity_set) == ("named", [["cubic_stiffness"]])
+    effect = verdict.effects[0]
+    assert effect.location == "upper-lower: between upper and lower"
+    assert effect.parameters["cubic_stiffness"].value == pytest.approx(two_masses.CUBIC, rel=0.05)
+
+
+def test_stated_places_hold_for_sensors_as_recorded():
+    """With a turned sensor a sum of channels is the joint; a place to the ground keeps its sign,
+    also in the completed model.
+    """
+    stated = MeasuredStructure(
+        kind="identified",
+        places={"joint": {"upper": 1.0, "lower": 1.0}, "upper": {"upper": 1.0}},
+        candidates=["cubic_stiffness.joint", "cubic_stiffness.upper"],
+        additions=[],
+    )
+    own, _ = identified(two_masses.campaign("nothing", periods=3, turned=True), stated)
+    assert own.setting.places == {"joint": {"upper": -1.0, "lower": 1.0}, "upper": {"upper": -1.0}}
+    terms = tuple(replace(term, values=np.ones(1)) for term in own.setting.candidates)
+    assert [term.location for term in terms] == [
+        "joint: between upper and lower",
+        "upper: at upper, to the ground",
+    ]
+    trial = Trial(own.linear.base, terms)
+    model = build_model(check_config(yaml.safe_load(own.model_text(trial, "two")), "updated"))
+    assert model.element_shapes == pytest.approx(trial.along)
+    assert model.sensor_shapes == pytest.approx(trial.modes.shapes)
 
 
 def test_sensor_opposite_to_the_force_is_reversed():

@@ -10,7 +10,7 @@ from tests import two_masses
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.diagnosis.identified.local_laws import LAWS
-from vibroimpact.diagnosis.identified.stated import default_places, laws_of, places_of
+from vibroimpact.diagnosis.identified.stated import check_names, default_places, laws_of
 from vibroimpact.diagnosis.identified.structure_file import (
     model_from,
     model_of,
@@ -152,7 +152,7 @@ def test_unknown_channel_names_are_listed_with_known_ones():
         additions=["clearance.elsewhere"],
     )
     with pytest.raises(ConfigError) as error:
-        places_of(stated, two_masses.campaign("nothing", periods=2))
+        check_names(stated, two_masses.campaign("nothing", periods=2))
     places = [
         problem.removeprefix("structure.").split(" is ")[0] for problem in error.value.problems
     ]

@@ -32,7 +32,7 @@ from .linear_models import (
 )
 from .records import Rows, along_force, refuse, repeating, usable_records
 from .search import PASSES, Log, Setting
-from .stated import default_band, laws_of, own_units, places_of
+from .stated import check_names, default_band, laws_of, own_units, places_of
 from .trial import LocalTerm, Records, Trial
 from .updated_model import configuration_text, location
 
@@ -166,8 +166,10 @@ def identified(
     that are stated and not there.
     """
     usable, rows, measured = usable_records(campaign)
-    places = places_of(stated, usable)
-    usable, drive = along_force(usable, measured, stated.drive, rows)
+    check_names(stated, usable)
+    usable, drive, turned = along_force(usable, measured, stated.drive, rows)
+    # only now: the direction of a turned channel decides whether a pair is a sum or a difference
+    places = places_of(stated, usable, measured.channels[drive] if turned else None)
     excited = stated.band_Hz or transfer_band(measured)
     if excited is None:
         refuse("The force excites too few lines: give band_Hz.", rows)

@@ -158,9 +158,9 @@ def _last_stretch(campaign: xr.Dataset, longest: int) -> xr.Dataset:
 
 def along_force(
     campaign: xr.Dataset, measured: CampaignSignals, wanted: str | None, rows: Rows
-) -> tuple[xr.Dataset, int]:
-    """Return (campaign, index of the channel at the force); that channel counts along the force,
-    since shapes are scaled by it.
+) -> tuple[xr.Dataset, int, bool]:
+    """Return (campaign, index of the channel at the force, whether it was turned); that channel
+    counts along the force, since shapes are scaled by it.
 
     wanted: its name; else the nearest channel along the force, or the nearest of all. A row is
     added where it is not at the point of the force.
@@ -181,11 +181,12 @@ def along_force(
             " then only right up to a factor; measure at the force."
         )
         rows.append(check_row("drive", "warn", text, channel=names[drive]))
-    if along[drive] < -PARALLEL:
+    turned = bool(along[drive] < -PARALLEL)
+    if turned:
         campaign = campaign.copy(deep=True)
         campaign["response"].values[:, drive] *= -1.0
         campaign["channel_direction"].values[drive] *= -1.0
-    return campaign, drive
+    return campaign, drive, turned
 
 
 def repeating(

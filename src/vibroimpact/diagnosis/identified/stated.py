@@ -25,14 +25,12 @@ ENOUGH, WIDER = 0.999, 1.3
 SHARPEST = 0.4  # of the sampling frequency: the end of any band
 
 
-def places_of(stated: MeasuredStructure, campaign: xr.Dataset) -> dict[str, dict[str, float]]:
-    """Return the places as stated, by default those of default_places.
-
-    Raises ConfigError for names that are no channel of the campaign, and places that are not given.
+def check_names(stated: MeasuredStructure, campaign: xr.Dataset) -> None:
+    """Raise ConfigError for names that are no channel of the campaign, and places that are not
+    given.
     """
     names = [str(name) for name in campaign["channel_name"].values]
-    directions = campaign["channel_direction"].values.astype(float)
-    places = stated.places or default_places(names, directions)
+    places = places_of(stated, campaign)
     channels = [] if stated.drive is None else [(f"drive = '{stated.drive}'", stated.drive)]
     channels += [(f"places.{place}.{name}", name) for place, row in places.items() for name in row]
     problems = [
@@ -48,7 +46,23 @@ def places_of(stated: MeasuredStructure, campaign: xr.Dataset) -> dict[str, dict
     ]
     if problems:
         raise ConfigError(problems)
-    return places
+
+
+def places_of(
+    stated: MeasuredStructure, campaign: xr.Dataset, turned: str | None = None
+) -> dict[str, dict[str, float]]:
+    """Return {place: {channel: coefficient}} as stated, by default those of default_places.
+
+    turned: the channel of the campaign that counts against its record, None for none. Coefficients
+    are stated for channels as they were recorded, so that those of this one change their sign.
+    """
+    if stated.places is None:
+        names = [str(name) for name in campaign["channel_name"].values]
+        return default_places(names, campaign["channel_direction"].values.astype(float))
+    return {
+        place: {name: -weight if name == turned else weight for name, weight in row.items()}
+        for place, row in stated.places.items()
+    }
 
 
 def laws_of(

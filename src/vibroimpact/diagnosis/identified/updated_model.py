@@ -17,7 +17,7 @@ from vibroimpact.records import plain_values
 from .trial import Trial
 
 # Shapes hold one direction per channel; which way it points in space is the sensor's affair.
-AXIS, DIRECTION = "x", [1.0, 0.0, 0.0]
+AXIS, DIRECTION, OPPOSITE = "x", [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]
 STEPS_PER_CYCLE = 200  # of the highest mode or of the band's end
 START_UP_PERIODS = 40  # of the lowest frequency of the band
 DURATION_PERIODS = 600  # of the lowest mode
@@ -106,7 +106,7 @@ def is_relative(row: Mapping[str, float]) -> bool:
     """Return whether a place {channel: coefficient} is the displacement of a point or of one
     against another, which an element can join.
     """
-    return sorted(row.values()) in ([1.0], [-1.0, 1.0])
+    return sorted(row.values()) in ([1.0], [-1.0], [-1.0, 1.0])
 
 
 def _point(name: str) -> str:
@@ -119,13 +119,15 @@ def _elements(trial: Trial, places: Places) -> Iterator[dict[str, Any]]:
     """Yield the entries of all elements: between two points, or a point and the ground."""
     for number, term in enumerate(trial.terms):
         row, ends = places.get(term.place, {}), {"point": _point(term.place)}
+        direction = DIRECTION
         if is_relative(row):
             # the displacement counts from the channel with -1 to the one with +1
             signs = {weight: _point(name) for name, weight in row.items()}
-            ends = {"point": signs[1.0]}
-            ends |= {"other_point": signs[-1.0]} if -1.0 in signs else {}
+            ends = {"point": signs[max(signs)]}
+            ends |= {"other_point": signs[-1.0]} if len(signs) == 2 else {}
+            direction = DIRECTION if 1.0 in signs else OPPOSITE
         table = term.effect.columns(term.values)
         for index in range(term.effect.elements):
             laws = {COLUMNS[column]: float(values[index]) for column, values in table.items()}
             name = f"{term.effect_id}_{number + 1}_{index + 1}"
-            yield {"name": name, **ends, "direction": DIRECTION, **laws}
+            yield {"name": name, **ends, "direction": direction, **laws}
