@@ -18,7 +18,7 @@ from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.cli import main
 from vibroimpact.config.measured_structure import MeasuredStructure
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.reading import ConfigError, check_config
 from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.identified import identified
 from vibroimpact.diagnosis.identified.levels import long_record_lines
@@ -143,6 +143,16 @@ def test_sensor_opposite_to_the_force_is_reversed():
     own, _ = identified(two_masses.campaign("nothing", periods=3, turned=True), STATED)
     assert own.linear.base.frequency == pytest.approx(masses()[0], rel=3.0e-3)
     assert own.campaign["channel_direction"].values[0].tolist() == [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(("kind", "unit"), [("acceleration", "m s-2"), ("velocity", "m s-1")])
+def test_a_mean_without_static_response_is_refused(kind, unit):
+    campaign = two_masses.campaign("nothing", periods=3)
+    for name, value in (("channel_kind", kind), ("channel_units", unit)):
+        campaign[name].values[0] = value
+    stated = MeasuredStructure(kind="identified", mean=True)
+    with pytest.raises(ConfigError, match=f"structure.mean = true .* 'upper' is '{kind}'"):
+        diagnose(campaign, stated)
 
 
 def refusal(campaign):

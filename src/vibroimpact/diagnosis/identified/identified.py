@@ -32,7 +32,7 @@ from .linear_models import (
 )
 from .records import Rows, along_force, refuse, repeating, usable_records
 from .search import PASSES, Log, Setting
-from .stated import check_names, default_band, laws_of, own_units, places_of
+from .stated import check_mean, check_names, default_band, laws_of, own_units, places_of
 from .trial import LocalTerm, Records, Trial
 from .updated_model import configuration_text, location
 
@@ -163,11 +163,12 @@ def identified(
     """Return (Identified, rows of all checks) of a campaign Dataset or the path of its file.
 
     Raises Refused with the sentence why no law can be told, ConfigError for channels and places
-    that are stated and not there.
+    that are stated and not there, and for a mean that the channel at the force does not show.
     """
     usable, rows, measured = usable_records(campaign)
     check_names(stated, usable)
     usable, drive, turned = along_force(usable, measured, stated.drive, rows)
+    check_mean(stated, usable, drive)
     # only now: the direction of a turned channel decides whether a pair is a sum or a difference
     places = places_of(stated, usable, measured.channels[drive] if turned else None)
     excited = stated.band_Hz or transfer_band(measured)

@@ -48,6 +48,25 @@ def check_names(stated: MeasuredStructure, campaign: xr.Dataset) -> None:
         raise ConfigError(problems)
 
 
+def check_mean(stated: MeasuredStructure, campaign: xr.Dataset, drive: int) -> None:
+    """Raise ConfigError where the mean is to be compared and the channel at the force (its index)
+    is a velocity or an acceleration.
+
+    Offsets of levels follow from the static response at the force, and these have none: their mean
+    is the zero of the sensor. It is not just left out, since whoever asks for it wants an even law
+    told by its shift of the mean, and a verdict without it would look as if that had been done.
+    """
+    name, kind = (str(campaign[f"channel_{key}"].values[drive]) for key in ("name", "kind"))
+    if stated.mean and TIME_DERIVATIVES.get(kind, 0) > 0:
+        raise ConfigError(
+            [
+                f"structure.mean = true needs a displacement at the force, and the kind of '{name}'"
+                f" is '{kind}', whose mean tells of no offset: leave mean out, or give a"
+                " displacement at the force as structure.drive"
+            ]
+        )
+
+
 def places_of(
     stated: MeasuredStructure, campaign: xr.Dataset, turned: str | None = None
 ) -> dict[str, dict[str, float]]:
