@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 from scipy import linalg
 
@@ -153,6 +154,22 @@ def test_a_mean_without_static_response_is_refused(kind, unit):
     stated = MeasuredStructure(kind="identified", mean=True)
     with pytest.raises(ConfigError, match=f"structure.mean = true .* 'upper' is '{kind}'"):
         diagnose(campaign, stated)
+
+
+def test_no_law_is_tried_where_no_mode_moves():
+    campaign = two_masses.campaign("nothing", periods=3)
+    twin = campaign.isel(channel=[1]).assign(channel_name=("channel", np.array(["twin"], object)))
+    both = xr.concat([campaign, twin], "channel", data_vars="minimal")
+    stated = MeasuredStructure(
+        kind="identified",
+        places={"joint": {"upper": -1.0, "lower": 1.0}, "still": {"lower": -1.0, "twin": 1.0}},
+        candidates=["cubic_stiffness.joint", "cubic_stiffness.still"],
+        additions=[f"quadratic_stiffness.{place}" for place in ("joint", "still", "elsewhere")],
+    )
+    setting = identified(both, stated)[0].setting
+    assert list(setting.ranking) == ["joint"]
+    assert [term.place for term in setting.candidates] == ["joint"]
+    assert [term.place for term in setting.additions] == ["joint", "elsewhere"]
 
 
 def refusal(campaign):

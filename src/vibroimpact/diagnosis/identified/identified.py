@@ -222,11 +222,15 @@ def _setting(
         row = None if own is None else row_of(own, linear.base.names)
         return LocalTerm(law, place, row, location=location(place, own))
 
+    def terms(stated: Sequence[str]) -> list[LocalTerm]:
+        """Return those that can act: a law where no mode moves has no size to start from."""
+        return [own for own in map(term, stated) if own.row is None or own.place in ranking]
+
     return Setting(
         places,
         ranking,
-        [term(name) for name in candidates if name.partition(".")[2] in ranking],
-        [term(name) for name in additions],
+        terms(candidates),
+        terms(additions),
         linear,
         Records(named, band, stated.mean, stated.emphasis),
         Records(tried, band, stated.mean),
