@@ -107,3 +107,19 @@ def differences(
         if moved is not None:
             slope[:, index] = (moved - error) / step
     return slope
+
+
+def minimise_by_differences(
+    error_of: ErrorOf, start: np.ndarray, steps: np.ndarray, passes: int
+) -> Minimum:
+    """Return the Minimum of |error|² from a start (value,), its Jacobian by differences with steps
+    (value,). passes: at most. Raises ValueError where the start has no finite error.
+    """
+
+    def evaluate(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        error = error_of(values)
+        if error is None:
+            raise ValueError("the least squares have no error at their start")
+        return error, differences(error_of, values, error, steps)
+
+    return minimise(evaluate, start, passes, error_of=error_of)

@@ -4,9 +4,11 @@ name.
 
 import functools
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 from scipy import linalg
 
@@ -17,11 +19,12 @@ from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.cli import main
 from vibroimpact.config.measured_structure import MeasuredStructure
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.reading import ConfigError, check_config
 from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.identified import identified
-from vibroimpact.diagnosis.identified.long_records import long_record_lines
+from vibroimpact.diagnosis.identified.levels import long_record_lines
 from vibroimpact.diagnosis.identified.records import unsettled_periods
+from vibroimpact.diagnosis.identified.trial import Trial
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
@@ -105,10 +108,68 @@ def test_cubic_spring_is_found_in_random_records():
     assert value == pytest.approx(two_masses.CUBIC, rel=0.1)
 
 
+def test_a_joint_is_named_with_a_turned_sensor_at_the_drive():
+    campaign = two_masses.campaign("cubic", turned=True)
+    verdict = run_diagnosis(campaign, STATED).verdict
+    assert (verdict.verdict, verdict.ambiguity_set) == ("named", [["cubic_stiffness"]])
+    effect = verdict.effects[0]
+    assert effect.location == "upper-lower: between upper and lower"
+    assert effect.parameters["cubic_stiffness"].value == pytest.approx(two_masses.CUBIC, rel=0.05)
+
+
+def test_stated_places_hold_for_sensors_as_recorded():
+    """With a turned sensor a sum of channels is the joint; a place to the ground keeps its sign,
+    also in the completed model.
+    """
+    stated = MeasuredStructure(
+        kind="identified",
+        places={"joint": {"upper": 1.0, "lower": 1.0}, "upper": {"upper": 1.0}},
+        candidates=["cubic_stiffness.joint", "cubic_stiffness.upper"],
+        additions=[],
+    )
+    own, _ = identified(two_masses.campaign("nothing", periods=3, turned=True), stated)
+    assert own.setting.places == {"joint": {"upper": -1.0, "lower": 1.0}, "upper": {"upper": -1.0}}
+    terms = tuple(replace(term, values=np.ones(1)) for term in own.setting.candidates)
+    assert [term.location for term in terms] == [
+        "joint: between upper and lower",
+        "upper: at upper, to the ground",
+    ]
+    trial = Trial(own.linear.base, terms)
+    model = build_model(check_config(yaml.safe_load(own.model_text(trial, "two")), "updated"))
+    assert model.element_shapes == pytest.approx(trial.along)
+    assert model.sensor_shapes == pytest.approx(trial.modes.shapes)
+
+
 def test_sensor_opposite_to_the_force_is_reversed():
     own, _ = identified(two_masses.campaign("nothing", periods=3, turned=True), STATED)
     assert own.linear.base.frequency == pytest.approx(masses()[0], rel=3.0e-3)
     assert own.campaign["channel_direction"].values[0].tolist() == [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(("kind", "unit"), [("acceleration", "m s-2"), ("velocity", "m s-1")])
+def test_a_mean_without_static_response_is_refused(kind, unit):
+    campaign = two_masses.campaign("nothing", periods=3)
+    for name, value in (("channel_kind", kind), ("channel_units", unit)):
+        campaign[name].values[0] = value
+    stated = MeasuredStructure(kind="identified", mean=True)
+    with pytest.raises(ConfigError, match=f"structure.mean = true .* 'upper' is '{kind}'"):
+        diagnose(campaign, stated)
+
+
+def test_no_law_is_tried_where_no_mode_moves():
+    campaign = two_masses.campaign("nothing", periods=3)
+    twin = campaign.isel(channel=[1]).assign(channel_name=("channel", np.array(["twin"], object)))
+    both = xr.concat([campaign, twin], "channel", data_vars="minimal")
+    stated = MeasuredStructure(
+        kind="identified",
+        places={"joint": {"upper": -1.0, "lower": 1.0}, "still": {"lower": -1.0, "twin": 1.0}},
+        candidates=["cubic_stiffness.joint", "cubic_stiffness.still"],
+        additions=[f"quadratic_stiffness.{place}" for place in ("joint", "still", "elsewhere")],
+    )
+    setting = identified(both, stated)[0].setting
+    assert list(setting.ranking) == ["joint"]
+    assert [term.place for term in setting.candidates] == ["joint"]
+    assert [term.place for term in setting.additions] == ["joint", "elsewhere"]
 
 
 def refusal(campaign):

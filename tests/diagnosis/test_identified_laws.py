@@ -15,7 +15,7 @@ from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.levels import naming_split
 from vibroimpact.diagnosis.identified.local_laws import LAWS
-from vibroimpact.diagnosis.identified.search import _leading
+from vibroimpact.diagnosis.identified.search import leading
 from vibroimpact.diagnosis.identified.trial import LocalTerm, Trial
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
@@ -112,8 +112,8 @@ def test_of_places_that_explain_alike_the_first_stated_leads():
         return SimpleNamespace(point=SimpleNamespace(terms=terms), apart=gain)
 
     rows = [found("drag", "a", 1.95), found("friction", "a", 1.9), found("friction", "b", 2.0)]
-    assert _leading(rows, None) is rows[1]
-    assert _leading([found("friction", "a", 1.0), rows[2]], None) is rows[2]
+    assert leading(rows, None) is rows[1]
+    assert leading([found("friction", "a", 1.0), rows[2]], None) is rows[2]
 
 
 def test_sliders_that_carry_the_structure_are_no_model():

@@ -16,7 +16,7 @@ from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_ca
 from vibroimpact.diagnosis.diagnose import run_diagnosis
 from vibroimpact.diagnosis.identified.identified import identified
 from vibroimpact.diagnosis.identified.levels import levels_of, naming_split
-from vibroimpact.diagnosis.identified.places import fit_family
+from vibroimpact.diagnosis.identified.linear_models import fit_family
 from vibroimpact.diagnosis.identified.records import usable_records
 from vibroimpact.diagnosis.identified.stated import own_units
 from vibroimpact.diagnosis.identified.structure_file import model_of

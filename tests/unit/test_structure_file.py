@@ -10,7 +10,7 @@ from tests import two_masses
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.diagnosis.identified.local_laws import LAWS
-from vibroimpact.diagnosis.identified.stated import default_places, with_laws, with_places
+from vibroimpact.diagnosis.identified.stated import check_names, default_places, laws_of
 from vibroimpact.diagnosis.identified.structure_file import (
     model_from,
     model_of,
@@ -152,7 +152,7 @@ def test_unknown_channel_names_are_listed_with_known_ones():
         additions=["clearance.elsewhere"],
     )
     with pytest.raises(ConfigError) as error:
-        with_places(stated, two_masses.campaign("nothing", periods=2))
+        check_names(stated, two_masses.campaign("nothing", periods=2))
     places = [
         problem.removeprefix("structure.").split(" is ")[0] for problem in error.value.problems
     ]
@@ -166,9 +166,9 @@ def test_unknown_channel_names_are_listed_with_known_ones():
 
 
 def test_laws_are_tried_at_the_places_that_change():
-    found = with_laws(MeasuredStructure(kind="identified"), ["joint", "root"])
-    assert "clearance.joint" in found.candidates and "clearance.root" in found.candidates
-    assert {name.partition(".")[2] for name in found.additions} == {"joint"}
+    candidates, additions = laws_of(MeasuredStructure(kind="identified"), ["joint", "root"])
+    assert "clearance.joint" in candidates and "clearance.root" in candidates
+    assert {name.partition(".")[2] for name in additions} == {"joint"}
 
 
 def test_places_are_channel_pairs_and_channels_to_ground():

@@ -42,9 +42,12 @@ class ConfigError(Exception):
         self.problems = problems
 
 
-def sentence(error: Mapping[str, Any], data: Any) -> str:
-    """Return "place = value rule: remedy" for one pydantic error of the mapping `data`."""
-    path, known, value = _resolve(error["loc"], data)
+def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config) -> str:
+    """Return "place = value rule: remedy" for one pydantic error of the mapping `data`.
+
+    whole: the section that it states.
+    """
+    path, known, value = _resolve(error["loc"], data, whole)
     place = _place(path)
     if error["type"] == UNKNOWN:
         close = get_close_matches(str(error["loc"][-1]), known, n=1)
@@ -91,17 +94,19 @@ def _place(path: list) -> str:
     ).removeprefix(".")
 
 
-def _resolve(location: tuple, data: Any) -> tuple[list, list[str], Any]:
+def _resolve(
+    location: tuple, data: Any, whole: type[Section] = Config
+) -> tuple[list, list[str], Any]:
     """Return (path of keys and indices, keys known beside its last part, value) for a pydantic
     location in `data`.
 
     Pydantic's location also names the member of a union. Such a part is no key of the data and is
     left out of the path.
     """
-    model: type[Section] | None = Config
+    model: type[Section] | None = whole
     annotation: Any = None
     path: list = []
-    known = list(Config.model_fields)
+    known = list(whole.model_fields)
     for index, part in enumerate(location):
         in_data = (isinstance(data, dict) and part in data) or (
             isinstance(data, (list, tuple)) and isinstance(part, int) and part < len(data)

@@ -1,5 +1,5 @@
-"""The evidence of a diagnosis without a model: where forces are missing, the law that the records
-demand, and the error of the free response.
+"""What is shown of a diagnosis without a model: spectra of the steady response, where forces are
+missing, the law that the records demand, and the error of the free response.
 
 Of linear modes a held run has a closed form, and so have the forces that the sensors demand.
 """
@@ -8,20 +8,67 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from vibroimpact.integration.steady_response import steady_elements
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
 from ..constants import STRENGTH
-from ..evidence import HOLDING_BANDS, LAW_STRETCHES, PLACES, SERIES, STATES
-from .spectra import PERIODS_BEFORE, steady_lines
+from ..evidence import FINER, HOLDING_BANDS, LAW_STRETCHES, PLACES, SERIES, STATES
+from ..free_runs import SEEDS, FreeRuns
 from .trial import LocalTerm, Records, Trial
 
-FINER = 4  # times the sampling of the band, as a waveform is drawn
+SEED = 7  # of the noise
+PERIODS_BEFORE = 4  # the period that is compared: the transient is gone
 SHOWN = 200  # samples of a waveform
+
+
+def steady_lines(trial: Trial, records: Records) -> list[np.ndarray]:
+    """Return [(channel, line)] of the excited lines of every level.
+
+    Raises ValueError where the model has no bounded motion at some level.
+    """
+    lines = records.predict(trial, PERIODS_BEFORE)
+    if lines is None:
+        raise ValueError(
+            f"{trial.name}: the completed model has no bounded motion at some level that it was not"
+            " fitted to: leave that level out."
+        )
+    return [own[:, int(records.mean) :] for own in lines]
+
+
+def free_runs(before: Trial, after: Trial, records: Records) -> FreeRuns:
+    """Return the FreeRuns of two trials, at the excited lines of the lowest level.
+
+    The measured scatter between periods is drawn for each of SEEDS runs: their distance is the
+    floor. Levels with other lines are interpolated.
+    """
+    own = list(zip(records.levels, records.excited, strict=True))
+    grids = [level.frequency[lines] for level, lines in own]
+    scatter = [np.nan_to_num(level.noise[:, lines]) for level, lines in own]
+    draw = np.random.default_rng(SEED)
+
+    def psd(values: Sequence[np.ndarray]) -> np.ndarray:
+        """Return (record, channel, line): one-sided PSD of complex amplitudes."""
+        rows = zip(values, grids, records.levels, strict=True)
+        power = [(grid, 2.0 * np.abs(own) ** 2 / level.frequency[1]) for own, grid, level in rows]
+        return np.array([[np.interp(grids[0], grid, row) for row in own] for grid, own in power])
+
+    def noisy(lines: np.ndarray, size: np.ndarray) -> np.ndarray:
+        real, imaginary = draw.standard_normal((2, *lines.shape)) / np.sqrt(2.0)
+        return lines + size * (real + 1j * imaginary)
+
+    def runs(trial: Trial) -> np.ndarray:
+        """Return (record, seed, channel, line) of a trial."""
+        rows = list(zip(steady_lines(trial, records), scatter, strict=True))
+        return np.stack([psd([noisy(*row) for row in rows]) for _ in range(SEEDS)], axis=1)
+
+    first = runs(before)
+    last = first if after is before else runs(after)
+    measured = psd([level.response[:, lines] for level, lines in own])
+    return FreeRuns(grids[0], measured, first, last, psd(scatter).mean(axis=(0, 2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,45 +104,35 @@ def evidence_of(
     free_error and waveform are of the free response: no sensor is held. Where the response is no
     motion (mechanical False), what has units of mechanics is left out.
     """
-    names = before.modes.names, before.modes.kinds
     held = np.array([level.split == "holdout" for level in records.levels])
-    texts = {
-        "channel_name": ("channel", names[0]),
-        "channel_kind": ("channel", names[1]),
-        "record_name": ("stretch", [level.name for level in records.levels]),
-        "split": ("stretch", [level.split for level in records.levels]),
-        "part": ("stretch", np.where(held, "apart", "fitted")),
-    }
+    rows = [(level.name, level.split, level.load_rms) for level in records.levels]
+    names, splits, loads = (np.array(column, object) for column in zip(*rows, strict=True))
     out = xr.Dataset(
-        {name: (dim, np.array(values, object)) for name, (dim, values) in texts.items()},
+        {
+            "channel_name": ("channel", np.array(before.modes.names, object)),
+            "channel_kind": ("channel", np.array(before.modes.kinds, object)),
+            "record_name": ("stretch", names),
+            "split": ("stretch", splits),
+            "part": ("stretch", np.where(held, "apart", "fitted").astype(object)),
+            "load": ("stretch", loads.astype(float), {"units": "N"}),
+        },
         coords={"state": list(STATES), "series": list(SERIES)},
         attrs={"before": before.name, "after": after.name, "held": "nothing"},
-    )
-    loads = [level.load_rms for level in records.levels]
-    out = out.assign(load=("stretch", loads, {"units": "N"}))
-    out = out.assign({name: campaign[name].variable for name in PLACES if name in campaign})
+    ).assign({name: campaign[name].variable for name in PLACES if name in campaign})
     if not mechanical:
         return out.assign_attrs(left_out="the response is no motion, and forces are not in N")
-    levels = _levels(records, before, after)
-    out = out.assign(_free(levels, held)).assign(_holding(levels, before.modes))
-    return out.assign(_law(levels, records, after))
-
-
-def _levels(records: Records, before: Trial, after: Trial) -> list[_Level]:
-    """Return the _Level of every level."""
-    out = []
-    states = [steady_lines(trial, records) for trial in (before, after)]
-    for number, level in enumerate(records.levels):
-        lines = np.flatnonzero(level.excited(records.band_Hz))
+    levels, states = [], [steady_lines(trial, records) for trial in (before, after)]
+    for number, (level, lines) in enumerate(zip(records.levels, records.excited, strict=True)):
         frequency = level.frequency[lines]
         series = [level.response[:, lines], *(state[number] for state in states)]
         motions = np.array(series) / before.modes.sensor_factors(frequency)
         s = 2j * np.pi * frequency
-        out.append(_Level(lines, frequency, s, level.force[lines], motions))
-    return out
+        levels.append(_Level(lines, frequency, s, level.force[lines], motions))
+    out = out.assign(_free(levels, held)).assign(_holding(levels, before.modes))
+    return out.assign(_law(levels, records, after))
 
 
-def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict:
+def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict[str, Any]:
     """Return the RMS of the holding force by band: (1/c + Y) u = v_s - v of linear modes with the
     mobility Y between the sensors, v_s measured and v of the free response.
     """
@@ -120,7 +157,7 @@ def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict:
     }
 
 
-def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict:
+def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict[str, Any]:
     """Return the force against the motion at each place that channels show, as the sensors demand
     it of the completed modes and as the added laws have it; the modes as given have no element.
     """
@@ -130,26 +167,36 @@ def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict:
     order = np.linspace(0, len(levels) - 1, LAW_STRETCHES).round().astype(int)
     chosen = list(dict.fromkeys(order.tolist()))
     samples = min(levels[number].samples for number in chosen)
-    shape = (2, len(chosen), len(terms), samples)  # force and motion
-    demanded, model, known = np.zeros(shape), np.zeros(shape), np.zeros(shape[1:3])
     lowest = levels[0].motions
     miss = np.linalg.norm(lowest[1] - lowest[0], axis=1) / np.linalg.norm(lowest[0], axis=1)
-    for row, number in enumerate(chosen):
-        *both, known[row] = _demanded(levels[number], after, terms, miss)
-        demanded[:, row] = levels[number].series(np.array(both), samples)
-        own = np.array(_modelled(levels[number], records, number, after, terms))
-        model[:, row] = levels[number].series(own, samples)
+    places = [term.place for term in after.terms for _ in range(term.effect.elements)]
+    elements = [np.flatnonzero([place == name for place in places]) for name in terms]
+    runs = {
+        number: (pushed[:, lane], moved[:, lane])
+        for part, _, moved, pushed in records.runs(after, PERIODS_BEFORE)
+        for lane, number in enumerate(part)
+    }
+    demanded, model, known = [], [], []
+    for level, run in ((levels[number], runs[number]) for number in chosen):
+        force, motion, share = _demanded(level, after, terms, miss)
+        pushed, moved = (each[:, level.lines] for each in run)
+        laws = [pushed[rows].sum(axis=0) for rows in elements]
+        law = np.array((laws, [moved[rows[0]] for rows in elements]))
+        demanded.append(level.series(np.array((force, motion)), samples))
+        model.append(level.series(law, samples))
+        known.append(share)
     dims = ("law_stretch", "place", "sample")
-    out: dict = {
+    out: dict[str, Any] = {
         "place_name": ("place", np.array(list(terms), object)),
         "owner_name": ("place", np.array(list(terms), object)),
         "law_of_stretch": ("law_stretch", np.array(chosen)),
-        "resolution": (dims[:2], known),
+        "resolution": (dims[:2], np.array(known)),
     }
     for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
-        states = np.stack([np.full_like(model[part], np.nan), model[part]])
-        out[f"demanded_{name}"] = dims, demanded[part].astype(np.float32), {"units": unit}
-        out[f"model_{name}"] = ("state", *dims), states.astype(np.float32), {"units": unit}
+        told, own = (np.array(rows, np.float32)[:, part] for rows in (demanded, model))
+        both = np.stack([np.full_like(own, np.nan), own])
+        out[f"demanded_{name}"] = dims, told, {"units": unit}
+        out[f"model_{name}"] = ("state", *dims), both, {"units": unit}
     return out
 
 
@@ -164,9 +211,8 @@ def _demanded(
     """
     modes, hidden = after.modes, [term for term in after.terms if term.place not in terms]
     columns = np.stack([own.along(modes) for own in (*terms.values(), *hidden[:1])], axis=1)
-    receptance = modes.receptance(level.frequency)
+    receptance, measured = modes.receptance(level.frequency), level.motions[0]
     free = modes.shapes.T @ (modes.shapes[:, [modes.drive]] * receptance * level.force)
-    measured = level.motions[0]
     inverse = np.linalg.pinv(np.einsum("mc,mp,ml->lcp", modes.shapes, columns, receptance))
     force = np.einsum("lpc,cl->pl", inverse, measured - free)
     wrong = np.einsum("lpc,c,cl->p", np.abs(inverse) ** 2, miss**2, np.abs(measured) ** 2)
@@ -175,21 +221,7 @@ def _demanded(
     return force[: len(terms)], motion, np.maximum(known[: len(terms)], 0.0)
 
 
-def _modelled(level: _Level, records: Records, number: int, after: Trial, terms) -> tuple:
-    """Return (force, motion) (place, line) of the added laws, of all of a place together."""
-    model, _ = after.model()
-    part, drive, samples = next(group for group in records.groups if number in group[0])
-    drive, samples = records.with_offsets(after, part, drive, samples)
-    motion, force = (
-        values[:, part.index(number)][:, level.lines]
-        for values in steady_elements(model, drive, samples, PERIODS_BEFORE)
-    )
-    places = [term.place for term in after.terms for _ in range(term.effect.elements)]
-    own = [[row for row, place in enumerate(places) if place == name] for name in terms]
-    return [force[rows].sum(axis=0) for rows in own], [motion[rows[0]] for rows in own]
-
-
-def _free(levels: Sequence[_Level], held: np.ndarray) -> dict:
+def _free(levels: Sequence[_Level], held: np.ndarray) -> dict[str, Any]:
     """Return the errors of the free response, the highest held-out level first, and the waveform of
     the channel that gains most there, as velocities.
     """

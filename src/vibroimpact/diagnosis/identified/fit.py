@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.modal_fit import Ridge, pack, unpack
-from vibroimpact.least_squares import Minimum, differences, minimise
+from vibroimpact.least_squares import Minimum, minimise_by_differences
 
+from ..completed import NINETY_SD
 from ..constants import INDEPENDENT
-from .trial import Records, Trial
+from .trial import LocalTerm, Records, Trial
 
 # Of the error at the start, per factor of e of a positive value from its start: a fixed ridge holds
 # a law where it began once the error is as small as the ridge.
@@ -20,7 +21,6 @@ PARTICIPATION_RIDGE = 0.003
 STEP = 1.0e-3  # of differences
 FREQUENCY_STEP = 2.0e-5
 LARGEST = 30.0  # logarithm of a positive value over its start
-NORMAL_90 = 1.645  # sigma: half width of the 90 % interval of a normal law
 SMALL = 1.0e-4  # step of derivatives of what is told
 
 
@@ -29,7 +29,6 @@ class Fitted:
     """A Trial at the end of its fit, named point as that of any fit is."""
 
     point: Trial
-    records: Records
     fit: TrialFit
     minimum: Minimum
 
@@ -43,99 +42,71 @@ class TrialFit:
     """The relative error of every channel and level as a function of values, with ridges that hold
     what is not seen.
 
-    values: those of the modes (modal_fit.pack), then for each term its free participation and its
-    law's values over their start (logarithms where positive), then the offset of every level where
-    the mean counts.
+    begin (value,): at the start: those of the modes (modal_fit.pack), then for each term its free
+    participation and its law's values over their start (logarithms where positive), then the offset
+    of every level where the mean counts. steps (value,): of differences. held (2, value of a term):
+    ridge, and the size of the value. places [(participation, law)]: the slices of each term; the
+    former may be empty. Raises ValueError where the start has no bounded motion.
     """
 
     def __init__(self, start: Trial, records: Records):
-        self.start, self.records = start, records
-        self.ridge, self.count = Ridge(start.modes), start.modes.modes
-        self.sizes = [np.maximum(np.abs(term.values), 1.0e-300) for term in start.terms]
-        self.counted = records.levels if records.mean else ()
+        self.start, self.records, self.ridge = start, records, Ridge(start.modes)
+        cost = records.cost(start)
+        if not np.isfinite(cost):
+            raise ValueError(f"{start.name}: no bounded motion at some level.")
+        law_ridge, modes, count = LAW_RIDGE * np.sqrt(cost), start.modes, start.modes.modes
+        begin, steps, held = [pack(modes)], [np.full(pack(modes).size, STEP)], []
+        steps[0][:count] = FREQUENCY_STEP
+        drive = modes.shapes[~modes.residual, modes.drive]
+        steps[0][2 * count :] = STEP * np.sqrt(np.mean(drive**2))
+        self.places: list[tuple[slice, slice]] = []
+        for term in start.terms:
+            first = law = sum(part.size for part in begin)
+            if term.participation is not None:
+                size, law = np.linalg.norm(term.participation), first + count
+                begin.append(term.participation)
+                steps.append(np.full(count, STEP * size))
+                held.append(np.tile([[PARTICIPATION_RIDGE], [size]], count))
+            positive = term.effect.positive
+            begin.append(np.where(positive, 0.0, np.sign(term.values)))
+            steps.append(np.full(positive.size, STEP))
+            held.append(np.array([law_ridge * positive, np.ones(positive.size)]))
+            self.places.append((slice(first, law), slice(law, law + positive.size)))
+        self.counted = [level.name for level in records.levels if records.mean]
         self.unit = max(abs(level.force[0]) for level in records.levels) or 1.0
-        self.scales = records.scales()
-        cost = records.cost(records.predict(start))
-        self.law_ridge = LAW_RIDGE * (np.sqrt(cost) if np.isfinite(cost) else 1.0)
-        self.begin = self.values(start)
-
-    def values(self, trial: Trial) -> np.ndarray:
-        """Return (value,) of a trial."""
-        parts = [pack(trial.modes)]
-        for term, size in zip(trial.terms, self.sizes, strict=True):
-            own = np.where(term.effect.positive, np.log(np.abs(term.values) / size), 0.0)
-            parts += [] if term.participation is None else [term.participation]
-            parts.append(np.where(term.effect.positive, own, term.values / size))
-        offsets = [trial.offsets.get(level.name, 0.0) / self.unit for level in self.counted]
-        return np.concatenate([*parts, offsets])
-
-    def places(self) -> list[tuple[slice, slice]]:
-        """Return [(participation, values of the law)] of each term; the former may be empty."""
-        out, at = [], pack(self.start.modes).size
-        for term, size in zip(self.start.terms, self.sizes, strict=True):
-            law = at + (0 if term.participation is None else self.count)
-            out.append((slice(at, law), slice(law, law + size.size)))
-            at = law + size.size
-        return out
+        offsets = [start.offsets.get(name, 0.0) / self.unit for name in self.counted]
+        self.begin = np.concatenate([*begin, offsets])
+        self.steps = np.concatenate([*steps, np.full(len(offsets), STEP)])
+        self.held = np.concatenate(held, axis=1)
 
     def trial(self, values: np.ndarray) -> Trial:
-        """Return the Trial of values."""
-        terms = []
-        rows = zip(self.start.terms, self.sizes, self.places(), strict=True)
-        for term, size, (free, law) in rows:
-            own = np.clip(values[law], -LARGEST, LARGEST)
-            terms.append(
-                replace(
-                    term,
-                    participation=None if term.participation is None else values[free],
-                    values=size * np.where(term.effect.positive, np.exp(own), values[law]),
-                )
-            )
-        names = [level.name for level in self.counted]
-        last = values[values.size - len(names) :] * self.unit
-        modes = unpack(values, self.start.modes)
-        return Trial(modes, tuple(terms), dict(zip(names, map(float, last), strict=True)))
+        """Return the Trial of values (value,)."""
+        terms = [
+            self._term(term, values[free], values[law])
+            for term, (free, law) in zip(self.start.terms, self.places, strict=True)
+        ]
+        last = values[values.size - len(self.counted) :] * self.unit
+        offsets = dict(zip(self.counted, map(float, last), strict=True))
+        return Trial(unpack(values, self.start.modes), tuple(terms), offsets)
+
+    def _term(self, term: LocalTerm, free: np.ndarray, law: np.ndarray) -> LocalTerm:
+        """Return a term with its participation (mode,) or none, and its law's values."""
+        factor = np.where(term.effect.positive, np.exp(np.clip(law, -LARGEST, LARGEST)), law)
+        values = np.maximum(np.abs(term.values), 1.0e-300) * factor
+        return replace(term, participation=free if free.size else None, values=values)
 
     def error(self, values: np.ndarray) -> np.ndarray | None:
-        """Return (residual,): relative errors, real and imaginary, then ridges; None where there is
-        no bounded motion.
+        """Return (residual,): relative errors, real and imaginary, then ridges of the modes, of
+        participations and of positive values; None where there is no bounded motion.
         """
         predicted = self.records.predict(self.trial(values))
         if predicted is None:
             return None
-        rows = zip(predicted, self.records.levels, self.scales, strict=True)
-        missed = np.concatenate(
-            [
-                ((lines - self.records.measured(level)) / scale).ravel()
-                for lines, level, scale in rows
-            ]
-        )
-        return np.concatenate(
-            [missed.real, missed.imag, self.ridge.error(values), *self._held(values)]
-        )
-
-    def _held(self, values: np.ndarray) -> list[np.ndarray]:
-        """Return the ridges of participations and of positive values."""
-        out = []
-        for term, (free, law) in zip(self.start.terms, self.places(), strict=True):
-            if term.participation is not None:
-                size = np.linalg.norm(term.participation)
-                out.append(PARTICIPATION_RIDGE * values[free] / size)
-            away = (values[law] - self.begin[law]) * term.effect.positive
-            out.append(self.law_ridge * away)
-        return out
-
-    def steps(self) -> np.ndarray:
-        """Return (value,) steps of differences."""
-        modes = self.start.modes
-        steps = np.full(self.begin.size, STEP)
-        steps[: self.count] = FREQUENCY_STEP
-        drive = modes.shapes[~modes.residual, modes.drive]
-        steps[2 * self.count : pack(modes).size] = STEP * np.sqrt(np.mean(drive**2))
-        for term, (free, _) in zip(self.start.terms, self.places(), strict=True):
-            if term.participation is not None:
-                steps[free] = STEP * np.linalg.norm(term.participation)
-        return steps
+        missed = np.concatenate([each.ravel() for each in self.records.missed(predicted)])
+        first = self.ridge.start.size
+        ridge, size = self.held
+        held = ridge * values[first : first + size.size] / size
+        return np.concatenate([missed.real, missed.imag, self.ridge.error(values), held])
 
 
 def fitted(start: Trial, records: Records, passes: int) -> Fitted:
@@ -144,15 +115,8 @@ def fitted(start: Trial, records: Records, passes: int) -> Fitted:
     Raises ValueError where the start has no bounded motion.
     """
     fit = TrialFit(start, records)
-
-    def evaluate(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        error = fit.error(values)
-        if error is None:
-            raise ValueError(f"{start.name}: no bounded motion at some level.")
-        return error, differences(fit.error, values, error, fit.steps())
-
-    minimum = minimise(evaluate, fit.begin, passes, error_of=fit.error)
-    return Fitted(fit.trial(minimum.values), records, fit, minimum)
+    minimum = minimise_by_differences(fit.error, fit.begin, fit.steps, passes)
+    return Fitted(fit.trial(minimum.values), fit, minimum)
 
 
 def estimates(own: Fitted) -> list[dict[str, dict[str, Any]]]:
@@ -166,19 +130,18 @@ def estimates(own: Fitted) -> list[dict[str, dict[str, Any]]]:
     counted = max(INDEPENDENT * own.minimum.error.size, 1.0)
     spread = np.linalg.pinv(slope.T @ slope) * own.cost / counted
     out = []
-    for index, (term, (_, law)) in enumerate(zip(own.point.terms, own.fit.places(), strict=True)):
-        centre = term.effect.summary(term.values)
-        slopes = []
+    for index, (term, (_, law)) in enumerate(zip(own.point.terms, own.fit.places, strict=True)):
+        told, slopes = term.effect.summary(term.values), []
         for number in range(law.start, law.stop):
             moved = own.fit.trial(values + SMALL * (np.arange(values.size) == number))
             changed = term.effect.summary(moved.terms[index].values)
-            slopes.append([(changed[name][0] - centre[name][0]) / SMALL for name in centre])
+            slopes.append([(changed[name][0] - told[name][0]) / SMALL for name in told])
         variance = np.einsum("vn,vw,wn->n", np.array(slopes), spread[law, law], np.array(slopes))
-        half = NORMAL_90 * np.sqrt(np.maximum(variance, 0.0))
+        half = NINETY_SD * np.sqrt(np.maximum(variance, 0.0))
         out.append(
             {
                 name: {"value": value, "unit": unit, "low": value - reach, "high": value + reach}
-                for (name, (value, unit)), reach in zip(centre.items(), half, strict=True)
+                for (name, (value, unit)), reach in zip(told.items(), half, strict=True)
             }
         )
     return out

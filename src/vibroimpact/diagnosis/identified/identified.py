@@ -18,17 +18,23 @@ from vibroimpact.spectra.periodic_lines import LevelLines
 from ..decision import Decision
 from ..free_runs import FreeRuns
 from ..search import Hypothesis
-from .evidence import evidence_of
-from .fit import Fitted, estimates
-from .levels import levels_of, naming_split, noise_rows
-from .modes import LinearModels, Sensors, linear_errors, linear_models
-from .places import fit_family, ranked_places, tried_places
+from .evidence import PERIODS_BEFORE, evidence_of, free_runs, steady_lines
+from .fit import Fitted, estimates, fitted
+from .levels import levels_of, naming_split, noise_row
+from .linear_models import (
+    LinearModels,
+    fit_family,
+    linear_errors,
+    linear_models,
+    ranked_places,
+    row_of,
+    tried_places,
+)
 from .records import Rows, along_force, refuse, repeating, usable_records
-from .search import Log, Setting, refitted
-from .spectra import PERIODS_BEFORE, free_runs, steady_lines
-from .stated import default_band, own_units, with_laws, with_places
-from .trial import Records, Trial
-from .updated_model import configuration, configuration_text
+from .search import PASSES, Log, Setting
+from .stated import check_mean, check_names, default_band, laws_of, own_units, places_of
+from .trial import LocalTerm, Records, Trial
+from .updated_model import configuration_text, location
 
 MISSED = 0.5  # of the response of the lowest level: a linear model that misses more is none
 PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "error_completed")
@@ -58,18 +64,25 @@ class Identified:
         low, high = self.everything.band_Hz
         return max(low, 0.01 * high), high
 
+    @property
+    def fitted_levels(self) -> list[LevelLines]:
+        """Return the levels that are fitted once a name stands."""
+        return [level for level in self.everything.levels if level.split == "fit"]
+
     def completed(self, decision: Decision, rows: Rows) -> Decision:
         """Return the Decision with its best hypothesis fitted to all fitted levels.
 
         Raises Refused where it has no bounded motion at some level.
         """
         (best, chance), *others = decision.ranked
-        levels = [level for level in self.everything.levels if level.split == "fit"]
+        records = replace(self.setting.fitted, levels=self.fitted_levels)
         try:
-            best = refitted(best, replace(self.setting.fitted, levels=levels), self.everything)
-            steady_lines(_trial(best), self.everything)
+            own = fitted(cast(Trial, best.point), records, PASSES)
+            own = replace(own, point=self.everything.with_offsets(own.point))
+            steady_lines(own.point, self.everything)
         except ValueError as error:
             refuse(str(error), rows)
+        best = replace(best, fit=cast(Any, own))
         return replace(decision, ranked=((best, chance), *others))
 
     def states(self, chosen: Hypothesis | None) -> tuple[Trial, Trial]:
@@ -77,7 +90,7 @@ class Identified:
         chosen: None where nothing is completed.
         """
         given = Trial(self.linear.base)
-        return given, given if chosen is None else _trial(chosen)
+        return given, given if chosen is None else cast(Trial, chosen.point)
 
     def free_runs(self, chosen: Hypothesis | None) -> FreeRuns:
         """Return the FreeRuns before and after."""
@@ -96,10 +109,10 @@ class Identified:
 
     def model_text(self, trial: Any, sentence: str) -> str:
         """Return the YAML text of the configuration of a Trial."""
-        band = self.everything.band_Hz
         loads = [level.load_rms for level in self.everything.levels]
-        values = configuration("identified", trial, self.setting.places, band, loads)
-        return configuration_text(values, sentence)
+        return configuration_text(
+            trial, self.setting.places, self.everything.band_Hz, loads, sentence
+        )
 
     def evidence(self, chosen: Hypothesis | None) -> xr.Dataset:
         """Return the evidence before and after, see evidence.evidence_of; with place_error
@@ -108,9 +121,8 @@ class Identified:
         """
         places, (before, after) = self.setting.ranking, self.states(chosen)
         out = evidence_of(self.campaign, self.everything, before, after, not self.units)
-        shown = [term.place for term in after.terms if term.place in places]
-        place = [*shown, *places][0]
-        levels = [level for level in self.everything.levels if level.split == "fit"]
+        place = [*(term.place for term in after.terms if term.place in places), *places][0]
+        levels = self.fitted_levels
         family = fit_family(before.modes, places[place].row, levels, self.everything.band_Hz)
         return out.assign_coords(
             ranked_place=list(places), fitted_level=[level.name for level in levels]
@@ -125,8 +137,8 @@ class Identified:
         and channel by the modes of the lowest level, those identified again, the completed model.
         """
         everything, rows = self.everything, []
-        lines = everything.predict(self.states(chosen)[1], PERIODS_BEFORE)
-        for level, completed in zip(everything.levels, everything.errors(lines), strict=True):
+        errors = everything.errors(self.states(chosen)[1], PERIODS_BEFORE)
+        for level, completed in zip(everything.levels, errors, strict=True):
             linear, again = (
                 linear_errors(modes, level, everything.band_Hz)
                 for modes in (self.linear.base, self.linear.again[level.name])
@@ -145,40 +157,38 @@ def _number(name: str) -> int | float | str:
     return name if not numbers else int(numbers[0]) if numbers[0].is_integer() else numbers[0]
 
 
-def _trial(hypothesis: Hypothesis) -> Trial:
-    """Return the Trial of a Hypothesis."""
-    return cast(Trial, hypothesis.point)
-
-
 def identified(
     campaign: xr.Dataset | str | Path, stated: MeasuredStructure, log: Log = lambda text: None
 ) -> tuple[Identified, Rows]:
     """Return (Identified, rows of all checks) of a campaign Dataset or the path of its file.
 
     Raises Refused with the sentence why no law can be told, ConfigError for channels and places
-    that are stated and not there.
+    that are stated and not there, and for a mean that the channel at the force does not show.
     """
     usable, rows, measured = usable_records(campaign)
-    stated = with_places(stated, usable)
-    usable, drive = along_force(usable, measured, stated.drive, rows)
+    check_names(stated, usable)
+    usable, drive, turned = along_force(usable, measured, stated.drive, rows)
+    check_mean(stated, usable, drive)
+    # only now: the direction of a turned channel decides whether a pair is a sum or a difference
+    places = places_of(stated, usable, measured.channels[drive] if turned else None)
     excited = stated.band_Hz or transfer_band(measured)
     if excited is None:
         refuse("The force excites too few lines: give band_Hz.", rows)
+    sensors = measured.kinds, measured.channels, drive
     try:
-        lowest = _fitted(levels_of(usable))[0]
-        band = stated.band_Hz or default_band(lowest, measured.kinds, excited, measured.rate)
-        usable = _in_order(repeating(usable, band, rows))
-        sensors = Sensors(tuple(measured.channels), tuple(measured.kinds), drive)
         levels = levels_of(usable)
+        lowest = next((level for level in levels if level.split == "fit"), levels[0])
+        band = stated.band_Hz or default_band(lowest, measured.kinds, excited, measured.rate)
+        usable, levels = repeating(usable, levels, band, rows)
         linear = linear_models(levels, sensors, band, stated.residual_modes)
         if usable.attrs.get("whole_records", 0):
             levels = levels_of(usable, linear.again, band)
             linear = linear_models(levels, sensors, band, stated.residual_modes)
-        setting = _setting(stated, levels, linear, band, log)
+        setting = _setting(stated, places, levels, linear, band, log)
     except ValueError as error:
         text = str(error)
         refuse(f"{text[0].upper()}{text[1:].rstrip('.')}.", rows)
-    lowest = _fitted(levels)[0]
+    lowest = setting.fitted.levels[0]
     missed = float(np.median(linear_errors(linear.base, lowest, band)))
     if missed > MISSED:
         refuse(
@@ -187,33 +197,40 @@ def identified(
             " band_Hz, or a channel at the force may help.",
             rows,
         )
-    rows += [row for level in levels for row in noise_rows(level, band)]
+    rows += [noise_row(level, band) for level in levels]
     everything = Records(levels, band, stated.mean)
     return Identified(usable, setting, everything, own_units(usable, drive)), rows
 
 
-def _fitted(levels: Sequence[LevelLines]) -> list[LevelLines]:
-    """Return the levels that are fitted, all where none is."""
-    return [level for level in levels if level.split == "fit"] or list(levels)
-
-
-def _in_order(campaign: xr.Dataset) -> xr.Dataset:
-    """Return the campaign with its records in the order of their levels."""
-    names = [str(name) for name in campaign["record_name"].values]
-    return campaign.isel(record=[names.index(level.name) for level in levels_of(campaign)])
-
-
-def _setting(stated, levels, linear, band, log) -> Setting:
+def _setting(
+    stated: MeasuredStructure,
+    places: dict[str, dict[str, float]],
+    levels: Sequence[LevelLines],
+    linear: LinearModels,
+    band: Sequence[float],
+    log: Log,
+) -> Setting:
     """Return the Setting of a search."""
     named, tried = naming_split(levels)
-    ranking = ranked_places(stated.places, linear.base, named, band)
+    ranking = ranked_places(places, linear.base, named, band)
     log("places: " + ", ".join(f"{place} {own.error:.3g}" for place, own in ranking.items()))
-    stated = with_laws(stated, tried_places(ranking))
+    candidates, additions = laws_of(stated, tried_places(ranking))
+
+    def term(name: str) -> LocalTerm:
+        law, _, place = name.partition(".")
+        own = places.get(place)
+        row = None if own is None else row_of(own, linear.base.names)
+        return LocalTerm(law, place, row, location=location(place, own))
+
+    def terms(stated: Sequence[str]) -> list[LocalTerm]:
+        """Return those that can act: a law where no mode moves has no size to start from."""
+        return [own for own in map(term, stated) if own.row is None or own.place in ranking]
+
     return Setting(
-        stated.places,
+        places,
         ranking,
-        [name for name in stated.candidates if name.partition(".")[2] in ranking],
-        stated.additions,
+        terms(candidates),
+        terms(additions),
         linear,
         Records(named, band, stated.mean, stated.emphasis),
         Records(tried, band, stated.mean),

@@ -71,23 +71,22 @@ class LocalLaw:
         return {name: (float(value), unit) for (name, unit), value in pairs}
 
 
-def _signed(size: float) -> list[Values]:
-    """Return start values of a coefficient of either sign."""
-    return [np.array([factor * size]) for factor in (0.03, -0.03, 0.3, -0.3)]
-
-
 def _pairs(first: Iterable[float], second: Iterable[float]) -> list[Values]:
     """Return every pair of two lists of values."""
     return [np.array([one, other]) for one in first for other in second]
 
 
 def _power(name: str, unit: str, column: str, power: int) -> LocalLaw:
-    """Return the law of a force with a power of the displacement."""
+    """Return the law of a force with a power of the displacement, its coefficient of either
+    sign.
+    """
     return LocalLaw(
         name,
         {name: unit},
         lambda v: {column: v},
-        lambda s: _signed(s.stiffness / s.high ** (power - 1)),
+        lambda s: [
+            np.array([f * (s.stiffness / s.high ** (power - 1))]) for f in (0.03, -0.03, 0.3, -0.3)
+        ],
         signed=(name,),
     )
 
@@ -110,26 +109,17 @@ def _sliders(count: int) -> LocalLaw:
             for slip in slips
         ]
 
-    def told(values: Values) -> dict[str, tuple[float, str]]:
-        stick, force = values[:count].sum(), values[:count] @ values[count:]
-        return {
-            "force": (float(force), "N"),
-            "stick_stiffness": (float(stick), "N/m"),
-            "slip_displacement": (float(force / stick), "m"),
-        }
+    def columns(values: Values) -> dict[str, Values]:
+        stick, slip = values[:count], values[count:]
+        return {"stiffness": -stick, "stick_stiffness": stick, "slip_limit": stick * slip}
 
-    return LocalLaw(
-        "coulomb_friction",
-        parameters,
-        lambda v: {
-            "stiffness": -v[:count],
-            "stick_stiffness": v[:count],
-            "slip_limit": v[:count] * v[count:],
-        },
-        starts,
-        told=told,
-        elements=count,
-    )
+    def told(values: Values) -> dict[str, tuple[float, str]]:
+        stick, force = float(values[:count].sum()), float(values[:count] @ values[count:])
+        names = ("force", force, "N"), ("stick_stiffness", stick, "N/m")
+        told = (*names, ("slip_displacement", force / stick, "m"))
+        return {name: (value, unit) for name, value, unit in told}
+
+    return LocalLaw("coulomb_friction", parameters, columns, starts, told=told, elements=count)
 
 
 LAWS = {

@@ -21,10 +21,10 @@ from vibroimpact.campaign.signals import (
     common_period,
     transfer_band,
 )
+from vibroimpact.spectra.periodic_lines import LevelLines
 
 from ..measurement.usable import Refused, checked_campaign
-from .levels import levels_of, noise_share
-from .long_records import quick_length
+from .levels import noise_share, quick_length
 
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
 # Of the end and of the beginning of the excited band: the longer of them is kept of a record
@@ -57,7 +57,14 @@ def usable_records(
         raise Refused(" ".join(row["message"] for row in rows if row["level"] == "refuse"), rows)
     kept = _sound(whole, rows)
     measured = campaign_signals(kept)
-    _require_one_force(measured, rows)
+    for signals in measured.force:
+        sizes = np.sqrt(np.mean(np.square(np.nan_to_num(signals)), axis=-1))
+        if sizes.size > 1 and sizes[1:].max() > OTHER_FORCE * sizes[0]:
+            refuse(
+                f"Several forces act at once ({', '.join(measured.forces)}): modes are identified"
+                " under one; drive at one point.",
+                rows,
+            )
     periods = [measured.period_samples or common_period([force[0]]) for force in measured.force]
     if all(periods):
         unsettled = map(unsettled_periods, measured.response, periods)
@@ -103,28 +110,9 @@ def _sound(campaign: xr.Dataset, rows: Rows) -> xr.Dataset:
             " name.",
             rows,
         )
-    force &= _one_gap(campaign, force, rows)
-    return campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown))
-
-
-def _require_one_force(measured: CampaignSignals, rows: Rows) -> None:
-    """Raise Refused where a second force drives the structure as well."""
-    for signals in measured.force:
-        sizes = np.sqrt(np.mean(np.square(np.nan_to_num(signals)), axis=-1))
-        if sizes.size > 1 and sizes[1:].max() > OTHER_FORCE * sizes[0]:
-            refuse(
-                f"Several forces act at once ({', '.join(measured.forces)}): modes are identified"
-                " under one; drive at one point.",
-                rows,
-            )
-
-
-def _one_gap(campaign: xr.Dataset, usable: np.ndarray, rows: Rows) -> np.ndarray:
-    """Return (record,) whether a record has the gap that most usable ones have: another gap is
-    another structure.
-    """
+    # the gap that most usable records have: another gap is another structure
     gap = np.nan_to_num(campaign["gap"].values.astype(float), nan=-1.0)
-    values, counts = np.unique(gap[usable], return_counts=True)
+    values, counts = np.unique(gap[force], return_counts=True)
     chosen = values[int(np.argmax(counts))]
     if values.size > 1:
         told = "without gap" if chosen < 0.0 else f"with the gap {chosen:.4g} m"
@@ -133,7 +121,8 @@ def _one_gap(campaign: xr.Dataset, usable: np.ndarray, rows: Rows) -> np.ndarray
             " used."
         )
         rows.append(check_row("gaps", "warn", text))
-    return gap == chosen
+    force &= gap == chosen
+    return campaign.isel(record=np.flatnonzero(force), channel=np.flatnonzero(shown))
 
 
 def unsettled_periods(response: np.ndarray, period: int) -> int:
@@ -169,9 +158,9 @@ def _last_stretch(campaign: xr.Dataset, longest: int) -> xr.Dataset:
 
 def along_force(
     campaign: xr.Dataset, measured: CampaignSignals, wanted: str | None, rows: Rows
-) -> tuple[xr.Dataset, int]:
-    """Return (campaign, index of the channel at the force); that channel counts along the force,
-    since shapes are scaled by it.
+) -> tuple[xr.Dataset, int, bool]:
+    """Return (campaign, index of the channel at the force, whether it was turned); that channel
+    counts along the force, since shapes are scaled by it.
 
     wanted: its name; else the nearest channel along the force, or the nearest of all. A row is
     added where it is not at the point of the force.
@@ -192,19 +181,22 @@ def along_force(
             " then only right up to a factor; measure at the force."
         )
         rows.append(check_row("drive", "warn", text, channel=names[drive]))
-    if along[drive] < -PARALLEL:
+    turned = bool(along[drive] < -PARALLEL)
+    if turned:
         campaign = campaign.copy(deep=True)
         campaign["response"].values[:, drive] *= -1.0
         campaign["channel_direction"].values[drive] *= -1.0
-    return campaign, drive
+    return campaign, drive, turned
 
 
-def repeating(campaign: xr.Dataset, band_Hz: Sequence[float], rows: Rows) -> xr.Dataset:
-    """Return the campaign without records whose response does not repeat with the force: chaotic,
-    drifting or drowned, no law can be told by their waveform.
+def repeating(
+    campaign: xr.Dataset, levels: Sequence[LevelLines], band_Hz: Sequence[float], rows: Rows
+) -> tuple[xr.Dataset, list[LevelLines]]:
+    """Return (campaign in the order of its levels, levels) without records whose response does not
+    repeat with the force: chaotic, drifting or drowned, no law can be told by their waveform.
     """
-    lost = []
-    for level in levels_of(campaign):
+    kept = []
+    for level in levels:
         share = float(np.median(noise_share(level, band_Hz)))
         if level.periods > 1 and share > SCATTERED:
             text = (
@@ -212,6 +204,7 @@ def repeating(campaign: xr.Dataset, band_Hz: Sequence[float], rows: Rows) -> xr.
                 f" {share:.0%}. The record is left out: no waveform can be fitted to it."
             )
             rows.append(check_row("periods", "warn", text, level.name))
-            lost.append(level.name)
-    kept = ~np.isin(campaign["record_name"].values.astype(str), lost)
-    return campaign.isel(record=np.flatnonzero(kept))
+        else:
+            kept.append(level)
+    names = campaign["record_name"].values.astype(str).tolist()
+    return campaign.isel(record=[names.index(level.name) for level in kept]), kept

@@ -1,25 +1,28 @@
-"""Laws at places as hypotheses: raced, fitted, and added as long as each gains on the levels that
-were set aside for the name.
+"""Laws at places as hypotheses: started, raced, fitted, and added as long as each gains on the
+levels that were set aside for the name.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 
+from ..decision import worth
 from ..search import Hypothesis, Search
-from .fit import Fitted, fitted
-from .modes import LinearModels
-from .places import Family, row_of
-from .starts import alone, beside
-from .trial import LocalTerm, Records, Trial, with_offsets
-from .updated_model import location
+from .fit import fitted
+from .linear_models import Family, LinearModels, linear_errors, stiffness_unit
+from .local_laws import Scales
+from .trial import LocalTerm, Records, Trial
 
-RACE_PASSES, PASSES, FINAL_PASSES = 2, 20, 20
+FREE_STARTS = 6  # drawn participations of a place that no channel shows
+FREE_VALUES = 2  # start values tried with each
+SEED = 2012
+RACE_PASSES, PASSES = 2, 20
 CLOSE = 1.5  # times the least cost of a candidate's starts: the second one is fitted as well
 RACED_ON = 6.0  # times the least cost after the race: a candidate within it is fitted
 FINALISTS = 4  # at most
@@ -35,25 +38,23 @@ Log = Callable[[str], None]
 class Setting:
     """What a search needs.
 
-    places: {name: {channel: coefficient}}. ranking: {place: Family}. candidates, additions:
-    "law.place". fitted, tried: Records that candidates are fitted to, and those that their names
-    are tried on. reference: (level, channel) errors of one linear model of all levels, on both.
+    places: {name: {channel: coefficient}}. ranking: {place: Family}, fitted to the levels of
+    `fitted`. candidates, additions: terms without values. fitted, tried: Records that candidates
+    are fitted to, and those that their names are tried on.
     """
 
     places: Mapping[str, Mapping[str, float]]
     ranking: Mapping[str, Family]
-    candidates: Sequence[str]
-    additions: Sequence[str]
+    candidates: Sequence[LocalTerm]
+    additions: Sequence[LocalTerm]
     linear: LinearModels
     fitted: Records
     tried: Records
-    reference: tuple[np.ndarray, np.ndarray] = field(init=False)
 
-    def __post_init__(self) -> None:
-        joint = Trial(self.linear.joint)
-        both = (self.fitted, self.tried)
-        errors = tuple(records.errors(records.predict(joint)) for records in both)
-        object.__setattr__(self, "reference", errors)
+    @cached_property
+    def reference(self) -> list[np.ndarray]:
+        """Return the (level, channel) errors of one linear model, of `fitted` and of `tried`."""
+        return [each.errors(Trial(self.linear.joint)) for each in (self.fitted, self.tried)]
 
 
 def search_laws(setting: Setting, most: int, log: Log) -> Search:
@@ -64,101 +65,71 @@ def search_laws(setting: Setting, most: int, log: Log) -> Search:
     """
     as_given: Any = SimpleNamespace(point=Trial(setting.linear.base))
     nothing = Hypothesis(as_given, 0.0, 0.0, 0.0)
-    found: dict[str, Hypothesis] = {}
-    linear, records = setting.linear, setting.fitted
-    terms = {name: _bare(setting, name) for name in (*setting.candidates, *setting.additions)}
-    singles = {
-        name: alone(terms[name], setting.ranking[terms[name].place], linear, records)
-        for name in setting.candidates
-    }
-    _add(found, singles, setting, log)
-    best = _leading(list(found.values()), nothing)
-    others = [name for name in setting.additions if name not in _names(best)]
+    found = _raced([_alone(term, setting) for term in setting.candidates], setting, log)
+    best = leading(found, nothing)
+    others = [term for term in setting.additions if term.name not in _names(best)]
     while best is not nothing and others and most > 1:
-        own: dict[str, Hypothesis] = {}
         known = cast(Trial, best.point)
-        starts = {name: beside(known, terms[name], linear, records) for name in others}
-        _add(own, starts, setting, log)
-        found |= own
-        further = _leading(list(own.values()), nothing)
+        own = _raced([_beside(known, term, setting) for term in others], setting, log)
+        found += own
+        further = leading(own, nothing)
         if further.apart < best.apart + LEAST_GAIN:
             break
         # what gained next to nothing is not tried again; the rest may show once this law is there
-        gained = [_names(each)[-1] for each in own.values() if each.apart > best.apart + SOME_GAIN]
-        others = [name for name in gained if name not in _names(further)]
-        best = further
-    ranked = sorted(found.values(), key=lambda each: -each.gain)
-    ran = {effect for each in ranked for effect in each.point.ids}
-    failed = {terms[name].effect_id for name in singles} - ran
+        gained = [_names(each)[-1] for each in own if each.apart > best.apart + SOME_GAIN]
+        left = set(gained) - set(_names(further))
+        others, best = [term for term in others if term.name in left], further
+    ran = {effect for each in found for effect in each.point.ids}
+    failed = {term.effect_id for term in setting.candidates} - ran
+    ranked = sorted(found, key=lambda each: -each.gain)
     return Search(nothing, tuple(ranked), failed=tuple(sorted(failed)))
 
 
-def _leading(found: Sequence[Hypothesis], nothing: Hypothesis) -> Hypothesis:
+def leading(found: Sequence[Hypothesis], nothing: Hypothesis) -> Hypothesis:
     """Return the hypothesis with the largest gain on the levels set aside; of the same laws at
     places that gain about as much, the one that was stated first: the two sides of a joint move
     nearly together.
     """
-    if not found:
-        return nothing
-    best = max(found, key=lambda each: each.apart)
-    laws = _laws(best)
-    alike = [each for each in found if each.apart > best.apart - LEAST_GAIN]
-    return next(each for each in alike if _laws(each) == laws)
 
+    def laws(hypothesis: Any) -> list[str]:
+        return [term.law for term in hypothesis.point.terms]
 
-def _laws(hypothesis: Any) -> list[str]:
-    """Return the laws of its terms."""
-    return [term.law for term in hypothesis.point.terms]
+    best = max(found, key=lambda each: each.apart, default=nothing)
+    alike = (each for each in found if each.apart > best.apart - LEAST_GAIN)
+    return next((each for each in alike if laws(each) == laws(best)), nothing)
 
 
 def _names(hypothesis: Hypothesis) -> list[str]:
-    """Return the "law.place" of its terms."""
-    return [term.name.replace("@", ".", 1) for term in hypothesis.point.terms]
+    """Return the names of its terms."""
+    return [term.name for term in hypothesis.point.terms]
 
 
-def _bare(setting: Setting, name: str) -> LocalTerm:
-    """Return the term of "law.place" without values."""
-    law, _, place = name.partition(".")
-    own = setting.places.get(place)
-    row = None if own is None else row_of(own, setting.linear.base.names)
-    return LocalTerm(law, place, row, location=location(place, own))
-
-
-def _add(
-    found: dict[str, Hypothesis],
-    candidates: Mapping[str, Sequence[Trial]],
-    setting: Setting,
-    log: Log,
-) -> None:
-    """Add the Hypothesis of every candidate that has starts with a bounded motion.
+def _raced(candidates: Sequence[Sequence[Trial]], setting: Setting, log: Log) -> list[Hypothesis]:
+    """Return the Hypotheses of the candidates that have starts with a bounded motion, with their
+    gains over the linear model of all levels.
 
     All starts are raced for a few passes; those that come near the best one are fitted.
     """
-    raced = []
-    for starts in candidates.values():
+    raced, found = [], []
+    for starts in filter(None, candidates):
         tried = [fitted(start, setting.fitted, RACE_PASSES) for start in starts]
         tried.sort(key=lambda each: each.cost)
-        raced += [[each for each in tried[:2] if each.cost < CLOSE * tried[0].cost]]
-    costs = sorted(each[0].cost for each in raced if each)[:FINALISTS]
-    for each in filter(None, raced):
+        raced.append([each for each in tried[:2] if each.cost < CLOSE * tried[0].cost])
+    costs = sorted(each[0].cost for each in raced)[:FINALISTS]
+    for each in raced:
         own = each[0]
         if own.cost <= min(costs[-1], RACED_ON * costs[0]):
             finals = [fitted(start.point, setting.fitted, PASSES) for start in each]
             own = min(finals, key=lambda final: final.cost)
-        hypothesis = _hypothesis(setting, own)
-        found[own.point.name] = hypothesis
-        log(f"{own.point.name}: {hypothesis.gain:.3f}, apart {hypothesis.apart:.3f}")
-
-
-def _hypothesis(setting: Setting, own: Fitted) -> Hypothesis:
-    """Return the Hypothesis of a fit, its gains over the linear model of all levels."""
-    gains, spread = [], 0.0
-    for records, before in zip((setting.fitted, setting.tried), setting.reference, strict=True):
-        after = records.errors(records.predict(with_offsets(own.point, records), 3))
-        gains.append(float(np.log(np.mean(before**2)) - np.log(np.mean(after**2))))
-        each = np.log(before**2) - np.log(after**2)
-        spread = float(each.std() / np.sqrt(each.size))
-    return Hypothesis(cast(Any, own), gains[0], gains[1], spread)
+        gains = []
+        for records, before in zip((setting.fitted, setting.tried), setting.reference, strict=True):
+            after = records.errors(records.with_offsets(own.point), 3)
+            gains.append(float(np.log(np.mean(before**2)) - np.log(np.mean(after**2))))
+        change = np.log(before**2) - np.log(after**2)
+        spread = float(change.std() / np.sqrt(change.size))
+        found.append(Hypothesis(cast(Any, own), gains[0], gains[1], spread))
+        log(f"{own.point.name}: {gains[0]:.3f}, apart {gains[1]:.3f}")
+    return found
 
 
 def left_and_floor(setting: Setting, searched: Search) -> tuple[float, float]:
@@ -168,32 +139,74 @@ def left_and_floor(setting: Setting, searched: Search) -> tuple[float, float]:
     Of records without period a share of a change by level is shown wrongly: their start is that of
     a force repeated for ever, until it is forgotten.
     """
-    best = max(searched.hypotheses, key=lambda each: min(each.gain, each.apart), default=None)
-    reference = float(np.mean(setting.reference[1] ** 2))
-    left = np.log(reference) - (0.0 if best is None else best.apart)
-    lowest = replace(setting.fitted, levels=setting.fitted.levels[:1])
-    base = Trial(setting.linear.base)
-    missed = float(np.mean(lowest.errors(lowest.predict(base)) ** 2))
-    apart = setting.tried.errors(setting.tried.predict(base))
-    wrong = _unsettled(setting) * float(np.mean(apart**2))
-    return float(left), float(np.log(max(missed, LITTLE**2) + wrong))
-
-
-def _unsettled(setting: Setting) -> float:
-    """Return the share of the power of a change by level that records without period show
-    wrongly.
-    """
-    modes = setting.linear.base
+    best = max(searched.hypotheses, key=worth, default=None)
+    left = np.log(np.mean(setting.reference[1] ** 2)) - (0.0 if best is None else best.apart)
+    modes, fitted_to = setting.linear.base, setting.fitted
+    missed = float(np.mean(linear_errors(modes, fitted_to.levels[0], fitted_to.band_Hz) ** 2))
+    apart = float(np.mean(setting.tried.errors(Trial(modes)) ** 2))
     memory = 1.0 / np.min(modes.damping[~modes.residual])  # s, in which energy falls by e
     longs = [level for level in setting.tried.levels if level.periods == 0]
-    return max((min(memory * level.frequency[1], 1.0) for level in longs), default=0.0)
+    unsettled = max((min(memory * level.frequency[1], 1.0) for level in longs), default=0.0)
+    return float(left), float(np.log(max(missed, LITTLE**2) + unsettled * apart))
 
 
-def refitted(best: Hypothesis, records: Records, everything: Records) -> Hypothesis:
-    """Return a Hypothesis fitted to all fitted levels, its offsets found at every level.
-
-    Raises ValueError where it has no bounded motion at some level.
+def _alone(term: LocalTerm, setting: Setting) -> list[Trial]:
+    """Return [Trial]: the start of a law by itself, the best of its start values on the modes of
+    the lowest level, of the place's family, or of all levels; empty where none is bounded.
     """
-    own = fitted(cast(Any, best.point), records, FINAL_PASSES)
-    own = replace(own, point=with_offsets(own.point, everything))
-    return replace(best, fit=cast(Any, own))
+    family, linear, records = setting.ranking[term.place], setting.linear, setting.fitted
+    moved = [family.motion(number, own) for number, own in enumerate(records.frequencies)]
+    sizes, along = _scales(records, moved), family.modes.shapes @ family.row
+    # a quarter of what, taken away, would leave the structure without any stiffness there
+    softest = float(0.25 / np.sum(along**2 / family.modes.omega**2))
+    changed = float(np.max(np.abs(family.k + 1j * sizes.omega * family.c)))
+    values = term.effect.starts(replace(sizes, stiffness=min(changed, softest)))
+    terms = [replace(term, values=own) for own in values]
+    models = (linear.base, family.modes, linear.joint)
+    return _best([Trial(modes, (own,)) for modes in models for own in terms], records)
+
+
+def _beside(known: Trial, term: LocalTerm, setting: Setting) -> list[Trial]:
+    """Return [Trial]: starts of a law beside fitted ones, on their modes and on those of the lowest
+    level, or, at a place that no channel shows, with drawn participations.
+
+    Which of them leads further shows after a few passes only.
+    """
+    modes, records, out = known.modes, setting.fitted, []
+    places = [(term, modes), (term, setting.linear.base)]
+    if term.row is None:
+        # of either sign, in proportion to the frequency: a spring there makes the same relative
+        # change of every frequency
+        drawn = np.random.default_rng(SEED)
+        size = np.where(modes.residual, 0.0, modes.omega / np.median(modes.omega))
+        signs = [drawn.choice([-1.0, 1.0], size.size) for _ in range(FREE_STARTS)]
+        places = [(replace(term, participation=size * own), modes) for own in signs]
+    for own, base in places:
+        along = own.along(modes)
+        driven = along * modes.shapes[:, modes.drive]
+        moved = [driven @ modes.receptance(frequency) for frequency in records.frequencies]
+        sizes = replace(_scales(records, moved), stiffness=stiffness_unit(modes, along))
+        tried = term.effect.starts(sizes)[: FREE_VALUES if term.row is None else None]
+        terms = [(*known.terms, replace(own, values=values)) for values in tried]
+        out += _best([replace(known, modes=base, terms=each) for each in terms], records)
+    return out
+
+
+def _best(trials: Sequence[Trial], records: Records) -> list[Trial]:
+    """Return [the trial with the least squared error], empty where none has a bounded motion."""
+    costs = [records.cost(trial) for trial in trials]
+    return [trials[int(np.argmin(costs))]] if np.isfinite(min(costs)) else []
+
+
+def _scales(records: Records, motion: Sequence[np.ndarray]) -> Scales:
+    """Return the Scales of a relative displacement, without a stiffness.
+
+    motion [(excited line,)]: it per unit force, by level. omega: below it half of the power of the
+    last level's response lies, all channels together.
+    """
+    rms = []
+    for level, lines, own in zip(records.levels, records.excited, motion, strict=True):
+        rms.append(float(np.sqrt(2.0 * np.sum(np.abs(own * level.force[lines]) ** 2))))
+    power = np.cumsum(np.sum(np.abs(level.response[:, lines]) ** 2, axis=0))
+    middle = level.frequency[lines[np.searchsorted(power, 0.5 * power[-1])]]
+    return Scales(0.0, min(rms), max(rms), float(2.0 * np.pi * middle))

@@ -15,15 +15,9 @@ from vibroimpact.config.reading import ConfigError
 from vibroimpact.spectra.periodic_lines import LevelLines
 from vibroimpact.units import TIME_DERIVATIVES, si_unit
 
-LAWS_TRIED = (
-    "cubic_stiffness",
-    "quadratic_stiffness",
-    "quadratic_drag",
-    "saturation_stiffness",
-    "clearance",
-    "single_friction",
-    "coulomb_friction",
-)
+from .local_laws import LAWS
+
+LAWS_TRIED = [law for law in LAWS if law not in ("saturation_damping", "few_frictions")]
 SECOND_LAWS = ("quadratic_stiffness", "cubic_stiffness", "quadratic_drag", "single_friction")
 MOST_PLACES = 60  # that are ranked
 # Share of the velocity's power below the end of the band, and how much wider the band is.
@@ -31,22 +25,18 @@ ENOUGH, WIDER = 0.999, 1.3
 SHARPEST = 0.4  # of the sampling frequency: the end of any band
 
 
-def with_places(stated: MeasuredStructure, campaign: xr.Dataset) -> MeasuredStructure:
-    """Return what is stated with places, by default those of default_places.
-
-    Raises ConfigError for names that are no channel of the campaign, and places that are not given.
+def check_names(stated: MeasuredStructure, campaign: xr.Dataset) -> None:
+    """Raise ConfigError for names that are no channel of the campaign, and places that are not
+    given.
     """
     names = [str(name) for name in campaign["channel_name"].values]
-    directions = campaign["channel_direction"].values.astype(float)
-    places = stated.places or default_places(names, directions)
-    known = f"the usable channels are {', '.join(names)}"
+    places = places_of(stated, campaign)
+    channels = [] if stated.drive is None else [(f"drive = '{stated.drive}'", stated.drive)]
+    channels += [(f"places.{place}.{name}", name) for place, row in places.items() for name in row]
     problems = [
-        f"structure.{key} is no channel of the campaign: {known}"
-        for key, name in (
-            ("drive" if stated.drive is None else f"drive = '{stated.drive}'", stated.drive),
-            *((f"places.{place}.{name}", name) for place, row in places.items() for name in row),
-        )
-        if name is not None and name not in names
+        f"structure.{key} is no channel of the campaign: the usable channels are {', '.join(names)}"
+        for key, name in channels
+        if name not in names
     ]
     problems += [
         f"structure.{key}: '{name}' is at no place: the places are {', '.join(places)}"
@@ -56,18 +46,54 @@ def with_places(stated: MeasuredStructure, campaign: xr.Dataset) -> MeasuredStru
     ]
     if problems:
         raise ConfigError(problems)
-    return stated.model_copy(update={"places": places})
 
 
-def with_laws(stated: MeasuredStructure, tried: Sequence[str]) -> MeasuredStructure:
-    """Return what is stated with candidates at the places that are tried, the best one first, and
-    additions there.
+def check_mean(stated: MeasuredStructure, campaign: xr.Dataset, drive: int) -> None:
+    """Raise ConfigError where the mean is to be compared and the channel at the force (its index)
+    is a velocity or an acceleration.
+
+    Offsets of levels follow from the static response at the force, and these have none: their mean
+    is the zero of the sensor. It is not just left out, since whoever asks for it wants an even law
+    told by its shift of the mean, and a verdict without it would look as if that had been done.
+    """
+    name, kind = (str(campaign[f"channel_{key}"].values[drive]) for key in ("name", "kind"))
+    if stated.mean and TIME_DERIVATIVES.get(kind, 0) > 0:
+        raise ConfigError(
+            [
+                f"structure.mean = true needs a displacement at the force, and the kind of '{name}'"
+                f" is '{kind}', whose mean tells of no offset: leave mean out, or give a"
+                " displacement at the force as structure.drive"
+            ]
+        )
+
+
+def places_of(
+    stated: MeasuredStructure, campaign: xr.Dataset, turned: str | None = None
+) -> dict[str, dict[str, float]]:
+    """Return {place: {channel: coefficient}} as stated, by default those of default_places.
+
+    turned: the channel of the campaign that counts against its record, None for none. Coefficients
+    are stated for channels as they were recorded, so that those of this one change their sign.
+    """
+    if stated.places is None:
+        names = [str(name) for name in campaign["channel_name"].values]
+        return default_places(names, campaign["channel_direction"].values.astype(float))
+    return {
+        place: {name: -weight if name == turned else weight for name, weight in row.items()}
+        for place, row in stated.places.items()
+    }
+
+
+def laws_of(
+    stated: MeasuredStructure, tried: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return (candidates, additions), "law.place" each: as stated, by default at the places that
+    are tried, the best one first, and at the best one.
     """
     candidates = stated.candidates or tuple(f"{law}.{at}" for at in tried for law in LAWS_TRIED)
-    additions = tuple(f"{law}.{tried[0]}" for law in SECOND_LAWS)
     if stated.additions is not None:
-        additions = stated.additions
-    return stated.model_copy(update={"candidates": candidates, "additions": additions})
+        return candidates, stated.additions
+    return candidates, tuple(f"{law}.{tried[0]}" for law in SECOND_LAWS)
 
 
 def default_places(names: Sequence[str], directions: np.ndarray) -> dict[str, dict[str, float]]:

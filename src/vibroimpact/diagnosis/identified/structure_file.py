@@ -10,14 +10,20 @@ from typing import Any
 from pydantic import ValidationError
 
 from vibroimpact.config.measured_structure import MeasuredStructure
-from vibroimpact.config.problems import PLAIN_WORDS, shown
+from vibroimpact.config.problems import PLAIN_WORDS, sentence, shown
+from vibroimpact.config.quantities import Section
 from vibroimpact.config.reading import ConfigError, check_config, load_config, read_yaml
 from vibroimpact.config.schema import Config
 
 from .local_laws import LAWS
 
 WORD = "identified"  # in place of a file: every choice is left to the records
-KEYS = tuple(MeasuredStructure.model_fields)
+
+
+class _File(Section):
+    """The content of a file."""
+
+    structure: MeasuredStructure
 
 
 def model_of(model: Config | MeasuredStructure | str | Path) -> Config | MeasuredStructure:
@@ -68,26 +74,17 @@ def _stated(data: dict[str, Any], path: str) -> MeasuredStructure | None:
     try:
         stated = MeasuredStructure.model_validate(structure)
     except ValidationError as error:
-        problems += [_sentence(each) for each in error.errors(include_url=False)]
+        for each in error.errors(include_url=False):
+            place, rule = each["loc"], PLAIN_WORDS.get(each["type"]) or each["msg"]
+            told = sentence({**each, "loc": ("structure", *place)}, data, _File)
+            if place[-1] == "[key]":
+                told = f"structure.{place[0]}: the name {shown(each['input'])} {rule}"
+            problems.append(told)
     for key in ("candidates", "additions"):
         problems += _unknown_laws(key, structure.get(key))
     if problems:
         raise ConfigError([f"{path}: {problem}" for problem in problems])
     return stated
-
-
-def _sentence(error: Any) -> str:
-    """Return the sentence of one pydantic error: place, value, what is wrong, what to do."""
-    *path, last = error["loc"]
-    if error["type"] == "extra_forbidden":
-        close = get_close_matches(str(last), KEYS, n=1)
-        remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(KEYS)}"
-        return f"unknown key '{last}' in structure: {remedy}"
-    rule = PLAIN_WORDS.get(error["type"]) or error["msg"]
-    if last == "[key]":
-        return f"structure.{path[0]}: the name {shown(error['input'])} {rule}"
-    place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"])
-    return f"structure{place} = {shown(error['input'])} {rule}"
 
 
 def _unknown_laws(key: str, names: Any) -> Iterator[str]:

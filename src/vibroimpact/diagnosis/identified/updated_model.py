@@ -14,10 +14,10 @@ import yaml
 from vibroimpact.contact.local_elements import COLUMNS
 from vibroimpact.records import plain_values
 
-from .trial import LocalTerm, Trial
+from .trial import Trial
 
 # Shapes hold one direction per channel; which way it points in space is the sensor's affair.
-AXIS, DIRECTION = "x", [1.0, 0.0, 0.0]
+AXIS, DIRECTION, OPPOSITE = "x", [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]
 STEPS_PER_CYCLE = 200  # of the highest mode or of the band's end
 START_UP_PERIODS = 40  # of the lowest frequency of the band
 DURATION_PERIODS = 600  # of the lowest mode
@@ -25,40 +25,26 @@ DECIMATION = 25  # of two stages: steps are a multiple of it
 Places = Mapping[str, Mapping[str, float]]
 
 
-def configuration(
-    name: str, trial: Trial, places: Places, band_Hz: Sequence[float], loads: Sequence[float]
-) -> dict[str, Any]:
-    """Return the configuration of a Trial as plain values, with loads in N RMS.
+def configuration_text(
+    trial: Trial, places: Places, band_Hz: Sequence[float], loads: Sequence[float], sentence: str
+) -> str:
+    """Return the YAML text of the configuration of a Trial, with loads in N RMS; sentence: its
+    first line, a comment.
 
     Points carry the channels' names with underscores; a place that no two channels show is a point
     of its own.
     """
-    modes, names = trial.modes, [_point(own) for own in trial.modes.names]
-    hidden = {
-        term.place: term.along(modes) for term in trial.terms if not _joins_points(places, term)
-    }
-    described = [
-        {
-            "frequency_Hz": frequency,
-            "damping_ratio": ratio,
-            "residual": residual,
-            "shape": {own: {AXIS: value} for own, value in zip(names, row, strict=True)}
-            | {_point(place): {AXIS: along[mode]} for place, along in hidden.items()},
-        }
-        for mode, (frequency, ratio, residual, row) in enumerate(
-            zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
-        )
-    ]
+    modes = trial.modes
     first = modes.frequency[~modes.residual].min()
     highest, lowest = max(band_Hz[1], modes.frequency.max()), max(band_Hz[0], 0.1 * first)
     rate = int(np.ceil(STEPS_PER_CYCLE * highest / DECIMATION)) * DECIMATION
     values = {
-        "study": f"{name}_updated",
-        "structure": {"kind": "identified", "modes": described},
+        "study": "identified_updated",
+        "structure": {"kind": "identified", "modes": _modes(trial, places)},
         "elements": [*_elements(trial, places)],
         "excitation": {
             "kind": "band_limited",
-            "point": names[modes.drive],
+            "point": _point(modes.names[modes.drive]),
             "direction": DIRECTION,
             "band_Hz": [lowest, band_Hz[1]],
         },
@@ -78,23 +64,36 @@ def configuration(
             "sampling_frequency_Hz": rate // DECIMATION,
         },
     }
-    return plain_values(values)
-
-
-def configuration_text(values: dict[str, Any], sentence: str) -> str:
-    """Return the YAML text of a configuration; sentence: its first line, a comment."""
-    text = yaml.safe_dump(values, sort_keys=False, width=150, default_flow_style=None)
+    plain = plain_values(values)
+    text = yaml.safe_dump(plain, sort_keys=False, width=150, default_flow_style=None)
     return (
         f"# {sentence}\n# Units are in the keys; shapes are in kg^-1/2. There is no gap: gap_m is"
         f" not used.\n{text}"
     )
 
 
+def _modes(trial: Trial, places: Places) -> list[dict[str, Any]]:
+    """Return the entries of all modes, with the shapes of channels and of places of their own."""
+    modes, names = trial.modes, [_point(own) for own in trial.modes.names]
+    hidden = [term for term in trial.terms if not is_relative(places.get(term.place, {}))]
+    rows = zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
+    return [
+        {
+            "frequency_Hz": frequency,
+            "damping_ratio": ratio,
+            "residual": residual,
+            "shape": {own: {AXIS: value} for own, value in zip(names, row, strict=True)}
+            | {_point(term.place): {AXIS: term.along(modes)[mode]} for term in hidden},
+        }
+        for mode, (frequency, ratio, residual, row) in enumerate(rows)
+    ]
+
+
 def location(place: str, row: Mapping[str, float] | None) -> str:
     """Return a place {channel: coefficient} in words; None: one that no channel shows."""
     if row is None:
         return "elsewhere: no channel shows the place; its share in every mode was fitted"
-    ends = [name for name, _ in sorted(row.items(), key=lambda item: item[1])]
+    ends = sorted(row, key=lambda name: row[name])
     if not is_relative(row):
         told = " ".join(f"{weight:+g} {name}" for name, weight in row.items())
         return f"{place}: along {told}"
@@ -107,12 +106,7 @@ def is_relative(row: Mapping[str, float]) -> bool:
     """Return whether a place {channel: coefficient} is the displacement of a point or of one
     against another, which an element can join.
     """
-    return sorted(row.values()) in ([1.0], [-1.0, 1.0])
-
-
-def _joins_points(places: Places, term: LocalTerm) -> bool:
-    """Return whether a term joins points that channels show."""
-    return term.place in places and is_relative(places[term.place])
+    return sorted(row.values()) in ([1.0], [-1.0], [-1.0, 1.0])
 
 
 def _point(name: str) -> str:
@@ -124,14 +118,16 @@ def _point(name: str) -> str:
 def _elements(trial: Trial, places: Places) -> Iterator[dict[str, Any]]:
     """Yield the entries of all elements: between two points, or a point and the ground."""
     for number, term in enumerate(trial.terms):
-        ends = {"point": _point(term.place)}
-        if _joins_points(places, term):
+        row, ends = places.get(term.place, {}), {"point": _point(term.place)}
+        direction = DIRECTION
+        if is_relative(row):
             # the displacement counts from the channel with -1 to the one with +1
-            signs = {weight: _point(name) for name, weight in places[term.place].items()}
-            ends = {"point": signs[1.0]}
-            ends |= {"other_point": signs[-1.0]} if -1.0 in signs else {}
+            signs = {weight: _point(name) for name, weight in row.items()}
+            ends = {"point": signs[max(signs)]}
+            ends |= {"other_point": signs[-1.0]} if len(signs) == 2 else {}
+            direction = DIRECTION if 1.0 in signs else OPPOSITE
         table = term.effect.columns(term.values)
         for index in range(term.effect.elements):
             laws = {COLUMNS[column]: float(values[index]) for column, values in table.items()}
             name = f"{term.effect_id}_{number + 1}_{index + 1}"
-            yield {"name": name, **ends, "direction": DIRECTION, **laws}
+            yield {"name": name, **ends, "direction": direction, **laws}
