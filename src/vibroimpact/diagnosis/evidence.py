@@ -13,7 +13,7 @@ from scipy.signal import resample_poly
 from .bench import Bench, in_band, settled
 from .comparison import Comparison
 from .explanations import Point
-from .held_states import HeldState, held_state, measured_motion
+from .held_states import HeldState, held_state
 from .law import Demand, Places, demand_of
 from .measurement.sensed_motion import STRAIN
 from .measurement.stretches import Stretch
@@ -50,38 +50,37 @@ def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Datas
     bench = replace(fitted, stretches=(*fitted.stretches, *apart.stretches))
     free = _left_free(bench, len(fitted.stretches))
     states = [held_state(bench, point, free) for point in (before, after)]
-    labels = {"state": list(STATES), "series": list(SERIES)}
-    out = xr.Dataset(_names(comparison, bench, len(fitted.stretches)), coords=labels)
     campaign = comparison.structure.campaign
-    out = out.assign({name: campaign[name].variable for name in PLACES if name in campaign})
-    out = out.assign(_holding(bench, states))
-    out = out.assign(_law(comparison, bench, states, after))
-    out = out.assign(_free(comparison, bench, states))
-    return out.assign_attrs(
-        before=before.name, after=after.name, strength_N_s_per_m=float(bench.strength)
+    places = {name: campaign[name].variable for name in PLACES if name in campaign}
+    return xr.Dataset(
+        _names(comparison, bench, len(fitted.stretches))
+        | places
+        | _holding(bench, states)
+        | _law(comparison, bench, states, after)
+        | _free(comparison, bench, states),
+        coords={"state": list(STATES), "series": list(SERIES)},
+        attrs={
+            "before": before.name,
+            "after": after.name,
+            "strength_N_s_per_m": float(bench.strength),
+        },
     )
 
 
 def _names(comparison, bench, fitted):
-    """Return the variables that name channels, stretches and bands."""
+    """Return the variables that name channels and stretches."""
     signals, rows = comparison.signals, bench.stretches
     held_out = set(signals.holdout().tolist())
-    edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
-    split = ["holdout" if row.record in held_out else "fit" for row in rows]
-    part = ["fitted" if number < fitted else "apart" for number in range(len(rows))]
-    return {
-        "channel_name": ("channel", np.array(comparison.structure.names, object)),
-        "channel_kind": ("channel", np.array(signals.kinds, object)),
-        "record_name": (
-            "stretch",
-            np.array([str(signals.record_names[row.record]) for row in rows], object),
-        ),
-        "split": ("stretch", np.array(split, object)),
-        "part": ("stretch", np.array(part, object)),
+    texts = {
+        "channel_name": ("channel", comparison.structure.names),
+        "channel_kind": ("channel", signals.kinds),
+        "record_name": ("stretch", [str(signals.record_names[row.record]) for row in rows]),
+        "split": ("stretch", ["holdout" if row.record in held_out else "fit" for row in rows]),
+        "part": ("stretch", ["fitted" if at < fitted else "apart" for at in range(len(rows))]),
+    }
+    return {name: (dim, np.array(values, object)) for name, (dim, values) in texts.items()} | {
         "load": ("stretch", [row.load for row in rows], {"units": signals.load_unit}),
         "start": ("stretch", [_start(bench, row) for row in rows], {"units": "s"}),
-        "band_low": ("band", edges[:-1], {"units": "Hz"}),
-        "band_high": ("band", edges[1:], {"units": "Hz"}),
     }
 
 
@@ -106,25 +105,22 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
 
 
 def _holding(bench: Bench, states: list[HeldState]) -> dict:
-    """Return the RMS of the holding force by band."""
-    found = [
-        [_band_rms(state.holding(number), bench) for number in range(len(bench.stretches))]
-        for state in states
-    ]
-    dims = ("state", "stretch", "channel", "band")
-    return {"holding_force": (dims, np.array(found, np.float32), {"units": "N"})}
-
-
-def _band_rms(series: np.ndarray, bench: Bench) -> np.ndarray:
-    """Return (channel, band): the RMS of the settled samples of a series (channel, sample)."""
-    series, rate = series[:, settled(bench)], bench.schedule.sampling_frequency
+    """Return the RMS of the settled samples of the holding force by band."""
+    series = np.stack([state.holding()[..., settled(bench)] for state in states])
     count = series.shape[-1]
     window = np.hanning(count)
     power = 2.0 * np.abs(np.fft.rfft(series * window, axis=-1)) ** 2 / (count * np.sum(window**2))
     edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
-    number = np.searchsorted(edges, np.fft.rfftfreq(count, 1.0 / rate), side="right") - 1
-    rows = [power[:, number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
-    return np.sqrt(np.stack(rows, axis=-1))
+    frequency = np.fft.rfftfreq(count, 1.0 / bench.schedule.sampling_frequency)
+    number = np.searchsorted(edges, frequency, side="right") - 1
+    rows = [power[..., number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
+    found = np.sqrt(np.stack(rows, axis=-1)).astype(np.float32)
+    dims = ("state", "stretch", "channel", "band")
+    return {
+        "holding_force": (dims, found, {"units": "N"}),
+        "band_low": ("band", edges[:-1], {"units": "Hz"}),
+        "band_high": ("band", edges[1:], {"units": "Hz"}),
+    }
 
 
 def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: Point) -> dict:
@@ -135,28 +131,23 @@ def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: P
     demands = [demand_of(comparison, bench, stretch, point) for stretch in bench.stretches]
     chosen = _acting(bench, demands)
     shown = [demands[number] for number in chosen]
-    force, motion = (
-        np.array(rows, np.float32)
-        for rows in zip(
-            *(_modelled(comparison, bench, own, places, chosen) for own in states), strict=True
-        )
-    )
+    model = np.stack([_modelled(comparison.band, state, places, chosen) for state in states])
     dims = ("law_stretch", "place", "sample")
-    newton, metre, share = {"units": "N"}, {"units": "m"}, {"units": "1"}
     time = settled(bench) / bench.schedule.sampling_frequency
-    return {
+    out: dict = {
         "place_name": ("place", np.array(places.names, object)),
         "owner_name": ("place", np.array(places.owners, object)),
         "law_of_stretch": ("law_stretch", np.array(chosen, int)),
         "sample_time": ("sample", time, {"units": "s"}),
-        "demanded_force": (dims, np.array([row.force for row in shown], np.float32), newton),
-        "demanded_motion": (dims, np.array([row.motion for row in shown], np.float32), metre),
-        "resolution": (dims[:2], np.array([row.resolution for row in shown]), share),
-        "explained": (dims[:1], np.array([row.explained for row in shown]), share),
-        "beyond": (dims[:1], np.array([row.beyond for row in shown]), share),
-        "model_force": (("state", *dims), force, newton),
-        "model_motion": (("state", *dims), motion, metre),
     }
+    for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
+        demanded = np.array([getattr(row, name) for row in shown], np.float32)
+        out[f"demanded_{name}"] = dims, demanded, {"units": unit}
+        out[f"model_{name}"] = ("state", *dims), model[:, part], {"units": unit}
+    for name, rank in (("resolution", 2), ("explained", 1), ("beyond", 1)):
+        share = np.array([getattr(row, name) for row in shown])
+        out[name] = dims[:rank], share, {"units": "1"}
+    return out
 
 
 def _acting(bench: Bench, demands: list[Demand]) -> list[int]:
@@ -171,23 +162,15 @@ def _acting(bench: Bench, demands: list[Demand]) -> list[int]:
     return [acting[place] for place in places]
 
 
-def _modelled(
-    comparison: Comparison, bench: Bench, state: HeldState, places: Places, chosen: list[int]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (force, motion) (law_stretch, place, sample) of a held model, in N and m; NaN at
-    places that it lacks.
+def _modelled(band, state: HeldState, places: Places, chosen: list[int]) -> np.ndarray:
+    """Return (2, law_stretch, place, sample): force in N and motion in m of a held model within a
+    band in Hz; NaN at places that it lacks.
     """
-    samples = len(settled(bench))
-    out = np.full((2, len(chosen), len(places.names), samples), np.nan)
+    rows = [in_band(state.bench, state.at_places(number), band, 0) for number in chosen]
+    found = np.stack(rows, axis=1).astype(np.float32)
+    lacking = np.full_like(found[:, :, :1], np.nan)
     own = {name: number for number, name in enumerate(state.places.names)}
-    for row, number in enumerate(chosen):
-        both = state.at_places(number, bench.schedule.sampling_frequency)
-        for part, series in enumerate(both):
-            inside = in_band(bench, series, comparison.band, 0)
-            for place, name in enumerate(places.names):
-                if name in own:
-                    out[part, row, place] = inside[own[name]]
-    return out[0], out[1]
+    return np.concatenate([found, lacking], axis=2)[:, :, [own.get(n, -1) for n in places.names]]
 
 
 def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict:
@@ -196,18 +179,17 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
     if not keys:
         return {}
     stretches = sorted({number for number, _ in keys}, key=lambda at: -bench.stretches[at].load)
-    channels = len(comparison.structure.names)
-    error = np.full((len(states), len(stretches), channels), np.nan)
+    error = np.full((len(states), len(stretches), len(comparison.structure.names)), np.nan)
     velocity = {}
     for number, channel in keys:
-        series = [
-            in_band(bench, values, comparison.band, 1)
-            for values in _measured_and_free(bench, states, number, channel)
+        before, after = (
+            in_band(bench, state.left_free(number, channel), comparison.band, 1) for state in states
+        )
+        velocity[number, channel] = np.array([before[0], before[1], after[1]])
+        rms = max(float(np.std(before[0])), np.finfo(float).tiny)
+        error[:, stretches.index(number), channel] = [
+            np.std(measured - predicted) / rms for measured, predicted in (before, after)
         ]
-        velocity[number, channel] = np.array([series[0], *series[2:]])
-        rms = max(float(np.std(series[0])), np.finfo(float).tiny)
-        pairs = (series[0], series[2]), (series[1], series[3])
-        error[:, stretches.index(number), channel] = [np.std(a - b) / rms for a, b in pairs]
     told = _most_telling(error, stretches)
     unit = "1/s" if comparison.signals.kinds[told[1]] == STRAIN else "m/s"
     return {
@@ -215,15 +197,6 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
         "free_of_stretch": ("free_stretch", np.array(stretches, int)),
         **_waveform(bench, velocity[told], told, unit, comparison.structure.scale[told[1]]),
     }
-
-
-def _measured_and_free(bench, states, number, channel):
-    """Return [measured as each state's chain tells, then predicted by each] (sample,) in m."""
-    measured = [
-        measured_motion(bench, number, state.chain.delay[: state.channels])[channel]
-        for state in states
-    ]
-    return [*measured, *(state.left_free(number, channel) for state in states)]
 
 
 def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:

@@ -14,7 +14,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import Bench, lane_of, undelayed
 from .explanations import Point
-from .law import Places, element_force, places_of, probed
+from .law import Places, element_force, places_of
 from .measurement.sensor_chain import Measuring
 
 
@@ -22,45 +22,48 @@ from .measurement.sensor_chain import Measuring
 class HeldState:
     """Runs of one Point on the stretches of a Bench; the first runs are those with all held.
 
-    model: its sensors are the channels, then the Places. free {(stretch, channel): run}.
+    records: of the channels, then the Places. free {(stretch, channel): run}.
     """
 
+    bench: Bench
     model: ModalModel
     places: Places
     chain: Measuring
     records: HeldRecords
     free: dict[tuple[int, int], int]
 
-    @property
-    def channels(self) -> int:
-        """Return the number of channels."""
-        return self.records.motion.shape[1] - len(self.places.names)
-
-    def holding(self, stretch: int) -> np.ndarray:
-        """Return (channel, sample) N: the holding force with all held, as a residual of what was
-        measured.
+    def holding(self) -> np.ndarray:
+        """Return (stretch, channel, sample) N: the holding force with all held, as a residual of
+        what was measured.
         """
-        force = self.records.force[stretch, : self.channels].astype(float)
-        return force * self.chain.gain[: self.channels, None]
+        gain = self.chain.gain[:, None]
+        force = self.records.force[: len(self.bench.stretches), : len(gain)]
+        return force.astype(float) * gain
 
-    def at_places(self, stretch: int, rate: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return (force (place, sample) N, motion (place, sample) m) with all sensors held.
-
-        rate: of the samples, Hz.
-        """
-        motion = self.records.motion[stretch, self.channels :].astype(float)
+    def at_places(self, stretch: int) -> np.ndarray:
+        """Return (2, place, sample): force in N and motion in m with all sensors held."""
+        motion = self.records.motion[stretch, len(self.chain.gain) :].astype(float)
         supports = 2 * len(self.model.support_names)
         force = np.zeros_like(motion)
         force[:supports] = self.records.support_force[stretch, :supports]
+        rate = self.bench.schedule.sampling_frequency
         for element in range(len(self.model.element_names)):
             moved = motion[supports + element]
             force[supports + element] = element_force(self.model.local_laws, element, moved, rate)
-        return force, motion
+        return np.stack([force, motion])
 
     def left_free(self, stretch: int, channel: int) -> np.ndarray:
-        """Return (sample,) m: motion of a channel that was left free, as it would be measured."""
-        motion = self.records.motion[self.free[stretch, channel], channel].astype(float)
-        return self.chain.gain[channel] * motion
+        """Return (2, sample) m: the measured motion of a channel before its delay, and that of the
+        model where it was left free, as it would be measured.
+        """
+        schedule = self.bench.schedule
+        ratio = round(schedule.steps_per_second / schedule.sampling_frequency)
+        motion = undelayed(
+            self.bench.stretches[stretch].motion, self.chain.delay, schedule.steps_per_second
+        )
+        measured = motion[1 : 1 + schedule.samples * ratio : ratio, channel]
+        free = self.records.motion[self.free[stretch, channel], channel].astype(float)
+        return np.stack([measured, self.chain.gain[channel] * free])
 
 
 def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> HeldState:
@@ -68,47 +71,29 @@ def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> H
 
     Raises ConfigError or ValueError for values that no structure can have.
     """
-    model = bench.structure.model(point)
-    places, chain = places_of(model), bench.structure.measuring(point)
+    model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    places = places_of(model)
+    # the places are further sensors, which measure nothing and are not held
     count = len(places.names)
-    wide = replace(
-        bench, stretches=tuple(_with_places(stretch, count) for stretch in bench.stretches)
-    )
-    chain = replace(
-        chain, gain=np.r_[chain.gain, np.ones(count)], delay=np.r_[chain.delay, np.zeros(count)]
-    )
-    observed = probed(model, places)
-    stretches = len(bench.stretches)
-    wanted: list[tuple[int, tuple[int, ...]]] = [(number, ()) for number in range(stretches)]
-    wanted += [(number, (channel,)) for number, channel in free]
-    lanes = [
-        lane_of(wide, wide.stretches[number], observed, chain, channels)
-        for number, channels in wanted
-    ]
-    return HeldState(
+    more = ((0, count), (0, 0))
+    observed = replace(
         model,
-        places,
-        chain,
-        hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz),
-        {key: stretches + number for number, key in enumerate(free)},
+        sensor_shapes=np.hstack([model.sensor_shapes, places.shapes]),
+        sensor_names=(*model.sensor_names, *places.names),
+        sensor_positions=np.pad(model.sensor_positions, more, mode="edge"),
+        sensor_directions=np.pad(model.sensor_directions, more, mode="edge"),
     )
-
-
-def _with_places(stretch, count):
-    """Return a Stretch with so many further sensors, which measure nothing."""
-    rows = np.zeros((len(stretch.motion), count))
-    return replace(
-        stretch,
-        motion=np.hstack([stretch.motion, rows]),
-        moving=np.r_[stretch.moving, np.zeros(count, bool)],
+    through = Measuring(
+        np.r_[chain.gain, np.ones(count)], np.r_[chain.delay, np.zeros(count)], chain.force_gain
     )
-
-
-def measured_motion(bench: Bench, stretch: int, delay: np.ndarray) -> np.ndarray:
-    """Return (channel, sample) m: the measured motion at the samples of the runs, before delays
-    (channel,) in s.
-    """
-    schedule = bench.schedule
-    ratio = round(schedule.steps_per_second / schedule.sampling_frequency)
-    motion = undelayed(bench.stretches[stretch].motion, delay, schedule.steps_per_second)
-    return motion[1 : 1 + schedule.samples * ratio : ratio].T
+    stretches = [
+        replace(each, motion=np.pad(each.motion, ((0, 0), (0, count)))) for each in bench.stretches
+    ]
+    wide = replace(bench, stretches=tuple(stretches))
+    lanes = [lane_of(wide, stretch, observed, through) for stretch in stretches]
+    lanes += [
+        lane_of(wide, stretches[number], observed, through, [channel]) for number, channel in free
+    ]
+    records = hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz)
+    runs = {key: len(stretches) + number for number, key in enumerate(free)}
+    return HeldState(bench, model, places, chain, records, runs)

@@ -16,7 +16,7 @@ impact forces from remote sensors, M. De Araújo, J. Antunes, P. Piteau, J. Soun
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -236,18 +236,6 @@ def _variance(comparison, frequency, motion, weight):
     power = uniform_filter1d(np.abs(motion) ** 2, SMOOTHED, axis=-1)
     out = noise + GAIN_SD**2 * power
     return np.where(held[:, None], np.maximum(out, np.finfo(float).tiny), np.inf)
-
-
-def probed(model: ModalModel, places: Places) -> ModalModel:
-    """Return a model with the motion at Places as further sensors."""
-    count = len(places.names)
-    return replace(
-        model,
-        sensor_shapes=np.hstack([model.sensor_shapes, places.shapes]),
-        sensor_names=(*model.sensor_names, *places.names),
-        sensor_positions=np.vstack([model.sensor_positions, np.zeros((count, 3))]),
-        sensor_directions=np.vstack([model.sensor_directions, np.eye(3)[np.zeros(count, int)]]),
-    )
 
 
 def element_force(laws: LocalLaws, element: int, motion: np.ndarray, rate: float) -> np.ndarray:

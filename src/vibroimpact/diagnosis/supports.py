@@ -24,19 +24,14 @@ from vibroimpact.linear.support_groups import support_directions
 from .comparison import Comparison
 from .explanations import Point, Structure
 from .gauss_newton import fit
-from .measured_forces import force_channels, side_by_side
-from .measurement.comparable import (
-    channel_rows,
-    comparison_problems,
-    left_out,
-    model_rows,
-)
+from .measurement.comparable import channel_rows, comparison_problems, left_out, model_rows
 from .measurement.sensed_motion import of_modes
 from .measurement.signals import signals_of
 from .support_statistics import (
     HeldTwice,
     agreement_of,
     estimates,
+    force_channels,
     measured_of,
     unseen_of,
     with_interval,
@@ -142,7 +137,9 @@ def virtual_supports(
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
     if calibrate:
-        holding = holder(structure, signals, _calibrated(structure, signals, point))
+        comparison = Comparison(signals, structure)
+        point = fit(comparison.fitted(), point, comparison.nuisances(), PASSES).point
+        holding = holder(structure, signals, point)
     channels, more = force_channels(campaign, holding.model)
     directions = support_directions(holding.model, "each")
     values: list[SupportValue] = []
@@ -180,12 +177,6 @@ def _held_channels(campaign, config):
         )
         raise CampaignError("\n".join(notes))
     return held, notes
-
-
-def _calibrated(structure, signals, point) -> Point:
-    """Return a Point with fitted nuisances of all modes in the band and of all channels."""
-    comparison = Comparison(signals, structure)
-    return fit(comparison.fitted(), point, comparison.nuisances(), PASSES).point
 
 
 def _unusable(holding) -> Iterator[str]:
@@ -231,43 +222,40 @@ def _forces(holding, run) -> SupportForces:
     return SupportForces(
         holding.signals.record_names[run.record],
         run.first_s,
-        run.sampling,
+        holding.rates.sampling,
         names,
         model.contact_directions[first],
         run.support_force.reshape(len(names), 2, -1),
     )
 
 
-def _values(record: HeldTwice) -> list[SupportValue]:
-    """Return the SupportValues of a record."""
-    signals, run = record.holder.signals, record.run
-    fine = np.flatnonzero(np.isfinite(run.runs.support_force).all(axis=(1, 2)))
+def _values(record: HeldTwice) -> Iterator[SupportValue]:
+    """Yield the SupportValues of a record, none where all of its stretches diverged."""
+    signals, number = record.holder.signals, record.run.record
+    force = record.run.runs.support_force
+    fine = np.flatnonzero(np.isfinite(force).all(axis=(1, 2)))
     if not len(fine):
-        return []
-    both = {c.name: side_by_side(record.holder, run, c) for c in record.channels}
-    found, low, high = with_interval(lambda chosen: estimates(record, both, chosen), fine)
-    measured = measured_of(record, both, fine)
-    agreement, unseen = agreement_of(run, record.weaker, fine), unseen_of(record)
+        return
+    found = with_interval(lambda chosen: estimates(record, chosen), fine)
+    measured, agreement = measured_of(record, fine), agreement_of(record, fine)
+    unseen = unseen_of(record)
     for support in range(len(record.supports)):
-        found[support, "", "agreement"] = float(agreement[support])
-    return [
-        SupportValue(
-            record=signals.record_names[run.record],
-            load=float(signals.load[run.record]),
-            load_unit=signals.load_unit,
-            gap_m=float(signals.gap[run.record]),
-            support=record.supports[support],
-            channel=channel,
-            quantity=quantity,
-            unit=UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],
-            value=found[support, channel, quantity],
-            low=low.get((support, channel, quantity), np.nan),
-            high=high.get((support, channel, quantity), np.nan),
-            measured=measured.get((support, channel, quantity), np.nan),
-            remark=_remark(quantity, agreement[support], unseen[support]),
+        found[support, "", "agreement"] = float(agreement[support]), np.nan, np.nan
+    for key in sorted(found, key=lambda key: key[:2]):
+        support, channel, quantity = key
+        yield SupportValue(
+            signals.record_names[number],
+            float(signals.load[number]),
+            signals.load_unit,
+            float(signals.gap[number]),
+            record.supports[support],
+            channel,
+            quantity,
+            UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],
+            *found[key],
+            measured.get(key, np.nan),
+            _remark(quantity, agreement[support], unseen[support]),
         )
-        for support, channel, quantity in sorted(found, key=lambda key: key[:2])
-    ]
 
 
 def _remark(quantity, agreement, unseen):
