@@ -37,7 +37,7 @@ from .comparable import (
     left_out,
     model_rows,
 )
-from .sensed_motion import differentiated, of_modes
+from .sensed_motion import of_modes, orders
 
 CONTRADICTED = ("swapped channels", "directions")  # checks whose channels are left out
 FEWEST_RECORDS = 2
@@ -149,32 +149,17 @@ def _contradicted(model: ModalModel, campaign: xr.Dataset) -> list[dict[str, Any
     spectra = None if record is None else transfer(measured, record)
     if record is None or spectra is None:
         return []
-    omega = 2.0 * np.pi * spectra.frequency
-    others = np.ones((1, omega.size))
+    s = 2j * np.pi * spectra.frequency
+    forces = np.ones((1, s.size))  # each over the first one
     if measured.force[record].shape[0] > 1:
-        beside = transfer(
-            replace(measured, response=[force[1:] for force in measured.force]), record
-        )
+        others = replace(measured, response=[force[1:] for force in measured.force])
+        beside = transfer(others, record)
         if beside is None:
             return []
-        others = np.concatenate([others, beside.h1])
+        forces = np.concatenate([forces, beside.h1])
+    receptance = 1.0 / (model.omega[:, None] ** 2 + s**2 + model.damping[:, None] * s)
+    motion = np.einsum("mc,ml,ml->cl", model.sensor_shapes, model.drive_shapes @ forces, receptance)
+    sensed = s ** orders(measured.kinds)[:, None] * of_modes(measured.kinds)[:, None]
     return compare_with_model(
-        spectra,
-        _receptance(model, omega, others)
-        * np.array([differentiated(omega, kind) for kind in measured.kinds]),
-        measured.channels,
-        measured.kinds,
-        measured.records[record],
-    )
-
-
-def _receptance(model: ModalModel, omega: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Return (channel, line): displacements per first force; forces (force_channel, line): each
-    force per first one.
-    """
-    return np.einsum(
-        "mc,ml,ml->cl",
-        model.sensor_shapes,
-        model.drive_shapes @ forces,
-        1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega),
+        spectra, motion * sensed, measured.channels, measured.kinds, measured.records[record]
     )
