@@ -25,8 +25,7 @@ class Measuring:
     ) -> "Measuring":
         """Return the Measuring with the effect sensor_gain or sensor_delay at a location too.
 
-        parameters: {"factor": ...} or {"delay": s}. location: one of places(names). names
-        (channel,).
+        parameters: {"factor": ...} or {"delay": s}. location: one of places(names (channel,)).
         """
         chosen = np.array([location in (one, "responses", "force_and_responses") for one in names])
         if effect_id == "sensor_gain":

@@ -107,18 +107,10 @@ def stretches_of(
     for record, start in places:
         force, motion = (_cut(values, start, duration_s, rates) for values in whole[record])
         speed = np.diff(motion, axis=0).std(axis=0)
-        gap = float(signals.gap[record])
-        out.append(
-            Stretch(
-                record=int(record),
-                start_s=float(start),
-                gap=gap if np.isfinite(gap) else NO_GAP_M,
-                load=float(signals.load[record]),
-                force=force,
-                motion=motion,
-                moving=of_modes(signals.kinds) & (speed > MOVING * speed.max(initial=0.0)),
-            )
-        )
+        moving = of_modes(signals.kinds) & (speed > MOVING * speed.max(initial=0.0))
+        gap, load = float(signals.gap[record]), float(signals.load[record])
+        gap = gap if np.isfinite(gap) else NO_GAP_M
+        out.append(Stretch(int(record), float(start), gap, load, force, motion, moving))
     return out
 
 

@@ -28,15 +28,8 @@ from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.reduction.modal_model import ModalModel
 
+from . import comparable
 from .attached_model import attach
-from .comparable import (
-    LEFT_OUT,
-    channel_rows,
-    comparison_problems,
-    contact_force_rows,
-    left_out,
-    model_rows,
-)
 from .sensed_motion import of_modes, orders
 
 CONTRADICTED = ("swapped channels", "directions")  # checks whose channels are left out
@@ -63,13 +56,11 @@ def usable(
     """
     whole, checks = checked_campaign(campaign)
     if whole is not None and not refused(checks):
-        checks += channel_rows(whole)
-        checks += [
-            check_row("model", "refuse", f"{problem}.")
-            for problem in comparison_problems(config, whole)
-        ]
+        checks += comparable.channel_rows(whole)
+        problems = comparable.comparison_problems(config, whole)
+        checks += [check_row("model", "refuse", f"{problem}.") for problem in problems]
     found = _left(whole, checks)
-    for rows_of in (model_rows, _against_model):
+    for rows_of in (comparable.model_rows, _against_model):
         try:
             more = rows_of(config, found)
         except CampaignError as error:
@@ -101,22 +92,19 @@ def checked_campaign(
 def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     """Return what the checks leave of a campaign. Raises Refused where that is too little."""
     if refused(checks) or whole is None:
-        refusing = [row["message"] for row in checks if row["level"] == "refuse"]
-        raise Refused(refusing[0], checks)
+        raise Refused(next(row["message"] for row in checks if row["level"] == "refuse"), checks)
     force, response = usable_signals(whole, checks)
-    names = whole["channel_name"].values
-    out = {
+    out = comparable.left_out(checks) | {
         row["channel"]
         for row in checks
         if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None
     }
-    kept = ~np.isin(names, [*left_out(checks), *filter(None, out)])
-    moving = of_modes([str(kind) for kind in whole["channel_kind"].values])
+    kept = ~np.isin(whole["channel_name"].values, [*filter(None, out)])
+    moving = of_modes(whole["channel_kind"].values)
     if not (kept & moving).any():
-        otherwise = "No channel that measures a motion or a strain is left after the checks."
-        _refuse(
-            next((row["message"] for row in checks if row["check"] == LEFT_OUT), otherwise), checks
-        )
+        told = [row["message"] for row in checks if row["check"] == comparable.LEFT_OUT]
+        none = "No channel that measures a motion or a strain is left after the checks."
+        _refuse([*told, none][0], checks)
     channels = np.flatnonzero(kept)
     records = np.flatnonzero(force)
     whole_channels = channels[response[np.ix_(records, channels)].all(axis=0)]
@@ -137,7 +125,7 @@ def _refuse(sentence, checks):
 def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
     """Return rows for channels that do not go with the model attached to the campaign."""
     model = attach(config, campaign)
-    return [*contact_force_rows(model, campaign), *_contradicted(model, campaign)]
+    return [*comparable.contact_force_rows(model, campaign), *_contradicted(model, campaign)]
 
 
 def _contradicted(model: ModalModel, campaign: xr.Dataset) -> list[dict[str, Any]]:
