@@ -29,7 +29,6 @@ Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown"
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
 WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
 WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
-OPEN: tuple[Conclusion, ...] = ("partly_explained", "unknown", "not_testable")
 
 SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
 
@@ -106,7 +105,6 @@ class RankedCandidate(_Content):
     )
     closed_fraction: Number | None = Field(description="Share of the excess misfit it closes.")
     location: str | None = Field(default=None, description="Where the effects act.")
-    candidate: str | None = Field(default=None, description="Name of the candidate.")
     probability: Probability | None = Field(
         default=None, description="Probability that these effects are what is missing."
     )
@@ -131,9 +129,6 @@ class Region(_Content):
     nearest_modes_Hz: list[Number] | None = Field(
         default=None, description="Frequencies of the model's modes in or next to the band, Hz."
     )
-    relative_error: Number | None = Field(
-        default=None, description="RMS error over RMS response, of the record's excited lines."
-    )
 
 
 class Misfit(_Content):
@@ -152,16 +147,6 @@ class MisfitBySplit(_Content):
 
     fit: Misfit | None
     holdout: Misfit | None
-    selection: Misfit | None = Field(
-        default=None, description="Of the records that the name was chosen with."
-    )
-    verification: Misfit | None = Field(
-        default=None, description="Of the records that nothing was chosen with."
-    )
-
-    def taking_no_part(self) -> Misfit | None:
-        """Return the misfit of the records that took no part, None where there are none."""
-        return self.verification or self.holdout
 
 
 class StageCost(_Content):
@@ -229,12 +214,6 @@ class Verdict(_Content):
     not_run: list[str] = Field(
         default=[], description="Ids of effects that could not be run: nothing is known of them."
     )
-    linear: list[dict[str, Any]] = Field(
-        default=[], description="Linear effects fitted to the record of lowest load."
-    )
-    explained_z: list[Number | None] = Field(
-        default=[], description="What remains unexplained, per record, in standard deviations."
-    )
     most_probable: list[FoundEffect] = Field(
         default=[], description="The effects of the best candidate, whatever the verdict."
     )
@@ -284,14 +263,11 @@ def not_run_sentence(ids: Iterable[str]) -> str:
     return f" Nothing is known of {words}, which could not be run." if words else ""
 
 
-NO_MISFIT = MisfitBySplit(fit=None, holdout=None)
-
-
 def not_testable(
     checks: list[dict[str, Any]],
     provenance: dict[str, Any],
     next_measurement: str | None = None,
-    misfit: MisfitBySplit = NO_MISFIT,
+    misfit: MisfitBySplit | None = None,
     cost: dict[str, Any] | None = None,
 ) -> Verdict:
     """Return the verdict on a campaign that can not be judged.
@@ -299,7 +275,7 @@ def not_testable(
     checks: rows as in CheckResult, at least one with level refuse; next_measurement: a sentence;
     cost: as Cost, nothing where None.
     """
-    cost = {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}} if cost is None else cost
+    cost = cost or {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}}
     return Verdict.from_values(
         {
             "verdict": "not_testable",
@@ -309,7 +285,7 @@ def not_testable(
             "next_measurement": next_measurement,
             "broken_invariances": [],
             "regions": [],
-            "misfit": misfit.to_values(),
+            "misfit": misfit.to_values() if misfit else {"fit": None, "holdout": None},
             "p_global_before": None,
             "p_global_after": None,
             "checks": checks,
