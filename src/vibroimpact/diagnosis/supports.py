@@ -108,11 +108,7 @@ class VirtualSupports:
 
 
 def virtual_supports(
-    campaign: xr.Dataset,
-    config: Config,
-    point: Point | None = None,
-    calibrate: bool = False,
-    with_forces: bool = False,
+    campaign: xr.Dataset, config: Config, calibrate: bool = False, with_forces: bool = False
 ) -> VirtualSupports:
     """Return the VirtualSupports of every record of a measured campaign.
 
@@ -121,25 +117,21 @@ def virtual_supports(
     rate, secant stiffness and damping by direction. Definitions are those of a study's statistics.
     Measured contact forces are not used; they stand beside the virtual ones along their channels.
 
-    config: of the model. point: effects, and nuisances of the channels that measure a motion; None
-    for the model as given. calibrate: fit frequencies, damping and gains first.
-    with_forces: also give the forces over time.
-
-    Raises CampaignError where the campaign can not be compared with the model, with sentences that
-    say why, one a line.
+    config: of the model. calibrate: fit its frequencies and damping, and the gains, first.
+    with_forces: also give the forces over time. Raises CampaignError where the campaign can not be
+    compared with the model, with sentences that say why, one a line.
     """
     held, notes = _held_channels(campaign, config)
     own = campaign.isel(channel=held)
     signals = signals_of(own)
     structure = Structure(config, own)
-    point = point or Point()
-    holding = holder(structure, signals, point)
+    holding = holder(structure, signals, Point())
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
     if calibrate:
         comparison = Comparison(signals, structure)
-        point = fit(comparison.fitted(), point, comparison.nuisances(), PASSES).point
-        holding = holder(structure, signals, point)
+        fitted = fit(comparison.fitted(), Point(), comparison.nuisances(), PASSES)
+        holding = holder(structure, signals, fitted.point)
     channels, more = force_channels(campaign, holding.model)
     directions = support_directions(holding.model, "each")
     values: list[SupportValue] = []
