@@ -50,19 +50,18 @@ def force_channels(campaign: xr.Dataset, model: ModalModel) -> tuple[list[ForceC
     """Return (the ForceChannels of a campaign, sentences on those at no support of the model)."""
     found, notes = [], []
     signals = campaign_signals(campaign)
-    pressed = campaign["channel_kind"].values == CONTACT_FORCE
-    for channel in np.flatnonzero(pressed & compared_channels(campaign)).tolist():
-        name, place = signals.channels[channel], signals.points[channel]
-        direction = campaign["channel_direction"].values[channel].astype(float)
-        support, why = support_at(model, place), contact_force_fault(model, place, direction)
+    for channel in compared_channels(campaign):
+        if channel.kind != CONTACT_FORCE:
+            continue
+        support, why = support_at(model, channel.point), contact_force_fault(model, channel)
         if support is None or why:
-            notes.append(f"{name} {why}.")
-        elif channel in signals.unit_faults:
-            notes.append(f"{signals.unit_faults[channel]}: {name} is left out.")
+            notes.append(f"{channel.name} {why}.")
+        elif channel.number in signals.unit_faults:
+            notes.append(f"{signals.unit_faults[channel.number]}: {channel.name} is left out.")
         else:
-            weights = across(model, support) @ unit_vector(direction)
-            records = tuple(response[channel] for response in signals.response)
-            found.append(ForceChannel(name, support, weights, records))
+            weights = across(model, support) @ unit_vector(channel.direction)
+            records = tuple(response[channel.number] for response in signals.response)
+            found.append(ForceChannel(channel.name, support, weights, records))
     return found, notes
 
 
@@ -75,11 +74,6 @@ class HeldTwice:
     weaker: Held
     directions: list[SupportDirection]
     channels: list[ForceChannel]
-
-    @property
-    def supports(self) -> tuple[str, ...]:
-        """Return the names of the supports."""
-        return tuple(self.holder.model.support_names)
 
     @cached_property
     def side_by_side(self) -> dict[str, np.ndarray]:
@@ -121,7 +115,7 @@ def estimates(record: HeldTwice, chosen: np.ndarray) -> dict[Key, float]:
         attrs={"gap_m": float(holder.signals.gap[record.run.record])},
     )
     out: dict[Key, float] = {}
-    for support, name in enumerate(record.supports):
+    for support, name in enumerate(holder.model.support_names):
         out[support, "", "force_level"] = float(np.quantile(size[:, support], LEVEL))
         out |= {(support, "", key): float(found[key][support]) for key in FROM_TALLY}
         for direction in record.directions:
@@ -133,9 +127,8 @@ def estimates(record: HeldTwice, chosen: np.ndarray) -> dict[Key, float]:
         virtual, measured = record.side_by_side[channel.name][:, chosen]
         out |= _of_channel(channel, virtual)
         together = np.sqrt(np.mean(virtual**2) * np.mean(measured**2))
-        out[channel.support, channel.name, "correlation"] = (
-            float(np.mean(virtual * measured) / together) if together > 0.0 else np.nan
-        )
+        alike = float(np.mean(virtual * measured) / together) if together > 0.0 else np.nan
+        out[channel.support, channel.name, "correlation"] = alike
     return out
 
 
@@ -202,10 +195,11 @@ def unseen_of(record: HeldTwice) -> list[list[str]]:
     inside = (model.frequencies > 0.0) & (model.frequencies < record.holder.band[1])
     seen = np.sum(model.sensor_shapes[inside][:, record.run.strength > 0.0] ** 2, axis=1)
     seen = seen > STILL * np.mean(seen)
-    out: list[list[str]] = [[] for _ in record.supports]
+    names = list(model.support_names)
+    out: list[list[str]] = [[] for _ in names]
     for direction in record.directions:
         there = np.sum(direction.contact[inside] ** 2, axis=1)
         if np.sum(there * seen) < SEEN * np.sum(there):
             for name in direction.supports:
-                out[record.supports.index(name)].append(direction.direction)
+                out[names.index(name)].append(direction.direction)
     return out

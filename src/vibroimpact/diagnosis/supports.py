@@ -224,6 +224,7 @@ def _forces(holding, run) -> SupportForces:
 def _values(record: HeldTwice) -> Iterator[SupportValue]:
     """Yield the SupportValues of a record, none where all of its stretches diverged."""
     signals, number = record.holder.signals, record.run.record
+    supports = record.holder.model.support_names
     force = record.run.runs.support_force
     fine = np.flatnonzero(np.isfinite(force).all(axis=(1, 2)))
     if not len(fine):
@@ -231,7 +232,7 @@ def _values(record: HeldTwice) -> Iterator[SupportValue]:
     found = with_interval(lambda chosen: estimates(record, chosen), fine)
     measured, agreement = measured_of(record, fine), agreement_of(record, fine)
     unseen = unseen_of(record)
-    for support in range(len(record.supports)):
+    for support in range(len(supports)):
         found[support, "", "agreement"] = float(agreement[support]), np.nan, np.nan
     for key in sorted(found, key=lambda key: key[:2]):
         support, channel, quantity = key
@@ -240,7 +241,7 @@ def _values(record: HeldTwice) -> Iterator[SupportValue]:
             float(signals.load[number]),
             signals.load_unit,
             float(signals.gap[number]),
-            record.supports[support],
+            supports[support],
             channel,
             quantity,
             UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],

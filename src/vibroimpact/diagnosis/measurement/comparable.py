@@ -41,7 +41,7 @@ NO_DIRECTION = 1.0e-6  # a shorter vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
 
-class _Place(NamedTuple):
+class Place(NamedTuple):
     """A channel or a force of a campaign. point (3,): m. direction (3,). directed, known: whether
     its direction is known, and its point too.
     """
@@ -65,10 +65,8 @@ class _Place(NamedTuple):
         return "" if self.known else lost
 
 
-def _places(campaign: xr.Dataset, what: str) -> list[_Place]:
-    """Return the channels, or the forces and accelerations of the base; what: "channel" or
-    "force_channel".
-    """
+def _places(campaign: xr.Dataset, what: str) -> list[Place]:
+    """Return the Places of "channel", or of "force_channel": forces and accelerations of a base."""
     kinds = campaign["channel_kind"].values if what == "channel" else force_kinds(campaign)
     names = map(str, campaign[f"{what}_name"].values)
     points, directions = (
@@ -77,22 +75,17 @@ def _places(campaign: xr.Dataset, what: str) -> list[_Place]:
     directed = np.linalg.norm(directions, axis=1) > NO_DIRECTION
     known = directed & np.isfinite(points).all(axis=1)
     rows = zip(names, map(str, kinds), points, directions, directed, known, strict=True)
-    return [_Place(number, *row) for number, row in enumerate(rows)]
+    return [Place(number, *row) for number, row in enumerate(rows)]
 
 
-def _compared(campaign: xr.Dataset) -> list[_Place]:
+def compared_channels(campaign: xr.Dataset) -> list[Place]:
     """Return the channels that are compared with a model."""
     return [channel for channel in _places(campaign, "channel") if not channel.fault()]
 
 
-def _forces(campaign: xr.Dataset) -> list[_Place]:
+def _forces(campaign: xr.Dataset) -> list[Place]:
     """Return the forces that act at a place."""
     return [force for force in _places(campaign, "force_channel") if force.kind != BASE]
-
-
-def compared_channels(campaign: xr.Dataset) -> np.ndarray:
-    """Return (channel,) bool, whether a channel is compared with a model."""
-    return np.array([not channel.fault() for channel in _places(campaign, "channel")])
 
 
 def channel_rows(campaign: xr.Dataset) -> list[dict]:
@@ -108,7 +101,7 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
     tube = config.structure.kind in TUBES
     structure: Any = build_structure(config) if tube else build_point_structure(config)
 
-    def why(channel: _Place) -> str:
+    def why(channel: Place) -> str:
         if channel.kind == STRAIN and tube:
             return _no_gauge(structure, channel)
         if channel.kind == STRAIN:
@@ -118,22 +111,21 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
         still = no_motion(structure, config.points, channel.point, channel.direction)
         return f"measures {still}: it is left out" if still else ""
 
-    return _left_out((channel, why(channel)) for channel in _compared(campaign))
+    return _left_out((channel, why(channel)) for channel in compared_channels(campaign))
 
 
-def contact_force_fault(model: ModalModel, position: np.ndarray, direction: np.ndarray) -> str:
-    """Return why a contact force is left out of the comparison, "" where it is not.
-
-    model: attached to the campaign. position (3,): m. direction (3,): of the channel.
+def contact_force_fault(model: ModalModel, channel: Place) -> str:
+    """Return why a contact force is left out of the comparison, "" where it is not; model: attached
+    to the campaign.
     """
-    support = support_at(model, position)
+    support = support_at(model, channel.point)
     if support is None:
         return (
             "is a contact force at no support of the model"
             f" ({', '.join(model.support_names) or 'it has none'}): it is left out; give as"
             " channel_point the middle of its support"
         )
-    if np.abs(across(model, support) @ unit_vector(direction)).max() < LEAST_COSINE:
+    if np.abs(across(model, support) @ unit_vector(channel.direction)).max() < LEAST_COSINE:
         return (
             "is a contact force along the tube, in which direction"
             f" {model.support_names[support]} has none in the model: it is left out"
@@ -142,17 +134,15 @@ def contact_force_fault(model: ModalModel, position: np.ndarray, direction: np.n
 
 
 def contact_force_rows(model: ModalModel, campaign: xr.Dataset) -> list[dict]:
-    """Return a row of checks for each contact force that is left out; arguments as of
-    contact_force_fault.
-    """
+    """Return a row of checks for each contact force that is left out of the comparison."""
     return _left_out(
-        (channel, contact_force_fault(model, channel.point, channel.direction))
-        for channel in _compared(campaign)
+        (channel, contact_force_fault(model, channel))
+        for channel in compared_channels(campaign)
         if channel.kind == CONTACT_FORCE
     )
 
 
-def _no_gauge(structure, gauge: _Place) -> str:
+def _no_gauge(structure, gauge: Place) -> str:
     """Return why a gauge does not measure a bending strain of a TubeStructure, "" where it does;
     its direction is the outward normal there.
     """
@@ -193,12 +183,11 @@ def _left_out(faults) -> list[dict]:
 
 
 def campaign_problems(campaign: xr.Dataset) -> list[str]:
-    """Return sentences on why a campaign can not be compared with any model.
-
-    campaign: keeps the contract; its signals are not read.
+    """Return sentences on why a campaign, which keeps the contract, can not be compared with any
+    model; its signals are not read.
     """
     problems = []
-    compared = _compared(campaign)
+    compared = compared_channels(campaign)
     if not compared:
         kinds = sorted({channel.kind for channel in _places(campaign, "channel")})
         problems.append(
@@ -252,9 +241,8 @@ def _drive_problems(campaign: xr.Dataset) -> Iterator[str]:
 
 
 def comparison_problems(config: ConfigPart, campaign: xr.Dataset) -> list[str]:
-    """Return sentences on why a campaign can not be compared with a model.
-
-    config: a checked Config. campaign: as in campaign_problems.
+    """Return sentences on why a campaign can not be compared with the model of a checked Config;
+    see campaign_problems.
     """
     problems, force = [], config.excitation
     if BASE in force_kinds(campaign):
@@ -316,7 +304,8 @@ def _place_problems(config, campaign):
         locate, on = build_centreline(config.structure).locate, "on the tube"
     else:
         locate, on = partial(point_at, config.points), "at a named point"
-    for what, places in (("channel", _compared(campaign)), ("force_channel", _forces(campaign))):
+    kept = {"channel": compared_channels(campaign), "force_channel": _forces(campaign)}
+    for what, places in kept.items():
         for at in places:
             off = _off(locate, at.point, f"{what}_point[{at.number}]")
             if off and not _off(locate, 1.0e-3 * at.point, ""):
