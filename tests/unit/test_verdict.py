@@ -15,9 +15,10 @@ from vibroimpact.verdict.content import (
     Verdict,
     json_schema,
     not_testable,
+    read_verdict,
     schema_text,
+    write_verdict,
 )
-from vibroimpact.verdict.file import read_verdict, write_verdict
 
 # As the two engines write them, with the keys in their order: a clearance states its unit first.
 HEAD = """{

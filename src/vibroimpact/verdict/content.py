@@ -1,7 +1,7 @@
-"""The content of verdict.json: which effects a model lacks, and the evidence for it.
+"""verdict.json: which effects a model lacks, and the evidence for it; its one writer and reader.
 
-Both engines build a `Verdict` and every reader is given one. The JSON schema is generated from
-the classes below; `verdict.schema.json` beside this file is a copy for readers in other languages.
+The JSON schema is generated from the classes below; `verdict.schema.json` beside this file is a
+copy for readers in other languages.
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from pydantic import (
     Field,
     ModelWrapValidatorHandler,
     PrivateAttr,
+    ValidationError,
     WithJsonSchema,
     model_serializer,
     model_validator,
 )
 
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.records import plain_values
+from vibroimpact.records import RecordError, plain_values, read_text, write_text
 
 Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown", "not_testable"]
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
@@ -61,10 +62,8 @@ class _Content(BaseModel):
 
     @classmethod
     def from_values(cls, values: dict[str, Any]) -> Self:
-        """Return the content of nested dicts and lists; numpy values become plain ones.
-
-        Numbers that are not finite become None. Raises pydantic.ValidationError, a ValueError,
-        that names every key that does not fit.
+        """Return the content of nested dicts and lists; numpy values become plain ones, and numbers
+        that are not finite None. Raises pydantic.ValidationError, a ValueError.
         """
         return cls.model_validate(plain_values(values))
 
@@ -250,9 +249,8 @@ class Verdict(_Content):
         return self
 
     def shown_effects(self) -> list[FoundEffect]:
-        """Return the effects of the completed model.
-
-        These are the named effects, or the most probable ones where the verdict is ambiguous.
+        """Return the effects of the completed model: the named ones, or the most probable ones
+        where the verdict is ambiguous.
         """
         return self.effects or (self.most_probable if self.verdict == "ambiguous" else [])
 
@@ -270,10 +268,8 @@ def not_testable(
     misfit: MisfitBySplit | None = None,
     cost: dict[str, Any] | None = None,
 ) -> Verdict:
-    """Return the verdict on a campaign that can not be judged.
-
-    checks: rows as in CheckResult, at least one with level refuse; next_measurement: a sentence;
-    cost: as Cost, nothing where None.
+    """Return the verdict on a campaign that can not be judged; checks: rows of CheckResult, cost:
+    values of Cost, nothing where None.
     """
     cost = cost or {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}}
     return Verdict.from_values(
@@ -295,6 +291,23 @@ def not_testable(
             "cost": cost,
         }
     )
+
+
+def write_verdict(verdict: Verdict, path: str | Path) -> None:
+    """Write a verdict as JSON, whole or not at all.
+
+    Raises pydantic.ValidationError where the content does not keep the schema.
+    """
+    values = Verdict.from_values(verdict.to_values()).to_values()
+    write_text(json.dumps(values, indent=1, allow_nan=False), path)
+
+
+def read_verdict(path: str | Path) -> Verdict:
+    """Return the verdict of a file. Raises RecordError where there is none."""
+    try:
+        return Verdict.model_validate(json.loads(read_text(path)))
+    except (json.JSONDecodeError, ValidationError) as error:
+        raise RecordError(f"{path}: is no verdict: {error}") from error
 
 
 def json_schema() -> dict[str, Any]:
