@@ -112,11 +112,9 @@ def _displacement_shapes(
     normals: Mapping[int, np.ndarray],
     basis: np.ndarray | None,
 ) -> tuple[ModalModel, np.ndarray]:
-    """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
-
-    normals: {index of a place: outward normal (3,)} of strain gauges there on a tube; their shapes
-    are the last of the model's sensors. Raises ValueError for a place more than 5 mm off the
-    structure.
+    """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m; normals:
+    {index of a place: outward normal (3,)} of strain gauges there on a tube, whose shapes are the
+    last of the model's sensors.
     """
     if config.structure.kind in TUBES:
         gauges = [(f"place_{number}", normal) for number, normal in normals.items()]
@@ -170,10 +168,7 @@ def with_channel_points(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
 
 
 def _ratio_of_points(campaign, model):
-    """Return (contact_point,) the clearance over the nominal gap of the record.
-
-    Raises CampaignError when the campaign does not have as many supports as the model.
-    """
+    """Return (contact_point,) the clearance over the nominal gap of the record."""
     ratios = support_ratios(campaign)
     if ratios is None:
         return np.ones(len(model.support_of_point))

@@ -25,17 +25,15 @@ def moving(kinds: Collection[str]) -> np.ndarray:
 
 
 def of_modes(kinds: Collection[str]) -> np.ndarray:
-    """Return (channel,) bool: whether channels of kinds (channel,) respond linearly to the modes.
-
-    A motion and a strain do. A contact force does not: it is zero without contact.
+    """Return (channel,) bool: whether channels of kinds (channel,) respond linearly to the modes,
+    as a motion and a strain do. A contact force does not: it is zero without contact.
     """
     return moving(kinds) | np.array([kind == STRAIN for kind in kinds], bool)
 
 
 def orders(kinds: Collection[str]) -> np.ndarray:
-    """Return (channel,) int: the order of the time derivative of displacement that each measures.
-
-    It is 0 for a strain, which is in phase with displacements, and for a contact force.
+    """Return (channel,) int: the order of the time derivative of displacement that each measures; 0
+    for a strain, which is in phase with displacements, and for a contact force.
     """
     return np.array([TIME_DERIVATIVES.get(kind, 0) for kind in kinds], int)
 
@@ -88,7 +86,8 @@ def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.nd
     of an unknown kind and for a contact force at no support.
     """
     pressed = np.flatnonzero(~of_modes(kinds))
-    weights = np.zeros((len(pressed), len(model.support_names), 2))
+    supports = len(model.support_names)
+    weights = np.zeros((len(pressed), supports, 2))
     for row, channel in zip(weights, pressed.tolist(), strict=True):
         support = support_at(model, model.sensor_positions[channel])
         if kinds[channel] != CONTACT_FORCE or support is None:
@@ -98,4 +97,4 @@ def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.nd
                 " support"
             )
         row[support] = across(model, support) @ model.sensor_directions[channel]
-    return weights.reshape(len(pressed), -1)
+    return weights.reshape(len(pressed), 2 * supports)

@@ -112,14 +112,11 @@ def noise_of(
 ) -> np.ndarray:
     """Return (channel,) RMS of the noise in SI, as stated by the campaign.
 
-    Without a statement, it is the least spectral density of the record of the lowest load. Where
-    that has too few lines above the band, it is what the forces do not explain in the band.
-
-    lowest: (force (force_channel, sample), response (channel, sample)) of that record. rate: Hz.
-    band: Hz. factors (channel,): SI units per stored unit.
-
-    With contact, impacts fill the range above the band. So the density is the mean over the parts
-    of the spectrum that are as low as the lowest one, within their scatter.
+    Without a statement, it is the least spectral density of the record of the lowest load: (force
+    (force_channel, sample), response (channel, sample)). With contact, impacts fill the range above
+    the band, so that it is the mean over the parts of the spectrum that are as low as the lowest
+    one, within their scatter. Where there are too few lines above the band, it is what the forces
+    do not explain in the band. rate, band: Hz. factors (channel,): SI units per stored unit.
     """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float) * factors
@@ -176,9 +173,8 @@ def _unexplained(force, response, rate, band):
 
 
 def _edges(first, last):
-    """Return the line numbers that divide the lines from first to last into parts.
-
-    A part has half as many lines as lie below it, LEAST_LINES to MOST_LINES.
+    """Return the line numbers that divide the lines from first to last into parts, each of half as
+    many lines as lie below it, LEAST_LINES to MOST_LINES.
     """
     edges = [first]
     while edges[-1] < last:

@@ -64,9 +64,8 @@ class Rates:
 
 
 def rates_of(sampling: float, integration: ConfigPart) -> Rates:
-    """Return the Rates of records sampled at a frequency in Hz.
-
-    integration: section of a configuration, whose steps per second are the least.
+    """Return the Rates of records sampled at a frequency in Hz; the steps per second of the section
+    integration are the least.
     """
     decimation = max(int(sampling / SLOWEST_HZ), 1)
     return whole_rates(sampling / decimation, integration, decimation)
@@ -94,15 +93,11 @@ def stretches_of(
     rates: Rates,
     scale: np.ndarray,
 ) -> list[Stretch]:
-    """Return the Stretch at each (record, start in s) of `places`.
-
-    band: of held_band. scale (channel,): displacement per unit of what a channel measures, other
-    than 1 for strains.
+    """Return the Stretch at each (record, start in s) of `places`; band: of held_band, scale
+    (channel,): of displacement_scale.
     """
-    whole = {
-        record: _fine(signals, record, band, rates, scale)
-        for record in dict.fromkeys(record for record, _ in places)
-    }
+    records = dict.fromkeys(record for record, _ in places)
+    whole = {record: _fine(signals, record, band, rates, scale) for record in records}
     out = []
     for record, start in places:
         force, motion = (_cut(values, start, duration_s, rates) for values in whole[record])

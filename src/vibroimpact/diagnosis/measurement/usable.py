@@ -13,12 +13,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.base_motion import relative_to_base
-from vibroimpact.campaign.checks.file_checks import (
-    check_campaign,
-    check_file,
-    refused,
-    usable_signals,
-)
+from vibroimpact.campaign.checks import file_checks
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, fill_missing
@@ -37,10 +32,7 @@ FEWEST_RECORDS = 2
 
 
 class Refused(Exception):
-    """A campaign that can not be compared with a model.
-
-    checks: rows of all checks, one of them of level refuse.
-    """
+    """A campaign that can not be compared with a model; checks: all rows, one of level refuse."""
 
     def __init__(self, sentence: str, checks: Sequence[dict[str, Any]]):
         super().__init__(sentence)
@@ -50,12 +42,11 @@ class Refused(Exception):
 def usable(
     campaign: xr.Dataset | str | Path, config: Config
 ) -> tuple[xr.Dataset, list[dict[str, Any]]]:
-    """Return (campaign Dataset with what can be compared, rows of all checks).
-
-    campaign: a Dataset, or the file of one. Raises Refused, with the sentence why.
+    """Return (what can be compared of a campaign or the file of one, rows of all checks). Raises
+    Refused, with the sentence why.
     """
     whole, checks = checked_campaign(campaign)
-    if whole is not None and not refused(checks):
+    if whole is not None and not file_checks.refused(checks):
         checks += comparable.channel_rows(whole)
         problems = comparable.comparison_problems(config, whole)
         checks += [check_row("model", "refuse", f"{problem}.") for problem in problems]
@@ -84,16 +75,16 @@ def checked_campaign(
 ) -> tuple[xr.Dataset | None, list[dict[str, Any]]]:
     """Return (Dataset or None, rows) of a Dataset or a file."""
     if not isinstance(campaign, xr.Dataset):
-        return check_file(campaign)
-    rows = check_campaign(campaign)
-    return (None if refused(rows) else fill_missing(campaign)), rows
+        return file_checks.check_file(campaign)
+    rows = file_checks.check_campaign(campaign)
+    return (None if file_checks.refused(rows) else fill_missing(campaign)), rows
 
 
 def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     """Return what the checks leave of a campaign. Raises Refused where that is too little."""
-    if refused(checks) or whole is None:
+    if file_checks.refused(checks) or whole is None:
         raise Refused(next(row["message"] for row in checks if row["level"] == "refuse"), checks)
-    force, response = usable_signals(whole, checks)
+    force, response = file_checks.usable_signals(whole, checks)
     out = comparable.left_out(checks) | {
         row["channel"]
         for row in checks
