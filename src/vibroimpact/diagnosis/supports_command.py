@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .supports import SupportValue
 
 MODEL = "config/study.yaml"
+HEADER = ("support", "quantity", "value", "90 % interval", "measured", "")
 # What a quantity is called, and its unit as shown; of a secant value the direction follows.
 SHOWN = {
     "rms_force": ("contact force, RMS", "N"),
@@ -57,12 +58,15 @@ def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 where there is no answer."""
     from vibroimpact.campaign.file import CampaignError
     from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.reading import load_config
     from vibroimpact.records import RecordError, write_table
 
     from .supports import SupportValue, virtual_supports
 
     try:
-        config = _model(options.model)
+        if options.model == MODEL and not Path(MODEL).is_file():
+            raise ConfigError([f"there is no {MODEL} here: name the model with --model FILE.yaml"])
+        config = load_config(options.model)
         campaign = _campaign(options.campaign)
         found = virtual_supports(campaign, config, calibrate=options.calibrate)
         if options.csv:
@@ -83,16 +87,6 @@ def _tell(path: str, lines: Iterable[str]) -> None:
     """Print lines about a file to the error stream."""
     for line in lines:
         print(f"{path}: {line}", file=sys.stderr)
-
-
-def _model(path: str):
-    """Return the Config of a file. Raises ConfigError."""
-    from vibroimpact.config.problems import ConfigError
-    from vibroimpact.config.reading import load_config
-
-    if path == MODEL and not Path(path).is_file():
-        raise ConfigError([f"there is no {MODEL} here: name the model with --model FILE.yaml"])
-    return load_config(path)
 
 
 def _campaign(path: str) -> xr.Dataset:
@@ -119,19 +113,16 @@ def _campaign(path: str) -> xr.Dataset:
 def as_text(values: Sequence[SupportValue]) -> str:
     """Return the table of values as text, one block per record."""
     blocks = []
-    for _, rows in groupby(values, lambda value: value.record):
-        own = list(rows)
-        blocks.append("\n".join([_heading(own[0]), *_aligned([HEADER, *map(_cells, own)])]))
+    for record, own in groupby(values, lambda value: value.record):
+        rows = list(own)
+        load, gap = rows[0].load, rows[0].gap_m
+        shown = f", gap {1e3 * gap:.4g} mm" if gap == gap else ""
+        cells = [HEADER, *map(_cells, rows)]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = ["  ".join(["", *map(str.ljust, row, widths)]).rstrip() for row in cells]
+        heading = f"Record {record}: {load:.4g} {rows[0].load_unit} RMS{shown}"
+        blocks.append("\n".join([heading, *lines]))
     return "\n\n".join(blocks)
-
-
-HEADER = ("support", "quantity", "value", "90 % interval", "measured", "")
-
-
-def _heading(value: SupportValue) -> str:
-    """Return the line above the table of a record."""
-    gap = f", gap {1e3 * value.gap_m:.4g} mm" if value.gap_m == value.gap_m else ""
-    return f"Record {value.record}: {value.load:.4g} {value.load_unit} RMS{gap}"
 
 
 def _cells(value: SupportValue) -> tuple[str, ...]:
@@ -149,13 +140,3 @@ def _cells(value: SupportValue) -> tuple[str, ...]:
         f"{value.measured:.4g}" if value.measured == value.measured else "",
         value.remark,
     )
-
-
-def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Return rows of texts as lines, columns side by side."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADER))]
-    return [
-        "  "
-        + "  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
