@@ -1,7 +1,7 @@
 """verdict.json: which effects a model lacks, and the evidence for it; its one writer and reader.
 
-The JSON schema is generated from the classes below; `verdict.schema.json` beside this file is a
-copy for readers in other languages.
+`verdict.schema.json` beside this file is the JSON schema of `Verdict` for readers in other
+languages; tests/unit/test_verdict.py compares it.
 """
 
 from __future__ import annotations
@@ -30,8 +30,6 @@ Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown"
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
 WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
 WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
-
-SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
 
 # An integer stays one, so that a file that is read and written again keeps its bytes.
 Number = Annotated[int | float, WithJsonSchema({"type": "number"})]
@@ -308,14 +306,3 @@ def read_verdict(path: str | Path) -> Verdict:
         return Verdict.model_validate(json.loads(read_text(path)))
     except (json.JSONDecodeError, ValidationError) as error:
         raise RecordError(f"{path}: is no verdict: {error}") from error
-
-
-def json_schema() -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of verdict.json."""
-    schema = Verdict.model_json_schema(mode="validation")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-
-
-def schema_text() -> str:
-    """Return the text of verdict.schema.json; tests compare it with the committed file."""
-    return json.dumps(json_schema(), indent=2) + "\n"
