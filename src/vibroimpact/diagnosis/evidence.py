@@ -2,8 +2,6 @@
 model's, and the prediction of a sensor that is left free.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -26,7 +24,6 @@ STATES = ("before", "after")
 SERIES = ("measured", *STATES)
 HOLDING_BANDS = 10  # logarithmic, over the band of the lines
 MOST_FREE = 96  # runs with a sensor left free, of both states
-FREE_STRETCHES = 2
 LAW_STRETCHES = 3
 WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
 FINER = 4  # times the sampling of the runs, as a waveform is drawn
@@ -182,7 +179,7 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
     order = sorted(range(fitted, len(bench.stretches)), key=lambda at: -bench.stretches[at].load)
     held = bench.measures_motion
     out: list[tuple[int, int]] = []
-    for number in list(dict.fromkeys([order[0], order[-1]]))[:FREE_STRETCHES]:
+    for number in dict.fromkeys([order[0], order[-1]]):
         moving = np.flatnonzero(bench.stretches[number].moving & held)
         if len(STATES) * (len(out) + len(moving)) <= MOST_FREE or not out:
             out += [(number, int(channel)) for channel in moving]

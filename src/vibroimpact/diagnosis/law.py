@@ -14,8 +14,6 @@ impact forces from remote sensors, M. De Araújo, J. Antunes, P. Piteau, J. Soun
 1015-1041.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

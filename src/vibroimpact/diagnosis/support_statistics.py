@@ -2,8 +2,6 @@
 same of contact forces that were measured.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

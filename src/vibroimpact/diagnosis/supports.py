@@ -9,8 +9,6 @@ waves; here an observer gives the forces. That two runs driven by the same data 
 data determine them: H. Abarbanel, N. Rulkov, M. Sushchik, Phys. Rev. E 53 (1996) 4528.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Whole records held to their measurement, cut in stretches that are held independently."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@
 languages; tests/unit/test_verdict.py compares it.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable
 from pathlib import Path

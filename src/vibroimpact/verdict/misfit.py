@@ -4,8 +4,6 @@ closes, and the text in place of a model that is no better.
 closed_fraction is the only definition of that share.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -5,8 +5,6 @@ tube, and the forces of supports. Other channels are left out. A campaign with t
 left is refused. Each comes with a sentence that says why.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple

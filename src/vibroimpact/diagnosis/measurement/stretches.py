@@ -1,7 +1,5 @@
 """The measured stretches that runs are held to: force and motion at the integration step."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd

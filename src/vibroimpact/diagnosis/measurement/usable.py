@@ -2,8 +2,6 @@
 left.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +19,6 @@ from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.reduction.modal_model import ModalModel
 
 from . import comparable
 from .attached_model import attach
@@ -114,31 +111,28 @@ def _refuse(sentence, checks):
 
 
 def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
-    """Return rows for channels that do not go with the model attached to the campaign."""
-    model = attach(config, campaign)
-    return [*comparable.contact_force_rows(model, campaign), *_contradicted(model, campaign)]
-
-
-def _contradicted(model: ModalModel, campaign: xr.Dataset) -> list[dict[str, Any]]:
-    """Return rows for channels that contradict the linear model at the lowest level: swapped,
-    reversed, in another unit.
+    """Return rows for channels that do not go with the model attached to the campaign: contact
+    forces that it has not, and what contradicts the linear model at the lowest level, swapped,
+    reversed, or in another unit.
     """
-    measured = relative_to_base(campaign_signals(campaign))
+    model, measured = attach(config, campaign), relative_to_base(campaign_signals(campaign))
+    rows = comparable.contact_force_rows(model, campaign)
     record = measured.lowest()
     spectra = None if record is None else transfer(measured, record)
     if record is None or spectra is None:
-        return []
+        return rows
     s = 2j * np.pi * spectra.frequency
     forces = np.ones((1, s.size))  # each over the first one
     if measured.force[record].shape[0] > 1:
         others = replace(measured, response=[force[1:] for force in measured.force])
         beside = transfer(others, record)
         if beside is None:
-            return []
+            return rows
         forces = np.concatenate([forces, beside.h1])
     receptance = 1.0 / (model.omega[:, None] ** 2 + s**2 + model.damping[:, None] * s)
-    motion = np.einsum("mc,ml,ml->cl", model.sensor_shapes, model.drive_shapes @ forces, receptance)
-    sensed = s ** orders(measured.kinds)[:, None] * of_modes(measured.kinds)[:, None]
-    return compare_with_model(
-        spectra, motion * sensed, measured.channels, measured.kinds, measured.records[record]
+    driven = model.drive_shapes @ forces
+    motion = np.einsum("mc,ml,ml->cl", model.sensor_shapes, driven, receptance)
+    motion *= s ** orders(measured.kinds)[:, None] * of_modes(measured.kinds)[:, None]
+    return rows + compare_with_model(
+        spectra, motion, measured.channels, measured.kinds, measured.records[record]
     )
