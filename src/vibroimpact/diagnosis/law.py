@@ -15,6 +15,7 @@ impact forces from remote sensors, M. De Araújo, J. Antunes, P. Piteau, J. Soun
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -51,11 +52,10 @@ class Places:
     shapes: np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
-class Demand:
-    """What the sensors demand during a stretch, in the band.
+class Demand(NamedTuple):
+    """What the sensors demand, in the band.
 
-    force, motion (place, sample): N on the structure, and m, of the settled samples.
+    force, motion (place, sample or line): N on the structure, and m.
     resolution (place,): share of each force that the sensors know, 0 where only its prior does.
     explained: share of the power, which the linear model leaves, that the forces explain.
     beyond: that power, over the power of the sensors.
@@ -99,11 +99,10 @@ def demanded(
     frequency: np.ndarray,
     lines: tuple[np.ndarray, np.ndarray],
     variance: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
-    """Return (force (place, line) N, motion (place, line) m, resolution (place,), explained,
-    beyond), see Demand.
+) -> Demand:
+    """Return the Demand at frequency (line,) in Hz.
 
-    frequency (line,): Hz. lines: (drive (force_channel, line) N, sensors (sensor, line) m).
+    lines: (drive (force_channel, line) N, sensors (sensor, line) m).
     variance (sensor, line): of noise and model, m²; infinite of a sensor that tells nothing.
     """
     drive, sensors = lines
@@ -123,7 +122,7 @@ def demanded(
     misfit = white - np.squeeze(matrix @ force[..., None], -1)
     explained = 1.0 - float(np.sum(np.abs(misfit) ** 2) / max(np.sum(np.abs(white) ** 2), 1e-300))
     beyond = float(np.sum(np.abs(left) ** 2) / max(np.sum(np.abs(sensors) ** 2), 1e-300))
-    return force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained, beyond
+    return Demand(force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained, beyond)
 
 
 def _most_probable(normal, pull, frequency):
@@ -161,7 +160,9 @@ def _most_probable(normal, pull, frequency):
 
 
 def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Point) -> Demand:
-    """Return the Demand of a stretch of a Bench, by the linear structure of a Point."""
+    """Return the Demand of a stretch of a Bench, of its settled samples, by the linear structure of
+    a Point.
+    """
     structure, rates, band = comparison.structure, comparison.rates, comparison.band
     model, chain = structure.model(point), structure.measuring(point)
     first, last = _window(comparison, bench, stretch)
@@ -181,15 +182,13 @@ def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Poi
     )
     sensors = sensors * np.exp(2j * np.pi * frequency * chain.delay[:, None])
     variance = _variance(comparison, frequency, sensors, float(np.sum(window**2)))
-    *both, resolution, explained, beyond = demanded(
-        model, places_of(model), frequency, (drive, sensors), variance
-    )
-    lines = np.zeros((2, len(resolution), samples // 2 + 1), complex)
-    lines[..., inside] = both
+    found = demanded(model, places_of(model), frequency, (drive, sensors), variance)
+    lines = np.zeros((2, len(found.resolution), samples // 2 + 1), complex)
+    lines[..., inside] = found.force, found.motion
     series = np.fft.irfft(lines, samples, axis=-1) / ratio
     own = round(stretch.start_s * rates.sampling) - first + settled(bench)
     force, motion = series[..., own]
-    return Demand(force, motion, resolution, explained, beyond)
+    return found._replace(force=force, motion=motion)
 
 
 def _window(comparison, bench, stretch):

@@ -20,11 +20,6 @@ def point_at(
     when every one is more than 5 mm away from `what`, which is there.
     """
     place = np.asarray(place, float)
-    if not points:
-        raise ValueError(
-            f"{what} is at {place.tolist()} m, but no point of the structure has a place: give"
-            " `points`, {name: [x, y, z]} in m, for the named points of the structure"
-        )
     away = {name: float(np.linalg.norm(place - at)) for name, at in points.items()}
     nearest = min(away, key=lambda name: away[name])
     if away[nearest] > LOCATION_TOLERANCE_M:
