@@ -283,9 +283,7 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
 
 def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
     """Return (stretch, channel) whose prediction gains most in the stretch of the highest load; the
-    largest error where none gains.
-
-    error (state, free_stretch, channel): NaN of what was not predicted.
+    largest error where none gains. error (state, free_stretch, channel): NaN of the others.
     """
     before, after = np.nan_to_num(error[0, 0]), np.nan_to_num(error[1, 0])
     gain = np.minimum(before, 2.0) - np.minimum(after, 2.0)

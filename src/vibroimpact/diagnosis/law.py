@@ -192,9 +192,7 @@ def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Poi
 
 
 def _window(comparison, bench, stretch):
-    """Return (first, last): samples of the record of a stretch with margins, where the record has
-    them.
-    """
+    """Return (first, last): samples of a stretch with margins, where its record has them."""
     sampling = comparison.rates.sampling
     whole = valid_samples(comparison.signals, stretch.record) / comparison.signals.rate
     end = min(stretch.start_s + bench.schedule.duration + MARGIN_S, whole - FADE_S)

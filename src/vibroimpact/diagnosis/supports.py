@@ -144,10 +144,7 @@ def virtual_supports(
 
 
 def _held_channels(campaign, config):
-    """Return (indices of the channels that are held, sentences on what is left out).
-
-    Raises CampaignError where nothing can be held.
-    """
+    """Return (indices of the channels that are held, sentences on what is left out)."""
     problems = comparison_problems(config, campaign)
     if not config.supports:
         problems.append(
@@ -185,9 +182,7 @@ def _unusable(holding) -> Iterator[str]:
 
 
 def _doubts(signals, run) -> Iterator[str]:
-    """Yield sentences on the stretches of a record that could not be run, and on its channels that
-    are mostly noise.
-    """
+    """Yield sentences on stretches of a record that diverged, and on channels of mostly noise."""
     record, force = signals.record_names[run.record], run.runs.support_force
     lost = int(np.sum(~np.isfinite(force).all(axis=(1, 2))))
     if lost:
@@ -250,10 +245,7 @@ def _values(record: HeldTwice) -> Iterator[SupportValue]:
 
 
 def _remark(quantity, agreement, unseen):
-    """Return why a quantity of a support can not be relied on, "" where it can.
-
-    unseen: directions there that no sensor sees.
-    """
+    """Return why a quantity can not be relied on, "" where it can; unseen: directions there."""
     if agreement < AGREEMENT:
         return f"not held: forces under two strengths agree to {agreement:.2f}"
     along = quantity.rsplit("_", 1)[-1]

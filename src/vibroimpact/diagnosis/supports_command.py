@@ -90,10 +90,7 @@ def _tell(path: str, lines: Iterable[str]) -> None:
 
 
 def _campaign(path: str) -> xr.Dataset:
-    """Return the records and channels of a campaign that can be used, and tell what can not.
-
-    Raises CampaignError where it is refused.
-    """
+    """Return what can be used of a campaign, and tell what can not. Raises CampaignError."""
     from vibroimpact.campaign.checks import file_checks
     from vibroimpact.campaign.file import CampaignError
 

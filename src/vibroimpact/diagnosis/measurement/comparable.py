@@ -1,8 +1,7 @@
 """Which channels of a campaign are compared with a model, and why a comparison is not possible.
 
 The model simulates motions under forces in N or on a moving base, strains of the outer fibre of a
-tube, and the forces of supports. Other channels are left out. A campaign with too little
-left is refused. Each comes with a sentence that says why.
+tube, and the forces of supports. Other channels are left out, with a sentence that says why.
 """
 
 from collections.abc import Iterator
@@ -285,14 +284,11 @@ def _gap_problems(config, campaign):
 
 
 def _push_problems(config, campaign):
-    """Yield a sentence for every force that pushes a structure of named points where it does not
-    move.
-    """
+    """Yield a sentence for every force along which a structure of named points does not move."""
     structure = build_point_structure(config)
-    for force in _forces(campaign):
-        if force.known and (
-            still := no_motion(structure, config.points, force.point, force.direction)
-        ):
+    for force in filter(lambda force: force.known, _forces(campaign)):
+        still = no_motion(structure, config.points, force.point, force.direction)
+        if still:
             yield f"force channel {force.name} acts {still}: give its degree of freedom a name"
 
 
