@@ -10,7 +10,7 @@ from pathlib import Path
 
 from vibroimpact.config.reading import read_yaml
 from vibroimpact.records import write_table
-from vibroimpact.verdict.file import read_verdict
+from vibroimpact.verdict.content import read_verdict
 
 # u = mass y'' + damping y' + stiffness y + quadratic y² + cubic y³, volts and seconds. Source: Noel
 # and Schoukens, Int. J. Control 2017.

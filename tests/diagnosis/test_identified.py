@@ -28,7 +28,7 @@ from vibroimpact.diagnosis.identified.trial import Trial
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.verdict.file import read_verdict
+from vibroimpact.verdict.content import read_verdict
 
 FEW = ("cubic_stiffness", "clearance", "single_friction", "saturation_stiffness", "quadratic_drag")
 STATED = MeasuredStructure(

@@ -117,6 +117,16 @@ def test_measured_contact_forces_stand_beside_and_change_nothing(measured, found
     ]
 
 
+def test_a_contact_force_at_no_support_is_told(measured):
+    path, model, _ = measured
+    campaign = vi.read_campaign(path).isel(record=[0])
+    place = campaign.channel_point.values.copy()
+    place[campaign.channel_kind == "contact_force"] = (0.0, 0.0, 1.0)
+    moved = campaign.assign(channel_point=campaign.channel_point.copy(data=place))
+    found = vi.virtual_supports(moved, vi.load_config(model))
+    assert any("at no support of the model" in note for note in found.notes)
+
+
 def test_a_direction_that_no_sensor_sees_is_named(measured):
     path, model, _ = measured
     campaign = vi.read_campaign(path).isel(record=[1])

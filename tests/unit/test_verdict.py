@@ -1,23 +1,25 @@
 """The verdict: what is written is valid, comes back unchanged, and keeps its schema."""
 
 import json
+from pathlib import Path
 
 import jsonschema
 import pytest
 from pydantic import ValidationError
 
 from tests.discrepancy_results import made_up_verdict
+from vibroimpact import verdict
 from vibroimpact.records import RecordError
 from vibroimpact.verdict.content import (
     CONCLUSIONS,
-    SCHEMA_FILE,
     Estimate,
     Verdict,
-    json_schema,
     not_testable,
-    schema_text,
+    read_verdict,
+    write_verdict,
 )
-from vibroimpact.verdict.file import read_verdict, write_verdict
+
+SCHEMA = Path(verdict.__file__).with_name("verdict.schema.json")
 
 # As the two engines write them, with the keys in their order: a clearance states its unit first.
 HEAD = """{
@@ -93,8 +95,16 @@ def test_a_file_that_is_read_and_written_keeps_its_bytes(text, tmp_path):
     assert verdict.p_global_before == 2.1078014774627546e-99
 
 
+def json_schema():
+    """The JSON schema (draft 2020-12) of verdict.json."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **Verdict.model_json_schema(),
+    }
+
+
 def test_the_committed_schema_is_the_schema():
-    assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text()
+    assert SCHEMA.read_text(encoding="utf-8") == json.dumps(json_schema(), indent=2) + "\n"
 
 
 @pytest.mark.parametrize("conclusion", CONCLUSIONS)

@@ -8,7 +8,7 @@ from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_record, write_text
 from vibroimpact.reports.discrepancy_page import FREE_RUNS, NOISE, discrepancy_page
-from vibroimpact.verdict.file import read_verdict
+from vibroimpact.verdict.content import read_verdict
 
 redirect_output(snakemake.log[0])
 model = model_from(snakemake.params.model)

@@ -153,8 +153,7 @@ def _both(kind, hidden, sets):
 
 def _held(verdict):
     """Return the misfit of the records that took no part, {} where there are none."""
-    misfit = verdict["misfit"]
-    return misfit.get("verification") or misfit.get("holdout") or {}
+    return verdict["misfit"].get("holdout") or {}
 
 
 def _misfit(verdict):

@@ -127,6 +127,16 @@ def undelayed(motion: np.ndarray, delay: np.ndarray, rate: float) -> np.ndarray:
     return out
 
 
+def sampled_motion(bench: Bench, stretch: int, delay: np.ndarray) -> np.ndarray:
+    """Return (channel, sample) m: the measured motion at the samples of the runs, before delays
+    (channel,) in s.
+    """
+    schedule = bench.schedule
+    ratio = round(schedule.steps_per_second / schedule.sampling_frequency)
+    motion = undelayed(bench.stretches[stretch].motion, delay, schedule.steps_per_second)
+    return motion[1 : 1 + schedule.samples * ratio : ratio].T
+
+
 def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     """Return (point, stretch, channel, line) complex: the spectrum of the holding force in N.
 

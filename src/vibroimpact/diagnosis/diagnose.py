@@ -24,9 +24,9 @@ from vibroimpact.verdict.content import (
     MisfitBySplit,
     Verdict,
     not_run_sentence,
+    write_verdict,
 )
 from vibroimpact.verdict.content import not_testable as not_testable_verdict
-from vibroimpact.verdict.file import write_verdict
 from vibroimpact.verdict.misfit import makes_worse, not_offered
 
 from .comparison import Comparison

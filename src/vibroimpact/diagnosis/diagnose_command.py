@@ -89,7 +89,7 @@ def summary(verdict: Verdict) -> list[str]:
     shares["something else"] = verdict.probability_something_else
     lines += [f"  {chance:6.1%}  {name}" for name, chance in shares.items() if chance]
     lines += [f" {told}" for told in [not_run_sentence(verdict.not_run)] if told]
-    apart = verdict.misfit.taking_no_part()
+    apart = verdict.misfit.holdout
     if apart is not None and apart.before_dB is not None and apart.after_dB is not None:
         lines.append(
             f"  held-out spectra: {apart.before_dB:.2f} dB off before, {apart.after_dB:.2f} dB"

@@ -2,27 +2,28 @@
 model's, and the prediction of a sensor that is left free.
 """
 
-from __future__ import annotations
-
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 from scipy.signal import resample_poly
 
-from .bench import Bench, in_band, settled
+from vibroimpact.integration.held_run import HeldRecords, hold
+from vibroimpact.reduction.modal_model import ModalModel
+
+from .bench import Bench, in_band, lane_of, sampled_motion, settled
 from .comparison import Comparison
 from .explanations import Point
-from .held_states import HeldState, held_state, measured_motion
-from .law import Demand, Places, demand_of
+from .law import Demand, Places, demand_of, element_force, places_of
 from .measurement.sensed_motion import STRAIN
+from .measurement.sensor_chain import Measuring
 from .measurement.stretches import Stretch
 
 STATES = ("before", "after")
 SERIES = ("measured", *STATES)
 HOLDING_BANDS = 10  # logarithmic, over the band of the lines
 MOST_FREE = 96  # runs with a sensor left free, of both states
-FREE_STRETCHES = 2
 LAW_STRETCHES = 3
 WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
 FINER = 4  # times the sampling of the runs, as a waveform is drawn
@@ -31,6 +32,82 @@ PLACES = (  # of a campaign: where its channels and forces are
     *(f"{role}_{key}" for role in ("channel", "force_channel") for key in ("point", "direction")),
 )
 ACTS = 0.3  # of the power of the sensors: beyond what the drive alone does
+
+
+@dataclass(frozen=True, eq=False)
+class HeldState:
+    """Runs of one Point on the stretches of a Bench; the first runs are those with all held.
+
+    records: of the channels, then the Places. free {(stretch, channel): run}.
+    """
+
+    bench: Bench
+    model: ModalModel
+    places: Places
+    chain: Measuring
+    records: HeldRecords
+    free: dict[tuple[int, int], int]
+
+    def holding(self) -> np.ndarray:
+        """Return (stretch, channel, sample) N: the holding force with all held, as a residual of
+        what was measured.
+        """
+        gain = self.chain.gain[:, None]
+        force = self.records.force[: len(self.bench.stretches), : len(gain)]
+        return force.astype(float) * gain
+
+    def at_places(self, stretch: int) -> np.ndarray:
+        """Return (2, place, sample): force in N and motion in m with all sensors held."""
+        motion = self.records.motion[stretch, len(self.chain.gain) :].astype(float)
+        supports = 2 * len(self.model.support_names)
+        force = np.zeros_like(motion)
+        force[:supports] = self.records.support_force[stretch, :supports]
+        rate = self.bench.schedule.sampling_frequency
+        for element in range(len(self.model.element_names)):
+            moved = motion[supports + element]
+            force[supports + element] = element_force(self.model.local_laws, element, moved, rate)
+        return np.stack([force, motion])
+
+    def left_free(self, stretch: int, channel: int) -> np.ndarray:
+        """Return (2, sample) m: the measured motion of a channel before its delay, and that of the
+        model where it was left free, as it would be measured.
+        """
+        measured = sampled_motion(self.bench, stretch, self.chain.delay)[channel]
+        free = self.records.motion[self.free[stretch, channel], channel].astype(float)
+        return np.stack([measured, self.chain.gain[channel] * free])
+
+
+def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> HeldState:
+    """Return the HeldState of a Point; free: [(stretch, channel)] of the runs with one left free.
+
+    Raises ConfigError or ValueError for values that no structure can have.
+    """
+    model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    places = places_of(model)
+    # the places are further sensors, which measure nothing and are not held
+    count = len(places.names)
+    more = ((0, count), (0, 0))
+    observed = replace(
+        model,
+        sensor_shapes=np.hstack([model.sensor_shapes, places.shapes]),
+        sensor_names=(*model.sensor_names, *places.names),
+        sensor_positions=np.pad(model.sensor_positions, more, mode="edge"),
+        sensor_directions=np.pad(model.sensor_directions, more, mode="edge"),
+    )
+    through = Measuring(
+        np.r_[chain.gain, np.ones(count)], np.r_[chain.delay, np.zeros(count)], chain.force_gain
+    )
+    stretches = [
+        replace(each, motion=np.pad(each.motion, ((0, 0), (0, count)))) for each in bench.stretches
+    ]
+    wide = replace(bench, stretches=tuple(stretches))
+    lanes = [lane_of(wide, stretch, observed, through) for stretch in stretches]
+    lanes += [
+        lane_of(wide, stretches[number], observed, through, [channel]) for number, channel in free
+    ]
+    records = hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz)
+    runs = {key: len(stretches) + number for number, key in enumerate(free)}
+    return HeldState(bench, model, places, chain, records, runs)
 
 
 def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Dataset:
@@ -50,38 +127,37 @@ def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Datas
     bench = replace(fitted, stretches=(*fitted.stretches, *apart.stretches))
     free = _left_free(bench, len(fitted.stretches))
     states = [held_state(bench, point, free) for point in (before, after)]
-    labels = {"state": list(STATES), "series": list(SERIES)}
-    out = xr.Dataset(_names(comparison, bench, len(fitted.stretches)), coords=labels)
     campaign = comparison.structure.campaign
-    out = out.assign({name: campaign[name].variable for name in PLACES if name in campaign})
-    out = out.assign(_holding(bench, states))
-    out = out.assign(_law(comparison, bench, states, after))
-    out = out.assign(_free(comparison, bench, states))
-    return out.assign_attrs(
-        before=before.name, after=after.name, strength_N_s_per_m=float(bench.strength)
+    places = {name: campaign[name].variable for name in PLACES if name in campaign}
+    return xr.Dataset(
+        _names(comparison, bench, len(fitted.stretches))
+        | places
+        | _holding(bench, states)
+        | _law(comparison, bench, states, after)
+        | _free(comparison, bench, states),
+        coords={"state": list(STATES), "series": list(SERIES)},
+        attrs={
+            "before": before.name,
+            "after": after.name,
+            "strength_N_s_per_m": float(bench.strength),
+        },
     )
 
 
 def _names(comparison, bench, fitted):
-    """Return the variables that name channels, stretches and bands."""
+    """Return the variables that name channels and stretches."""
     signals, rows = comparison.signals, bench.stretches
     held_out = set(signals.holdout().tolist())
-    edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
-    split = ["holdout" if row.record in held_out else "fit" for row in rows]
-    part = ["fitted" if number < fitted else "apart" for number in range(len(rows))]
-    return {
-        "channel_name": ("channel", np.array(comparison.structure.names, object)),
-        "channel_kind": ("channel", np.array(signals.kinds, object)),
-        "record_name": (
-            "stretch",
-            np.array([str(signals.record_names[row.record]) for row in rows], object),
-        ),
-        "split": ("stretch", np.array(split, object)),
-        "part": ("stretch", np.array(part, object)),
+    texts = {
+        "channel_name": ("channel", comparison.structure.names),
+        "channel_kind": ("channel", signals.kinds),
+        "record_name": ("stretch", [str(signals.record_names[row.record]) for row in rows]),
+        "split": ("stretch", ["holdout" if row.record in held_out else "fit" for row in rows]),
+        "part": ("stretch", ["fitted" if at < fitted else "apart" for at in range(len(rows))]),
+    }
+    return {name: (dim, np.array(values, object)) for name, (dim, values) in texts.items()} | {
         "load": ("stretch", [row.load for row in rows], {"units": signals.load_unit}),
         "start": ("stretch", [_start(bench, row) for row in rows], {"units": "s"}),
-        "band_low": ("band", edges[:-1], {"units": "Hz"}),
-        "band_high": ("band", edges[1:], {"units": "Hz"}),
     }
 
 
@@ -98,7 +174,7 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
     order = sorted(range(fitted, len(bench.stretches)), key=lambda at: -bench.stretches[at].load)
     held = bench.measures_motion
     out: list[tuple[int, int]] = []
-    for number in list(dict.fromkeys([order[0], order[-1]]))[:FREE_STRETCHES]:
+    for number in dict.fromkeys([order[0], order[-1]]):
         moving = np.flatnonzero(bench.stretches[number].moving & held)
         if len(STATES) * (len(out) + len(moving)) <= MOST_FREE or not out:
             out += [(number, int(channel)) for channel in moving]
@@ -106,25 +182,22 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
 
 
 def _holding(bench: Bench, states: list[HeldState]) -> dict:
-    """Return the RMS of the holding force by band."""
-    found = [
-        [_band_rms(state.holding(number), bench) for number in range(len(bench.stretches))]
-        for state in states
-    ]
-    dims = ("state", "stretch", "channel", "band")
-    return {"holding_force": (dims, np.array(found, np.float32), {"units": "N"})}
-
-
-def _band_rms(series: np.ndarray, bench: Bench) -> np.ndarray:
-    """Return (channel, band): the RMS of the settled samples of a series (channel, sample)."""
-    series, rate = series[:, settled(bench)], bench.schedule.sampling_frequency
+    """Return the RMS of the settled samples of the holding force by band."""
+    series = np.stack([state.holding()[..., settled(bench)] for state in states])
     count = series.shape[-1]
     window = np.hanning(count)
     power = 2.0 * np.abs(np.fft.rfft(series * window, axis=-1)) ** 2 / (count * np.sum(window**2))
     edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
-    number = np.searchsorted(edges, np.fft.rfftfreq(count, 1.0 / rate), side="right") - 1
-    rows = [power[:, number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
-    return np.sqrt(np.stack(rows, axis=-1))
+    frequency = np.fft.rfftfreq(count, 1.0 / bench.schedule.sampling_frequency)
+    number = np.searchsorted(edges, frequency, side="right") - 1
+    rows = [power[..., number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
+    found = np.sqrt(np.stack(rows, axis=-1)).astype(np.float32)
+    dims = ("state", "stretch", "channel", "band")
+    return {
+        "holding_force": (dims, found, {"units": "N"}),
+        "band_low": ("band", edges[:-1], {"units": "Hz"}),
+        "band_high": ("band", edges[1:], {"units": "Hz"}),
+    }
 
 
 def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: Point) -> dict:
@@ -135,28 +208,23 @@ def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: P
     demands = [demand_of(comparison, bench, stretch, point) for stretch in bench.stretches]
     chosen = _acting(bench, demands)
     shown = [demands[number] for number in chosen]
-    force, motion = (
-        np.array(rows, np.float32)
-        for rows in zip(
-            *(_modelled(comparison, bench, own, places, chosen) for own in states), strict=True
-        )
-    )
+    model = np.stack([_modelled(comparison.band, state, places, chosen) for state in states])
     dims = ("law_stretch", "place", "sample")
-    newton, metre, share = {"units": "N"}, {"units": "m"}, {"units": "1"}
     time = settled(bench) / bench.schedule.sampling_frequency
-    return {
+    out: dict = {
         "place_name": ("place", np.array(places.names, object)),
         "owner_name": ("place", np.array(places.owners, object)),
         "law_of_stretch": ("law_stretch", np.array(chosen, int)),
         "sample_time": ("sample", time, {"units": "s"}),
-        "demanded_force": (dims, np.array([row.force for row in shown], np.float32), newton),
-        "demanded_motion": (dims, np.array([row.motion for row in shown], np.float32), metre),
-        "resolution": (dims[:2], np.array([row.resolution for row in shown]), share),
-        "explained": (dims[:1], np.array([row.explained for row in shown]), share),
-        "beyond": (dims[:1], np.array([row.beyond for row in shown]), share),
-        "model_force": (("state", *dims), force, newton),
-        "model_motion": (("state", *dims), motion, metre),
     }
+    for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
+        demanded = np.array([getattr(row, name) for row in shown], np.float32)
+        out[f"demanded_{name}"] = dims, demanded, {"units": unit}
+        out[f"model_{name}"] = ("state", *dims), model[:, part], {"units": unit}
+    for name, rank in (("resolution", 2), ("explained", 1), ("beyond", 1)):
+        share = np.array([getattr(row, name) for row in shown])
+        out[name] = dims[:rank], share, {"units": "1"}
+    return out
 
 
 def _acting(bench: Bench, demands: list[Demand]) -> list[int]:
@@ -171,23 +239,15 @@ def _acting(bench: Bench, demands: list[Demand]) -> list[int]:
     return [acting[place] for place in places]
 
 
-def _modelled(
-    comparison: Comparison, bench: Bench, state: HeldState, places: Places, chosen: list[int]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (force, motion) (law_stretch, place, sample) of a held model, in N and m; NaN at
-    places that it lacks.
+def _modelled(band, state: HeldState, places: Places, chosen: list[int]) -> np.ndarray:
+    """Return (2, law_stretch, place, sample): force in N and motion in m of a held model within a
+    band in Hz; NaN at places that it lacks.
     """
-    samples = len(settled(bench))
-    out = np.full((2, len(chosen), len(places.names), samples), np.nan)
+    rows = [in_band(state.bench, state.at_places(number), band, 0) for number in chosen]
+    found = np.stack(rows, axis=1).astype(np.float32)
+    lacking = np.full_like(found[:, :, :1], np.nan)
     own = {name: number for number, name in enumerate(state.places.names)}
-    for row, number in enumerate(chosen):
-        both = state.at_places(number, bench.schedule.sampling_frequency)
-        for part, series in enumerate(both):
-            inside = in_band(bench, series, comparison.band, 0)
-            for place, name in enumerate(places.names):
-                if name in own:
-                    out[part, row, place] = inside[own[name]]
-    return out[0], out[1]
+    return np.concatenate([found, lacking], axis=2)[:, :, [own.get(n, -1) for n in places.names]]
 
 
 def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict:
@@ -196,18 +256,17 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
     if not keys:
         return {}
     stretches = sorted({number for number, _ in keys}, key=lambda at: -bench.stretches[at].load)
-    channels = len(comparison.structure.names)
-    error = np.full((len(states), len(stretches), channels), np.nan)
+    error = np.full((len(states), len(stretches), len(comparison.structure.names)), np.nan)
     velocity = {}
     for number, channel in keys:
-        series = [
-            in_band(bench, values, comparison.band, 1)
-            for values in _measured_and_free(bench, states, number, channel)
+        before, after = (
+            in_band(bench, state.left_free(number, channel), comparison.band, 1) for state in states
+        )
+        velocity[number, channel] = np.array([before[0], before[1], after[1]])
+        rms = max(float(np.std(before[0])), np.finfo(float).tiny)
+        error[:, stretches.index(number), channel] = [
+            np.std(measured - predicted) / rms for measured, predicted in (before, after)
         ]
-        velocity[number, channel] = np.array([series[0], *series[2:]])
-        rms = max(float(np.std(series[0])), np.finfo(float).tiny)
-        pairs = (series[0], series[2]), (series[1], series[3])
-        error[:, stretches.index(number), channel] = [np.std(a - b) / rms for a, b in pairs]
     told = _most_telling(error, stretches)
     unit = "1/s" if comparison.signals.kinds[told[1]] == STRAIN else "m/s"
     return {
@@ -217,20 +276,9 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
     }
 
 
-def _measured_and_free(bench, states, number, channel):
-    """Return [measured as each state's chain tells, then predicted by each] (sample,) in m."""
-    measured = [
-        measured_motion(bench, number, state.chain.delay[: state.channels])[channel]
-        for state in states
-    ]
-    return [*measured, *(state.left_free(number, channel) for state in states)]
-
-
 def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
     """Return (stretch, channel) whose prediction gains most in the stretch of the highest load; the
-    largest error where none gains.
-
-    error (state, free_stretch, channel): NaN of what was not predicted.
+    largest error where none gains. error (state, free_stretch, channel): NaN of the others.
     """
     before, after = np.nan_to_num(error[0, 0]), np.nan_to_num(error[1, 0])
     gain = np.minimum(before, 2.0) - np.minimum(after, 2.0)

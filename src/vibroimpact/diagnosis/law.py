@@ -14,9 +14,8 @@ impact forces from remote sensors, M. De Araújo, J. Antunes, P. Piteau, J. Soun
 1015-1041.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -38,7 +37,6 @@ PASSES = 12  # of the variances
 LEAST_POWER = 1.0e-12  # of the largest: of the prior of a force
 SMOOTHED = 9  # lines over which the power of a sensor is averaged
 SEEN = 0.7  # resolution from which a force is known
-AXES = "xyz"
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,17 +52,15 @@ class Places:
     shapes: np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
-class Demand:
-    """What the sensors demand during a stretch, in the band.
+class Demand(NamedTuple):
+    """What the sensors demand, in the band.
 
-    force, motion (place, sample): N on the structure, and m, of the settled samples.
+    force, motion (place, sample or line): N on the structure, and m.
     resolution (place,): share of each force that the sensors know, 0 where only its prior does.
     explained: share of the power, which the linear model leaves, that the forces explain.
     beyond: that power, over the power of the sensors.
     """
 
-    places: Places
     force: np.ndarray
     motion: np.ndarray
     resolution: np.ndarray
@@ -74,28 +70,21 @@ class Demand:
 
 def places_of(model: ModalModel) -> Places:
     """Return the Places of the supports and local elements of a model."""
-    names, owners, shapes = [], [], []
+    names, owners = [], []
+    shapes = [np.zeros((model.modes, 0))]
     for support, owner in enumerate(model.support_names):
-        mean = model.contact_shapes[:, model.support_of_point == support].mean(axis=1)
-        for number, vector in enumerate(across(model, support)):
-            names.append(f"{owner}, {_axis(vector, number)}")
-            owners.append(owner)
-            shapes.append(mean[:, number])
-    for element, name in enumerate(model.element_names):
-        names.append(name)
-        owners.append(name)
-        shapes.append(model.element_shapes[:, element])
-    return Places(
-        tuple(names),
-        tuple(owners),
-        np.stack(shapes, axis=1) if shapes else np.zeros((model.modes, 0)),
-    )
+        names += [f"{owner}, {_axis(*along)}" for along in enumerate(across(model, support))]
+        owners += [owner] * 2
+        shapes.append(model.contact_shapes[:, model.support_of_point == support].mean(axis=1))
+    elements = tuple(model.element_names)
+    shapes.append(model.element_shapes)
+    return Places((*names, *elements), (*owners, *elements), np.hstack(shapes))
 
 
-def _axis(vector, number):
+def _axis(number, vector):
     """Return x, y or z for a vector along it, else which direction of the two it is."""
     along = int(np.argmax(np.abs(vector)))
-    return AXES[along] if abs(vector[along]) > 0.99 else f"direction {number + 1}"
+    return "xyz"[along] if abs(vector[along]) > 0.99 else f"direction {number + 1}"
 
 
 def receptances(model: ModalModel, frequency: np.ndarray) -> np.ndarray:
@@ -110,11 +99,10 @@ def demanded(
     frequency: np.ndarray,
     lines: tuple[np.ndarray, np.ndarray],
     variance: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
-    """Return (force (place, line) N, motion (place, line) m, resolution (place,), explained,
-    beyond), see Demand.
+) -> Demand:
+    """Return the Demand at frequency (line,) in Hz.
 
-    frequency (line,): Hz. lines: (drive (force_channel, line) N, sensors (sensor, line) m).
+    lines: (drive (force_channel, line) N, sensors (sensor, line) m).
     variance (sensor, line): of noise and model, m²; infinite of a sensor that tells nothing.
     """
     drive, sensors = lines
@@ -127,28 +115,24 @@ def demanded(
     white = left / np.sqrt(variance.T)
     normal = np.swapaxes(matrix.conj(), 1, 2) @ matrix
     pull = np.squeeze(np.swapaxes(matrix.conj(), 1, 2) @ white[..., None], -1)
-    force, known, prior = _most_probable(normal, pull, _bands_of(frequency))
+    force, known, prior = _most_probable(normal, pull, frequency)
     motion = (driven + own * (force @ places.shapes.T)) @ places.shapes
     power = prior.sum(axis=0)
     resolution = np.sum(prior * known, axis=0) / np.where(power > 0.0, power, 1.0)
     misfit = white - np.squeeze(matrix @ force[..., None], -1)
     explained = 1.0 - float(np.sum(np.abs(misfit) ** 2) / max(np.sum(np.abs(white) ** 2), 1e-300))
     beyond = float(np.sum(np.abs(left) ** 2) / max(np.sum(np.abs(sensors) ** 2), 1e-300))
-    return force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained, beyond
+    return Demand(force.T, motion.T, np.clip(resolution, 0.0, 1.0), explained, beyond)
 
 
-def _bands_of(frequency):
-    """Return (line,) int: the number of the band of each line."""
-    edges = np.geomspace(frequency[0], frequency[-1], BANDS + 1)
-    return np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
-
-
-def _most_probable(normal, pull, band):
+def _most_probable(normal, pull, frequency):
     """Return (force, known, variance) (line, place): forces with the most probable variances by
     band, and how much of each the sensors know where all have the largest variance of the band.
 
     normal (line, place, place), pull (line, place): of the whitened least squares.
     """
+    edges = np.geomspace(frequency[0], frequency[-1], BANDS + 1)
+    band = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
     count = pull.shape[1]
     force, known, variance = np.zeros_like(pull), np.zeros(pull.shape), np.zeros(pull.shape)
     for number in range(BANDS):
@@ -176,51 +160,43 @@ def _most_probable(normal, pull, band):
 
 
 def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Point) -> Demand:
-    """Return the Demand of a stretch of a Bench, by the linear structure of a Point."""
-    structure, rates = comparison.structure, comparison.rates
+    """Return the Demand of a stretch of a Bench, of its settled samples, by the linear structure of
+    a Point.
+    """
+    structure, rates, band = comparison.structure, comparison.rates, comparison.band
     model, chain = structure.model(point), structure.measuring(point)
     first, last = _window(comparison, bench, stretch)
-    place = stretch.record, first / rates.sampling
-    duration = (last - first) / rates.sampling
+    samples, ratio = last - first, rates.steps_per_sample
+    begin, duration = first / rates.sampling, samples / rates.sampling
     (longer,) = stretches_of(
-        comparison.signals, [place], duration, comparison.band, rates, structure.scale
+        comparison.signals, [(stretch.record, begin)], duration, band, rates, structure.scale
     )
-    steps = (last - first) * rates.steps_per_sample
+    steps = samples * ratio
     frequency = np.fft.rfftfreq(steps, 1.0 / rates.steps_per_second)
-    inside = (frequency >= comparison.band[0]) & (frequency <= comparison.band[1])
+    inside = np.flatnonzero((frequency >= band[0]) & (frequency <= band[1]))
+    frequency = frequency[inside]
     window = tukey(steps, min(2.0 * TAPER_S / duration, 1.0))[:, None]
     drive, sensors = (
         np.fft.rfft(values[1 : steps + 1] * window, axis=0)[inside].T
         for values in (longer.force / chain.force_gain, longer.motion / chain.gain)
     )
-    sensors = sensors * np.exp(2j * np.pi * frequency[inside] * chain.delay[:, None])
-    variance = _variance(comparison, frequency[inside], sensors, float(np.sum(window**2)))
-    places = places_of(model)
-    force, motion, *shares = demanded(model, places, frequency[inside], (drive, sensors), variance)
-    own = round(stretch.start_s * rates.sampling) - first
-    series = [
-        _series(lines, inside, last - first, rates.steps_per_sample)[:, own + settled(bench)]
-        for lines in (force, motion)
-    ]
-    return Demand(places, *series, *shares)
-
-
-def _series(lines, inside, samples, ratio):
-    """Return (place, sample) of lines (place, line) of a spectrum at `ratio` times the sampling."""
-    whole = np.zeros((len(lines), samples // 2 + 1), complex)
-    whole[:, np.flatnonzero(inside)] = lines
-    return np.fft.irfft(whole, samples, axis=-1) / ratio
+    sensors = sensors * np.exp(2j * np.pi * frequency * chain.delay[:, None])
+    variance = _variance(comparison, frequency, sensors, float(np.sum(window**2)))
+    found = demanded(model, places_of(model), frequency, (drive, sensors), variance)
+    lines = np.zeros((2, len(found.resolution), samples // 2 + 1), complex)
+    lines[..., inside] = found.force, found.motion
+    series = np.fft.irfft(lines, samples, axis=-1) / ratio
+    own = round(stretch.start_s * rates.sampling) - first + settled(bench)
+    force, motion = series[..., own]
+    return found._replace(force=force, motion=motion)
 
 
 def _window(comparison, bench, stretch):
-    """Return (first, last): samples of the record of a stretch with margins, where the record has
-    them.
-    """
+    """Return (first, last): samples of a stretch with margins, where its record has them."""
     sampling = comparison.rates.sampling
     whole = valid_samples(comparison.signals, stretch.record) / comparison.signals.rate
     end = min(stretch.start_s + bench.schedule.duration + MARGIN_S, whole - FADE_S)
-    first = max(stretch.start_s - MARGIN_S, 0.0)
-    return round(first * sampling), round(end * sampling)
+    return round(max(stretch.start_s - MARGIN_S, 0.0) * sampling), round(end * sampling)
 
 
 def _variance(comparison, frequency, motion, weight):
@@ -228,26 +204,14 @@ def _variance(comparison, frequency, motion, weight):
     measures no motion. weight: the sum of the squares of the window.
     """
     signals, rates = comparison.signals, comparison.rates
-    held = of_modes(signals.kinds)
-    order = orders(signals.kinds)[:, None]
     density = (signals.noise * comparison.structure.scale) ** 2 / signals.rate  # two-sided
+    order = orders(signals.kinds)[:, None]
     noise = density[:, None] / (2.0 * np.pi * frequency) ** (2 * order)
     noise *= rates.steps_per_second * weight
     power = uniform_filter1d(np.abs(motion) ** 2, SMOOTHED, axis=-1)
     out = noise + GAIN_SD**2 * power
-    return np.where(held[:, None], np.maximum(out, np.finfo(float).tiny), np.inf)
-
-
-def probed(model: ModalModel, places: Places) -> ModalModel:
-    """Return a model with the motion at Places as further sensors."""
-    count = len(places.names)
-    return replace(
-        model,
-        sensor_shapes=np.hstack([model.sensor_shapes, places.shapes]),
-        sensor_names=(*model.sensor_names, *places.names),
-        sensor_positions=np.vstack([model.sensor_positions, np.zeros((count, 3))]),
-        sensor_directions=np.vstack([model.sensor_directions, np.eye(3)[np.zeros(count, int)]]),
-    )
+    held = of_modes(signals.kinds)[:, None]
+    return np.where(held, np.maximum(out, np.finfo(float).tiny), np.inf)
 
 
 def element_force(laws: LocalLaws, element: int, motion: np.ndarray, rate: float) -> np.ndarray:

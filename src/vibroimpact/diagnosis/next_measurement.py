@@ -34,9 +34,7 @@ the centre, a preload bends the tube.
 
 
 def next_measurement(sets: Collection[Iterable[str]]) -> str | None:
-    """Return the sentence for an ambiguity set (list of lists of ids), None where it has fewer than
-    two members.
-    """
+    """Return the sentence for an ambiguity set, lists of ids; None for fewer than two of them."""
     ids = {effect for row in sets for effect in row}
     if len(sets) < 2:
         return None

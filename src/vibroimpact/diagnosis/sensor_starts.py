@@ -7,9 +7,8 @@ from scipy import signal
 
 from vibroimpact.integration.held_run import hold
 
-from .bench import Bench, in_band, lane_of
+from .bench import Bench, in_band, lane_of, sampled_motion
 from .explanations import Point, Term
-from .held_states import measured_motion
 
 LONGEST_S = 0.01  # of a delay that is tried
 FINER = 8  # of the lags, over the samples
@@ -33,7 +32,7 @@ def sensor_terms(bench: Bench, point: Point) -> list[Term]:
     model, chain = bench.structure.model(point), bench.structure.measuring(point)
     lanes = [lane_of(bench, stretch, model, chain, [int(channel)]) for channel in tried]
     records = hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz)
-    measured = in_band(bench, measured_motion(bench, 0, np.zeros(len(names))), bench.band, 1)
+    measured = in_band(bench, sampled_motion(bench, 0, np.zeros(len(names))), bench.band, 1)
     out = []
     for run, channel in enumerate(tried):
         predicted = in_band(bench, records.motion[run, channel].astype(float), bench.band, 1)

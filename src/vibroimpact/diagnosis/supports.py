@@ -9,8 +9,6 @@ waves; here an observer gives the forces. That two runs driven by the same data 
 data determine them: H. Abarbanel, N. Rulkov, M. Sushchik, Phys. Rev. E 53 (1996) 4528.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -24,19 +22,14 @@ from vibroimpact.linear.support_groups import support_directions
 from .comparison import Comparison
 from .explanations import Point, Structure
 from .gauss_newton import fit
-from .measured_forces import force_channels, side_by_side
-from .measurement.comparable import (
-    channel_rows,
-    comparison_problems,
-    left_out,
-    model_rows,
-)
+from .measurement.comparable import channel_rows, comparison_problems, left_out, model_rows
 from .measurement.sensed_motion import of_modes
 from .measurement.signals import signals_of
 from .support_statistics import (
     HeldTwice,
     agreement_of,
     estimates,
+    force_channels,
     measured_of,
     unseen_of,
     with_interval,
@@ -113,11 +106,7 @@ class VirtualSupports:
 
 
 def virtual_supports(
-    campaign: xr.Dataset,
-    config: Config,
-    point: Point | None = None,
-    calibrate: bool = False,
-    with_forces: bool = False,
+    campaign: xr.Dataset, config: Config, calibrate: bool = False, with_forces: bool = False
 ) -> VirtualSupports:
     """Return the VirtualSupports of every record of a measured campaign.
 
@@ -126,24 +115,23 @@ def virtual_supports(
     rate, secant stiffness and damping by direction. Definitions are those of a study's statistics.
     Measured contact forces are not used; they stand beside the virtual ones along their channels.
 
-    config: of the model. point: effects, and nuisances of the channels that measure a motion; None
-    for the model as given. calibrate: fit frequencies, damping and gains first.
-    with_forces: also give the forces over time.
-
-    Raises CampaignError where the campaign can not be compared with the model, with sentences that
-    say why, one a line.
+    config: of the model. calibrate: fit its frequencies and damping, and the gains, first.
+    with_forces: also give the forces over time. Raises CampaignError where the campaign can not be
+    compared with the model, with sentences that say why, one a line.
     """
     held, notes = _held_channels(campaign, config)
     own = campaign.isel(channel=held)
     signals = signals_of(own)
     structure = Structure(config, own)
-    point = point or Point()
-    holding = holder(structure, signals, point)
+    holding = holder(structure, signals, Point())
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
     if calibrate:
-        holding = holder(structure, signals, _calibrated(structure, signals, point))
-    channels, more = force_channels(campaign, holding.model)
+        comparison = Comparison(signals, structure)
+        fitted = fit(comparison.fitted(), Point(), comparison.nuisances(), PASSES)
+        holding = holder(structure, signals, fitted.point)
+    channels, unplaced = force_channels(campaign, holding.model)
+    notes += unplaced
     directions = support_directions(holding.model, "each")
     values: list[SupportValue] = []
     forces: list[SupportForces] = []
@@ -157,10 +145,7 @@ def virtual_supports(
 
 
 def _held_channels(campaign, config):
-    """Return (indices of the channels that are held, sentences on what is left out).
-
-    Raises CampaignError where nothing can be held.
-    """
+    """Return (indices of the channels that are held, sentences on what is left out)."""
     problems = comparison_problems(config, campaign)
     if not config.supports:
         problems.append(
@@ -182,12 +167,6 @@ def _held_channels(campaign, config):
     return held, notes
 
 
-def _calibrated(structure, signals, point) -> Point:
-    """Return a Point with fitted nuisances of all modes in the band and of all channels."""
-    comparison = Comparison(signals, structure)
-    return fit(comparison.fitted(), point, comparison.nuisances(), PASSES).point
-
-
 def _unusable(holding) -> Iterator[str]:
     """Yield a sentence for every record that can not be held."""
     signals, period = holding.signals, 1.0 / first_mode_Hz(holding.model)
@@ -204,9 +183,7 @@ def _unusable(holding) -> Iterator[str]:
 
 
 def _doubts(signals, run) -> Iterator[str]:
-    """Yield sentences on the stretches of a record that could not be run, and on its channels that
-    are mostly noise.
-    """
+    """Yield sentences on stretches of a record that diverged, and on channels of mostly noise."""
     record, force = signals.record_names[run.record], run.runs.support_force
     lost = int(np.sum(~np.isfinite(force).all(axis=(1, 2))))
     if lost:
@@ -231,50 +208,45 @@ def _forces(holding, run) -> SupportForces:
     return SupportForces(
         holding.signals.record_names[run.record],
         run.first_s,
-        run.sampling,
+        holding.rates.sampling,
         names,
         model.contact_directions[first],
         run.support_force.reshape(len(names), 2, -1),
     )
 
 
-def _values(record: HeldTwice) -> list[SupportValue]:
-    """Return the SupportValues of a record."""
-    signals, run = record.holder.signals, record.run
-    fine = np.flatnonzero(np.isfinite(run.runs.support_force).all(axis=(1, 2)))
+def _values(record: HeldTwice) -> Iterator[SupportValue]:
+    """Yield the SupportValues of a record, none where all of its stretches diverged."""
+    signals, number = record.holder.signals, record.run.record
+    supports = record.holder.model.support_names
+    force = record.run.runs.support_force
+    fine = np.flatnonzero(np.isfinite(force).all(axis=(1, 2)))
     if not len(fine):
-        return []
-    both = {c.name: side_by_side(record.holder, run, c) for c in record.channels}
-    found, low, high = with_interval(lambda chosen: estimates(record, both, chosen), fine)
-    measured = measured_of(record, both, fine)
-    agreement, unseen = agreement_of(run, record.weaker, fine), unseen_of(record)
-    for support in range(len(record.supports)):
-        found[support, "", "agreement"] = float(agreement[support])
-    return [
-        SupportValue(
-            record=signals.record_names[run.record],
-            load=float(signals.load[run.record]),
-            load_unit=signals.load_unit,
-            gap_m=float(signals.gap[run.record]),
-            support=record.supports[support],
-            channel=channel,
-            quantity=quantity,
-            unit=UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],
-            value=found[support, channel, quantity],
-            low=low.get((support, channel, quantity), np.nan),
-            high=high.get((support, channel, quantity), np.nan),
-            measured=measured.get((support, channel, quantity), np.nan),
-            remark=_remark(quantity, agreement[support], unseen[support]),
+        return
+    found = with_interval(lambda chosen: estimates(record, chosen), fine)
+    measured, agreement = measured_of(record, fine), agreement_of(record, fine)
+    unseen = unseen_of(record)
+    for support in range(len(supports)):
+        found[support, "", "agreement"] = float(agreement[support]), np.nan, np.nan
+    for key in sorted(found, key=lambda key: key[:2]):
+        support, channel, quantity = key
+        yield SupportValue(
+            signals.record_names[number],
+            float(signals.load[number]),
+            signals.load_unit,
+            float(signals.gap[number]),
+            supports[support],
+            channel,
+            quantity,
+            UNITS[quantity.rsplit("_", 1)[0] if "secant" in quantity else quantity],
+            *found[key],
+            measured.get(key, np.nan),
+            _remark(quantity, agreement[support], unseen[support]),
         )
-        for support, channel, quantity in sorted(found, key=lambda key: key[:2])
-    ]
 
 
 def _remark(quantity, agreement, unseen):
-    """Return why a quantity of a support can not be relied on, "" where it can.
-
-    unseen: directions there that no sensor sees.
-    """
+    """Return why a quantity can not be relied on, "" where it can; unseen: directions there."""
     if agreement < AGREEMENT:
         return f"not held: forces under two strengths agree to {agreement:.2f}"
     along = quantity.rsplit("_", 1)[-1]

@@ -7,16 +7,19 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, fields
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .supports import SupportValue, VirtualSupports
+    from .supports import SupportValue
 
 MODEL = "config/study.yaml"
+HEADER = ("support", "quantity", "value", "90 % interval", "measured", "")
 # What a quantity is called, and its unit as shown; of a secant value the direction follows.
 SHOWN = {
     "rms_force": ("contact force, RMS", "N"),
@@ -55,105 +58,73 @@ def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 where there is no answer."""
     from vibroimpact.campaign.file import CampaignError
     from vibroimpact.config.problems import ConfigError
-    from vibroimpact.records import RecordError
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.records import RecordError, write_table
 
-    from .supports import virtual_supports
+    from .supports import SupportValue, virtual_supports
 
     try:
-        config = _model(options.model)
-        campaign, problems = _campaign(options.campaign)
-        for problem in problems:
-            print(f"{options.campaign}: {problem}", file=sys.stderr)
-        if campaign is None:
-            return 1
+        if options.model == MODEL and not Path(MODEL).is_file():
+            raise ConfigError([f"there is no {MODEL} here: name the model with --model FILE.yaml"])
+        config = load_config(options.model)
+        campaign = _campaign(options.campaign)
         found = virtual_supports(campaign, config, calibrate=options.calibrate)
         if options.csv:
-            _write(found, options.csv)
+            columns = tuple(field.name for field in fields(SupportValue))
+            write_table([asdict(value) for value in found.values], options.csv, columns)
     except CampaignError as error:
-        for line in str(error).split("\n"):
-            print(f"{options.campaign}: {line}", file=sys.stderr)
+        _tell(options.campaign, str(error).split("\n"))
         return 1
     except (ConfigError, RecordError) as error:
         print(error, file=sys.stderr)
         return 1
     print(as_text(found.values))
-    for note in found.notes:
-        print(f"{options.campaign}: warning: {note}", file=sys.stderr)
+    _tell(options.campaign, [f"warning: {note}" for note in found.notes])
     return 0
 
 
-def _model(path: str):
-    """Return the Config of a file. Raises ConfigError."""
-    from vibroimpact.config.problems import ConfigError
-    from vibroimpact.config.reading import load_config
-
-    if path == MODEL and not Path(path).is_file():
-        raise ConfigError([f"there is no {MODEL} here: name the model with --model FILE.yaml"])
-    return load_config(path)
+def _tell(path: str, lines: Iterable[str]) -> None:
+    """Print lines about a file to the error stream."""
+    for line in lines:
+        print(f"{path}: {line}", file=sys.stderr)
 
 
-def _campaign(path: str) -> tuple[xr.Dataset | None, list[str]]:
-    """Return (the records and channels of a campaign that can be used, None where it is refused;
-    sentences on what can not).
-    """
-    from vibroimpact.campaign.checks.file_checks import (
-        EXCLUDING_CHECKS,
-        check_file,
-        refused,
-        usable_signals,
-    )
+def _campaign(path: str) -> xr.Dataset:
+    """Return what can be used of a campaign, and tell what can not. Raises CampaignError."""
+    from vibroimpact.campaign.checks import file_checks
+    from vibroimpact.campaign.file import CampaignError
 
-    campaign, rows = check_file(path)
-    if campaign is None or refused(rows):
-        return None, [row["message"] for row in rows if row["level"] == "refuse"]
-    told = [
-        f"warning: {row['message']}"
-        for row in rows
-        if row["check"] in EXCLUDING_CHECKS and row["level"] == "warn"
-    ]
-    force, response = usable_signals(campaign, rows)
+    campaign, rows = file_checks.check_file(path)
+    if campaign is None or file_checks.refused(rows):
+        refusing = [row["message"] for row in rows if row["level"] == "refuse"]
+        raise CampaignError("\n".join(refusing))
+    excluding = [row for row in rows if row["check"] in file_checks.EXCLUDING_CHECKS]
+    _tell(path, [f"warning: {row['message']}" for row in excluding if row["level"] == "warn"])
+    force, response = file_checks.usable_signals(campaign, rows)
     usable = response[force].all(axis=0)
     if not usable.any():
-        return None, [*told, "no channel and record is left that can be used: see above."]
-    return campaign.isel(record=force.nonzero()[0], channel=usable.nonzero()[0]), told
-
-
-def _write(found: VirtualSupports, path: str) -> None:
-    """Write the table. Raises RecordError."""
-    from dataclasses import asdict, fields
-
-    from vibroimpact.records import write_table
-
-    from .supports import SupportValue
-
-    columns = tuple(field.name for field in fields(SupportValue))
-    write_table([asdict(value) for value in found.values], path, columns)
+        raise CampaignError("no channel and record is left that can be used: see above.")
+    return campaign.isel(record=force.nonzero()[0], channel=usable.nonzero()[0])
 
 
 def as_text(values: Sequence[SupportValue]) -> str:
     """Return the table of values as text, one block per record."""
-    blocks: dict[str, list[SupportValue]] = {}
-    for value in values:
-        blocks.setdefault(value.record, []).append(value)
-    return "\n\n".join(
-        "\n".join([_heading(rows[0]), *_aligned([HEADER, *map(_cells, rows)])])
-        for rows in blocks.values()
-    )
-
-
-HEADER = ("support", "quantity", "value", "90 % interval", "measured", "")
-
-
-def _heading(value: SupportValue) -> str:
-    """Return the line above the table of a record."""
-    gap = f", gap {1e3 * value.gap_m:.4g} mm" if value.gap_m == value.gap_m else ""
-    return f"Record {value.record}: {value.load:.4g} {value.load_unit} RMS{gap}"
+    blocks = []
+    for record, own in groupby(values, lambda value: value.record):
+        rows = list(own)
+        load, gap = rows[0].load, rows[0].gap_m
+        shown = f", gap {1e3 * gap:.4g} mm" if gap == gap else ""
+        cells = [HEADER, *map(_cells, rows)]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = ["  ".join(["", *map(str.ljust, row, widths)]).rstrip() for row in cells]
+        heading = f"Record {record}: {load:.4g} {rows[0].load_unit} RMS{shown}"
+        blocks.append("\n".join([heading, *lines]))
+    return "\n\n".join(blocks)
 
 
 def _cells(value: SupportValue) -> tuple[str, ...]:
     """Return the texts of a row."""
-    name = value.quantity
-    along = ""
+    name, along = value.quantity, ""
     if name.startswith("secant"):
         name, along = name.rsplit("_", 1)
     label, unit = SHOWN[name]
@@ -166,13 +137,3 @@ def _cells(value: SupportValue) -> tuple[str, ...]:
         f"{value.measured:.4g}" if value.measured == value.measured else "",
         value.remark,
     )
-
-
-def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Return rows of texts as lines, columns side by side."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(HEADER))]
-    return [
-        "  "
-        + "  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]

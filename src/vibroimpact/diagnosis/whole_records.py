@@ -1,7 +1,5 @@
 """Whole records held to their measurement, cut in stretches that are held independently."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +16,9 @@ from .measurement.signals import Signals
 from .measurement.stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
 
 STRETCHES = LANES  # of a record: they fill the lanes of one batch
-# Of the dampers, in units of the first mode, see unit_strength. Measured, correlation with the true
-# force at the highest load with seven sensors: 0.98, 0.995, 0.996 at 2, 4 and 8; with two at the
-# apex 0.80, 0.82, 0.82, 0.74 at 1, 2, 4 and 8, so that stronger is no safer.
+# Of the dampers, in units of the first mode, see Holder.unit_strength. Measured, correlation with
+# the true force at the highest load with seven sensors: 0.98, 0.995, 0.996 at 2, 4 and 8; with two
+# at the apex 0.80, 0.82, 0.82, 0.74 at 1, 2, 4 and 8, so that stronger is no safer.
 STRENGTH = 4.0
 
 
@@ -28,20 +26,15 @@ STRENGTH = 4.0
 class Held:
     """A record held to its measurement, in stretches that follow one another without a break.
 
-    first_s: where the first stretch begins. duration_s: of a stretch.
-    strength (channel,): N s/m, of the dampers.
+    first_s: where the first stretch begins. strength (channel,): of the dampers, N s/m.
     known (channel,): share of the power of the measured velocity that is no noise.
-    runs: of the stretches. steps_per_second: that their tally counts.
     """
 
     record: int
     first_s: float
-    duration_s: float
     strength: np.ndarray
     known: np.ndarray
     runs: HeldRecords
-    steps_per_second: float
-    sampling: float
 
     @property
     def support_force(self) -> np.ndarray:
@@ -65,7 +58,7 @@ class Holder:
 
     def stretch_times(self, record: int) -> tuple[float, float]:
         """Return (first_s, duration_s) of STRETCHES stretches that cover a record as far as its
-        motion is known: lines are integrated with a fade at its ends, see stretches.displacement.
+        motion is known: lines are integrated with a fade at its ends, see stretches_of.
         """
         signals, rates = self.signals, self.rates
         whole = valid_samples(signals, record) / signals.rate
@@ -77,88 +70,68 @@ class Holder:
 
     def hold(self, record: int, factor: float = STRENGTH) -> Held:
         """Return the Held of a record; factor: strength in units of unit_strength."""
-        rates, signals = self.rates, self.signals
+        rates, config = self.rates, self.structure.config
         first, duration = self.stretch_times(record)
         lead = np.ceil(FORGET_S * rates.sampling) / rates.sampling
         starts = first + duration * np.arange(STRETCHES)
+        places = [(record, float(start - lead)) for start in starts]
         stretches = stretches_of(
-            signals,
-            [(record, float(start - lead)) for start in starts],
-            lead + duration,
-            self.band,
-            rates,
-            self.structure.scale,
+            self.signals, places, lead + duration, self.band, rates, self.structure.scale
         )
-        schedule = rates.schedule(duration, self.structure.config.integration.scheme, lead)
-        speed = _speed(stretches, round(lead * rates.steps_per_second), rates.steps_per_second)
-        known = _share_known(speed, velocity_noise(signals, self.band) * self.structure.scale)
-        strength = factor * unit_strength(self.model, self.band) * known
+        settled = round(lead * rates.steps_per_second)
+        known = self._share_known([stretch.motion[settled:] for stretch in stretches])
+        strength = factor * self.unit_strength() * known
         chain = self.structure.measuring(self.point)
-        runs = hold(
-            [
-                HeldLane(
-                    self.model,
-                    stretch.gap,
-                    stretch.force,
-                    undelayed(stretch.motion, chain.delay, rates.steps_per_second),
-                    strength,
-                    1.0 / chain.gain,
-                    1.0 / chain.force_gain,
-                )
-                for stretch in stretches
-            ],
-            schedule,
-            highest_Hz=self.band[1],
-        )
-        return Held(
-            record, first, duration, strength, known, runs, rates.steps_per_second, rates.sampling
-        )
+        lanes = [
+            HeldLane(
+                self.model,
+                stretch.gap,
+                stretch.force,
+                undelayed(stretch.motion, chain.delay, rates.steps_per_second),
+                strength,
+                1.0 / chain.gain,
+                1.0 / chain.force_gain,
+            )
+            for stretch in stretches
+        ]
+        schedule = rates.schedule(duration, config.integration.scheme, lead)
+        runs = hold(lanes, schedule, highest_Hz=self.band[1])
+        return Held(record, first, strength, known, runs)
+
+    def unit_strength(self) -> float:
+        """Return c in N s/m at which the modes in the band get, in the mean, a damping of rate
+        omega_1 / 2 from all sensors: c mean_m(sum_s S_sm^2) = omega_1.
+        """
+        model = self.model
+        inside = (model.frequencies > 0.1) & (model.frequencies < self.band[1])
+        moved = np.mean(np.sum(model.sensor_shapes[inside] ** 2, axis=1))
+        return 2.0 * np.pi * first_mode_Hz(model) / float(moved)
+
+    def _share_known(self, motions):
+        """Return (channel,) 0 to 1: the share of the measured velocity's power that is no noise,
+        which is white to half the sampling frequency; motions: [(step, channel)] in m.
+
+        The Wiener filter of a whole channel: a damper to noise would only drive the structure.
+        """
+        signals, steps_per_second = self.signals, self.rates.steps_per_second
+        power = [np.mean(np.diff(motion, axis=0) ** 2, axis=0) for motion in motions]
+        speed = steps_per_second * np.sqrt(np.mean(power, axis=0))
+        frequency = np.linspace(*self.band, 2000)
+        density = signals.noise**2 / (0.5 * signals.rate)
+        factor = (2.0 * np.pi * frequency) ** (2.0 * (1.0 - orders(signals.kinds)[:, None]))
+        noise = np.sqrt(density * np.trapezoid(factor, frequency, axis=-1)) * self.structure.scale
+        share = np.divide(noise, speed, out=np.ones_like(speed), where=speed > 0.0)
+        return np.maximum(1.0 - share**2, 0.0)
 
 
 def holder(structure: Structure, signals: Signals, point: Point) -> Holder:
     """Return the Holder of the records of a campaign."""
     model = structure.model(point)
     rates = rates_of(signals.rate, structure.config.integration)
-    return Holder(
-        structure, signals, point, model, rates, held_band(signals, rates, first_mode_Hz(model))
-    )
+    band = held_band(signals, rates, first_mode_Hz(model))
+    return Holder(structure, signals, point, model, rates, band)
 
 
 def first_mode_Hz(model: ModalModel) -> float:
     """Return the lowest frequency of the modes that are no rigid motion, Hz."""
     return float(model.frequencies[model.frequencies > 0.1].min())
-
-
-def unit_strength(model: ModalModel, band: tuple[float, float]) -> float:
-    """Return c in N s/m at which the modes in the band (Hz) get, in the mean, a damping of rate
-    omega_1 / 2 from all sensors: c mean_m(sum_s S_sm^2) = omega_1.
-    """
-    inside = (model.frequencies > 0.1) & (model.frequencies < band[1])
-    moved = np.mean(np.sum(model.sensor_shapes[inside] ** 2, axis=1))
-    return 2.0 * np.pi * first_mode_Hz(model) / float(moved)
-
-
-def velocity_noise(signals: Signals, band: tuple[float, float]) -> np.ndarray:
-    """Return (channel,) RMS in the band (Hz) of the noise as a velocity: that of a channel is white
-    to half its sampling frequency.
-    """
-    frequency = np.linspace(*band, 2000)
-    density = signals.noise**2 / (0.5 * signals.rate)
-    power = (2.0 * np.pi * frequency) ** (2.0 * (1.0 - orders(signals.kinds)[:, None]))
-    return np.sqrt(density * np.trapezoid(power, frequency, axis=-1))
-
-
-def _speed(stretches, lead, steps_per_second):
-    """Return (channel,) RMS in m/s of the measured velocity of stretches, `lead` steps left out."""
-    velocity = [np.diff(stretch.motion[lead:], axis=0) for stretch in stretches]
-    return steps_per_second * np.sqrt(np.mean([np.mean(v**2, axis=0) for v in velocity], axis=0))
-
-
-def _share_known(speed, noise):
-    """Return (channel,) 0 to 1: the share of the measured velocity's power that is no noise.
-
-    speed, noise (channel,): RMS in m/s. The Wiener filter of a whole channel: a damper to noise
-    would only drive the structure.
-    """
-    share = np.divide(noise, speed, out=np.ones_like(speed), where=speed > 0.0)
-    return np.maximum(1.0 - share**2, 0.0)

@@ -35,9 +35,7 @@ from .verdict_words import (
 TEMPLATE = Path(__file__).with_suffix(".html")
 # The records of each misfit, what took no part first.
 SPLITS = {
-    "verification": "verification: took no part",
     "holdout": "held out: not fitted",
-    "selection": "selection: the name was chosen with them",
     "fit": "fitted",
 }
 HEADINGS = {

@@ -16,7 +16,7 @@ from .number_text import digits, percent
 
 def verdict_sentence(verdict: Verdict) -> str:
     """Return the verdict in one or two sentences."""
-    apart = verdict.misfit.taking_no_part()
+    apart = verdict.misfit.holdout
     closed = None if apart is None else apart.closed_fraction
     shrinks = (
         f" Adding it closes {percent(closed)} of the excess misfit on records that took no part."
@@ -135,7 +135,7 @@ def withdrawn_sentence(verdict: Verdict) -> str:
         f"{name}, {digits(split.before_dB)} dB before, {digits(split.after_dB)} dB after"
         for name, split in (
             ("those that it was fitted to", misfit.fit),
-            ("those that took no part", misfit.taking_no_part()),
+            ("those that took no part", misfit.holdout),
         )
         if split is not None and split.before_dB is not None
     ]

@@ -1,1 +1,1 @@
-"""The verdict on a campaign: its content, its schema and its file."""
+"""The verdict on a campaign: its content, its schema and its file; distances in dB."""

@@ -1,10 +1,8 @@
-"""The content of verdict.json: which effects a model lacks, and the evidence for it.
+"""verdict.json: which effects a model lacks, and the evidence for it; its one writer and reader.
 
-Both engines build a `Verdict` and every reader is given one. The JSON schema is generated from
-the classes below; `verdict.schema.json` beside this file is a copy for readers in other languages.
+`verdict.schema.json` beside this file is the JSON schema of `Verdict` for readers in other
+languages; tests/unit/test_verdict.py compares it.
 """
-
-from __future__ import annotations
 
 import json
 from collections.abc import Iterable
@@ -17,21 +15,19 @@ from pydantic import (
     Field,
     ModelWrapValidatorHandler,
     PrivateAttr,
+    ValidationError,
     WithJsonSchema,
     model_serializer,
     model_validator,
 )
 
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.records import plain_values
+from vibroimpact.records import RecordError, plain_values, read_text, write_text
 
 Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown", "not_testable"]
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
 WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
 WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
-OPEN: tuple[Conclusion, ...] = ("partly_explained", "unknown", "not_testable")
-
-SCHEMA_FILE = Path(__file__).with_name("verdict.schema.json")
 
 # An integer stays one, so that a file that is read and written again keeps its bytes.
 Number = Annotated[int | float, WithJsonSchema({"type": "number"})]
@@ -62,10 +58,8 @@ class _Content(BaseModel):
 
     @classmethod
     def from_values(cls, values: dict[str, Any]) -> Self:
-        """Return the content of nested dicts and lists; numpy values become plain ones.
-
-        Numbers that are not finite become None. Raises pydantic.ValidationError, a ValueError,
-        that names every key that does not fit.
+        """Return the content of nested dicts and lists; numpy values become plain ones, and numbers
+        that are not finite None. Raises pydantic.ValidationError, a ValueError.
         """
         return cls.model_validate(plain_values(values))
 
@@ -106,7 +100,6 @@ class RankedCandidate(_Content):
     )
     closed_fraction: Number | None = Field(description="Share of the excess misfit it closes.")
     location: str | None = Field(default=None, description="Where the effects act.")
-    candidate: str | None = Field(default=None, description="Name of the candidate.")
     probability: Probability | None = Field(
         default=None, description="Probability that these effects are what is missing."
     )
@@ -131,9 +124,6 @@ class Region(_Content):
     nearest_modes_Hz: list[Number] | None = Field(
         default=None, description="Frequencies of the model's modes in or next to the band, Hz."
     )
-    relative_error: Number | None = Field(
-        default=None, description="RMS error over RMS response, of the record's excited lines."
-    )
 
 
 class Misfit(_Content):
@@ -152,16 +142,6 @@ class MisfitBySplit(_Content):
 
     fit: Misfit | None
     holdout: Misfit | None
-    selection: Misfit | None = Field(
-        default=None, description="Of the records that the name was chosen with."
-    )
-    verification: Misfit | None = Field(
-        default=None, description="Of the records that nothing was chosen with."
-    )
-
-    def taking_no_part(self) -> Misfit | None:
-        """Return the misfit of the records that took no part, None where there are none."""
-        return self.verification or self.holdout
 
 
 class StageCost(_Content):
@@ -229,12 +209,6 @@ class Verdict(_Content):
     not_run: list[str] = Field(
         default=[], description="Ids of effects that could not be run: nothing is known of them."
     )
-    linear: list[dict[str, Any]] = Field(
-        default=[], description="Linear effects fitted to the record of lowest load."
-    )
-    explained_z: list[Number | None] = Field(
-        default=[], description="What remains unexplained, per record, in standard deviations."
-    )
     most_probable: list[FoundEffect] = Field(
         default=[], description="The effects of the best candidate, whatever the verdict."
     )
@@ -271,9 +245,8 @@ class Verdict(_Content):
         return self
 
     def shown_effects(self) -> list[FoundEffect]:
-        """Return the effects of the completed model.
-
-        These are the named effects, or the most probable ones where the verdict is ambiguous.
+        """Return the effects of the completed model: the named ones, or the most probable ones
+        where the verdict is ambiguous.
         """
         return self.effects or (self.most_probable if self.verdict == "ambiguous" else [])
 
@@ -284,22 +257,17 @@ def not_run_sentence(ids: Iterable[str]) -> str:
     return f" Nothing is known of {words}, which could not be run." if words else ""
 
 
-NO_MISFIT = MisfitBySplit(fit=None, holdout=None)
-
-
 def not_testable(
     checks: list[dict[str, Any]],
     provenance: dict[str, Any],
     next_measurement: str | None = None,
-    misfit: MisfitBySplit = NO_MISFIT,
+    misfit: MisfitBySplit | None = None,
     cost: dict[str, Any] | None = None,
 ) -> Verdict:
-    """Return the verdict on a campaign that can not be judged.
-
-    checks: rows as in CheckResult, at least one with level refuse; next_measurement: a sentence;
-    cost: as Cost, nothing where None.
+    """Return the verdict on a campaign that can not be judged; checks: rows of CheckResult, cost:
+    values of Cost, nothing where None.
     """
-    cost = {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}} if cost is None else cost
+    cost = cost or {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}}
     return Verdict.from_values(
         {
             "verdict": "not_testable",
@@ -309,7 +277,7 @@ def not_testable(
             "next_measurement": next_measurement,
             "broken_invariances": [],
             "regions": [],
-            "misfit": misfit.to_values(),
+            "misfit": misfit.to_values() if misfit else {"fit": None, "holdout": None},
             "p_global_before": None,
             "p_global_after": None,
             "checks": checks,
@@ -321,12 +289,18 @@ def not_testable(
     )
 
 
-def json_schema() -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of verdict.json."""
-    schema = Verdict.model_json_schema(mode="validation")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+def write_verdict(verdict: Verdict, path: str | Path) -> None:
+    """Write a verdict as JSON, whole or not at all.
+
+    Raises pydantic.ValidationError where the content does not keep the schema.
+    """
+    values = Verdict.from_values(verdict.to_values()).to_values()
+    write_text(json.dumps(values, indent=1, allow_nan=False), path)
 
 
-def schema_text() -> str:
-    """Return the text of verdict.schema.json; tests compare it with the committed file."""
-    return json.dumps(json_schema(), indent=2) + "\n"
+def read_verdict(path: str | Path) -> Verdict:
+    """Return the verdict of a file. Raises RecordError where there is none."""
+    try:
+        return Verdict.model_validate(json.loads(read_text(path)))
+    except (json.JSONDecodeError, ValidationError) as error:
+        raise RecordError(f"{path}: is no verdict: {error}") from error

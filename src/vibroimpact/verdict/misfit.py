@@ -4,8 +4,6 @@ closes, and the text in place of a model that is no better.
 closed_fraction is the only definition of that share.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,11 +20,10 @@ def excess(distance: float, floor: float) -> float:
 def closed_fraction(
     before: float, after: float, floor: float, floor_before: float | None = None
 ) -> float | None:
-    """Return 1 - excess after / excess before; None where the excess before is negligible: then the
-    records tell nothing of what is added.
+    """Return 1 - excess after / excess before of distances in dB; None where the excess before is
+    negligible: then the records tell nothing of what is added.
 
-    before, after: distances in dB. floor, floor_before: dB, of the model after and before, the same
-    where None.
+    floor, floor_before: dB, of the model after and before, the same where None.
     """
     given = floor if floor_before is None else floor_before
     first = excess(before, given)
@@ -34,21 +31,16 @@ def closed_fraction(
 
 
 def makes_worse(row: Mapping[str, Any]) -> bool:
-    """Return whether the misfit with the completed model is larger than before, and than its floor,
-    by more than chance.
-
-    row: {before_dB, after_dB, floor_dB}.
+    """Return whether the misfit {before_dB, after_dB, floor_dB} with the completed model is larger
+    than before, and than its floor, by more than chance.
     """
-    if row["after_dB"] is None:
-        return False
-    known = max(row["before_dB"], row["floor_dB"])
-    return excess(row["after_dB"], known) > NO_EXCESS * row["floor_dB"]
+    before, after, floor = (row[f"{key}_dB"] for key in ("before", "after", "floor"))
+    return after is not None and excess(after, max(before, floor)) > NO_EXCESS * floor
 
 
 def not_offered(withdrawn: Mapping[str, Any]) -> str:
-    """Return the text in place of a completed configuration that is no better than the given one.
-
-    withdrawn: verdict.content.Withdrawn in plain values.
+    """Return the text in place of a completed configuration that is no better than the given one;
+    withdrawn: values of content.Withdrawn.
     """
     effects = effects_in_words(row["id"] for row in withdrawn["effects"])
     splits = {

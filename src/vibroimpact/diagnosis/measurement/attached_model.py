@@ -9,6 +9,7 @@ import xarray as xr
 
 from vibroimpact.campaign.file import CampaignError, support_ratios
 from vibroimpact.campaign.force_kinds import base_channels
+from vibroimpact.config.excitation import BandSignal, BaseMotion
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.schema import Sensors
 from vibroimpact.config.stage_settings import ConfigPart
@@ -16,11 +17,11 @@ from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import Basis, build_model, reduced_basis
 
-from .moving_base import driven_by_base, further_drive_shapes
 from .named_places import point_at
 from .sensed_motion import STRAIN, moving, of_modes
 
 SAME_POINT_M = 1.0e-3
+ANY_SIGNAL = BandSignal(kind="band_limited", band_Hz=(1.0, 200.0))  # no model depends on it
 
 
 def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None) -> ModalModel:
@@ -30,21 +31,16 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None)
     config: a checked Config or StageSettings. basis: see build_model and attached_basis. The
     sensors are in the order of the channels: displacements, positive along channel_direction; for
     a strain gauge on a tube the strain of the outer fibre; for a contact force zero. With a
-    campaign on a moving base, the drives are the accelerations of the base. Raises ValueError for
-    a channel or force that is more than 5 mm off the structure, where it is no tube off its named
-    points, CampaignError for another number of supports; see comparable.comparison_problems.
+    campaign on a moving base, the drives are the accelerations of the base, and motions are
+    relative to it. Raises ValueError for a channel or force that is more than 5 mm off the
+    structure, where it is no tube off its named points, CampaignError for another number of
+    supports; see comparable.comparison_problems.
     """
-    kinds, forces = campaign["channel_kind"].values, ~base_channels(campaign)
+    kinds, bases = campaign["channel_kind"].values, _base_directions(campaign)
     channels = len(kinds)
-    places, directions = (
-        np.concatenate(
-            [campaign[f"channel_{key}"].values, campaign[f"force_channel_{key}"].values[forces]]
-        ).astype(float)
-        for key in ("point", "direction")
-    )
-    bases = campaign["force_channel_direction"].values[~forces].astype(float)
+    places, directions = (_of_sensors_and_forces(campaign, key) for key in ("point", "direction"))
     gauged = np.flatnonzero(kinds == STRAIN)
-    config = driven_by_base(config, campaign)
+    config = _on_base(config, bases[0]) if len(bases) else config
     model, displacements = _displacement_shapes(
         config, places, {int(number): directions[number] for number in gauged}, basis
     )
@@ -59,8 +55,8 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None)
     shapes[:, gauged] = model.sensor_shapes[:, 3 * len(places) :]
     drive_shapes = shapes[:, channels:]
     if len(bases):
-        others = further_drive_shapes(config, bases[1:])
-        drive_shapes = np.concatenate([model.drive_shapes, *others], axis=1)
+        more = (build_model(_on_base(config, each), motion_only=True) for each in bases[1:])
+        drive_shapes = np.hstack([each.drive_shapes for each in (model, *more)])
     return replace(
         model,
         gap_factor=model.gap_factor * _ratio_of_points(campaign, model),
@@ -72,39 +68,66 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None)
     )
 
 
-def _displacement_shapes(
-    config: ConfigPart,
-    places: np.ndarray,
-    normals: Mapping[int, np.ndarray],
-    basis: Basis | None,
-) -> tuple[ModalModel, np.ndarray]:
-    """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m.
-
-    normals: {index of a place: outward normal (3,)} of strain gauges there on a tube; their shapes
-    are the last of the model's sensors. Raises ValueError for a place more than 5 mm off the
-    structure.
-    """
-    if config.structure.kind not in TUBES:
-        return _shapes_at_points(config, places)
-    model = build_model(
-        _with_places(config, places),
-        motion_only=True,
-        gauges=[(f"place_{number}", normal) for number, normal in normals.items()],
-        basis=basis,
-    )
-    moved = model.sensor_shapes[:, : 3 * len(places)]
-    return model, moved.reshape(model.modes, len(places), 3)
-
-
 def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> Basis | None:
     """Return the Basis of a tube attached to a campaign, which variants of it are
     reduced on; None of another structure, which is small.
     """
     if config.structure.kind not in TUBES:
         return None
-    forces = campaign["force_channel_point"].values[~base_channels(campaign)]
-    places = np.concatenate([campaign["channel_point"].values, forces])
-    return reduced_basis(_with_places(driven_by_base(config, campaign), places))
+    bases, places = _base_directions(campaign), _of_sensors_and_forces(campaign, "point")
+    return reduced_basis(_with_places(_on_base(config, bases[0]) if len(bases) else config, places))
+
+
+def _base_directions(campaign):
+    """Return (base acceleration, 3) the directions of what moves the base."""
+    return campaign["force_channel_direction"].values[base_channels(campaign)].astype(float)
+
+
+def _of_sensors_and_forces(campaign, key):
+    """Return (channel and force, 3): "point" or "direction" of the channels, then of the forces."""
+    forces = campaign[f"force_channel_{key}"].values[~base_channels(campaign)]
+    return np.concatenate([campaign[f"channel_{key}"].values, forces]).astype(float)
+
+
+def _on_base(config, direction):
+    """Return the configuration of a structure whose base moves along a direction (3,), with
+    supports that ride on it.
+    """
+    excitation = BaseMotion(
+        kind="base_motion",
+        direction=tuple(map(float, direction)),
+        obstacles="moving",
+        signal=ANY_SIGNAL,
+        constant=getattr(config.excitation, "constant", ()),
+    )
+    # identification works from the force of a study, not from a motion of the base
+    return config.model_copy(update={"excitation": excitation, "identification": None})
+
+
+def _displacement_shapes(
+    config: ConfigPart,
+    places: np.ndarray,
+    normals: Mapping[int, np.ndarray],
+    basis: Basis | None,
+) -> tuple[ModalModel, np.ndarray]:
+    """Return (ModalModel, displacement shapes (mode, place, 3)) at places (place, 3) in m; normals:
+    {index of a place: outward normal (3,)} of strain gauges there on a tube, whose shapes are the
+    last of the model's sensors.
+    """
+    if config.structure.kind in TUBES:
+        gauges = [(f"place_{number}", normal) for number, normal in normals.items()]
+        own = _with_places(config, places)
+        model = build_model(own, motion_only=True, gauges=gauges, basis=basis)
+        moved = model.sensor_shapes[:, : 3 * len(places)]
+        return model, moved.reshape(model.modes, len(places), 3)
+    names = [
+        point_at(config.points, place, f"point place_{number}")
+        for number, place in enumerate(places)
+    ]
+    named = [*dict.fromkeys(names)]
+    model = build_model(_sensed_at(config, named), motion_only=True)
+    moved = model.sensor_shapes.reshape(model.modes, len(named), 3)
+    return model, moved[:, [named.index(name) for name in names]]
 
 
 def _with_places(config, places):
@@ -118,18 +141,6 @@ def _sensed_at(config, points):
     sensors = Sensors(points=tuple(points), directions=("x", "y", "z"))
     record = config.record.model_copy(update={"sensors": sensors})
     return config.model_copy(update={"record": record})
-
-
-def _shapes_at_points(config, places):
-    """Return what _displacement_shapes does of a structure that is no tube: at its named points."""
-    names = [
-        point_at(config.points, place, f"point place_{number}")
-        for number, place in enumerate(places)
-    ]
-    named = [*dict.fromkeys(names)]
-    model = build_model(_sensed_at(config, named), motion_only=True)
-    moved = model.sensor_shapes.reshape(model.modes, len(named), 3)
-    return model, moved[:, [named.index(name) for name in names]]
 
 
 def with_channel_points(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
@@ -155,10 +166,7 @@ def with_channel_points(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
 
 
 def _ratio_of_points(campaign, model):
-    """Return (contact_point,) the clearance over the nominal gap of the record.
-
-    Raises CampaignError when the campaign does not have as many supports as the model.
-    """
+    """Return (contact_point,) the clearance over the nominal gap of the record."""
     ratios = support_ratios(campaign)
     if ratios is None:
         return np.ones(len(model.support_of_point))

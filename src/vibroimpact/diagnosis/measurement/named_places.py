@@ -16,17 +16,10 @@ LEAST_COSINE = 0.1  # between a sensor and a direction of which it measures some
 def point_at(
     points: Mapping[str, Sequence[float]], place: Sequence[float] | np.ndarray, what: str
 ) -> str:
-    """Return the name of the point at a place (3,) in m.
-
-    points: {name: (3,)} m. what: what is at the place, for the message. Raises ValueError when
-    every point is more than 5 mm away; the message gives the nearest.
+    """Return the name of the point at a place (3,) in m; points: {name: (3,)} m. Raises ValueError
+    when every one is more than 5 mm away from `what`, which is there.
     """
     place = np.asarray(place, float)
-    if not points:
-        raise ValueError(
-            f"{what} is at {place.tolist()} m, but no point of the structure has a place: give"
-            " `points`, {name: [x, y, z]} in m, for the named points of the structure"
-        )
     away = {name: float(np.linalg.norm(place - at)) for name, at in points.items()}
     nearest = min(away, key=lambda name: away[name])
     if away[nearest] > LOCATION_TOLERANCE_M:
@@ -45,9 +38,7 @@ def no_motion(
     direction: np.ndarray,
 ) -> str:
     """Return along what, at which point, a structure does not move; empty where it does, and where
-    no point is.
-
-    points: {name: (3,)} m. place (3,): m. direction (3,): of a channel or a force there.
+    no point is; see point_at. direction (3,): of a channel or a force there.
     """
     try:
         point, along = point_at(points, place, "it"), unit_vector(direction)

@@ -25,33 +25,17 @@ def moving(kinds: Collection[str]) -> np.ndarray:
 
 
 def of_modes(kinds: Collection[str]) -> np.ndarray:
-    """Return (channel,) bool: whether channels of kinds (channel,) respond linearly to the modes.
-
-    A motion and a strain do. A contact force does not: it is zero without contact.
+    """Return (channel,) bool: whether channels of kinds (channel,) respond linearly to the modes,
+    as a motion and a strain do. A contact force does not: it is zero without contact.
     """
     return moving(kinds) | np.array([kind == STRAIN for kind in kinds], bool)
 
 
 def orders(kinds: Collection[str]) -> np.ndarray:
-    """Return (channel,) int: the order of the time derivative of displacement that each measures.
-
-    It is 0 for a strain, which is in phase with displacements, and for a contact force.
+    """Return (channel,) int: the order of the time derivative of displacement that each measures; 0
+    for a strain, which is in phase with displacements, and for a contact force.
     """
     return np.array([TIME_DERIVATIVES.get(kind, 0) for kind in kinds], int)
-
-
-def differentiated(omega: np.ndarray, kind: str) -> np.ndarray:
-    """Return (line,) the factor from displacement, or strain, to what a channel measures.
-
-    omega (line,): rad/s. kind: of the channel; the factor of a contact force is 0, because a linear
-    structure has none.
-    """
-    if kind == STRAIN:
-        return np.ones_like(omega)
-    if kind not in TIME_DERIVATIVES:
-        return 0.0 * omega
-    order = TIME_DERIVATIVES[kind]
-    return -(omega**2) if order == 2 else (1j * omega) ** order
 
 
 def displacement_scale(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
@@ -73,17 +57,18 @@ def displacement_scale(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> 
 
 
 def support_at(model: ModalModel, position: Sequence[float] | np.ndarray) -> int | None:
-    """Return the index of the support at a position (3,) in m.
-
-    None where the position is more than AT_SUPPORT_M off the line through the contact points of any
-    support.
+    """Return the index of the support at a position (3,) in m, None where that is more than
+    AT_SUPPORT_M off the line through the contact points of any support.
     """
-    away = [
-        _distance(
-            np.asarray(position, float), model.contact_position[model.support_of_point == own]
-        )
-        for own in range(len(model.support_names))
-    ]
+    away = []
+    for support in range(len(model.support_names)):
+        points = model.contact_position[model.support_of_point == support]
+        if not len(points):
+            away.append(np.inf)
+            continue
+        along, reached = points[-1] - points[0], np.asarray(position, float) - points[0]
+        share = np.clip(reached @ along / max(along @ along, 1.0e-300), 0.0, 1.0)
+        away.append(float(np.linalg.norm(reached - share * along)))
     return int(np.argmin(away)) if away and min(away) < AT_SUPPORT_M else None
 
 
@@ -101,7 +86,8 @@ def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.nd
     of an unknown kind and for a contact force at no support.
     """
     pressed = np.flatnonzero(~of_modes(kinds))
-    weights = np.zeros((len(pressed), 2 * len(model.support_names)))
+    supports = len(model.support_names)
+    weights = np.zeros((len(pressed), supports, 2))
     for row, channel in zip(weights, pressed.tolist(), strict=True):
         support = support_at(model, model.sensor_positions[channel])
         if kinds[channel] != CONTACT_FORCE or support is None:
@@ -110,17 +96,5 @@ def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.nd
                 f" simulated: give {', '.join(TIME_DERIVATIVES)}, {STRAIN}, or {CONTACT_FORCE} at a"
                 " support"
             )
-        row[2 * support : 2 * support + 2] = (
-            across(model, support) @ model.sensor_directions[channel]
-        )
-    return weights
-
-
-def _distance(position, points):
-    """Return the distance in m of a position (3,) from the line through points (point, 3)."""
-    if not len(points):
-        return np.inf
-    ends = points[[0, -1]] if len(points) > 1 else points[[0, 0]]
-    along = ends[1] - ends[0]
-    share = np.clip((position - ends[0]) @ along / max(along @ along, 1.0e-300), 0.0, 1.0)
-    return float(np.linalg.norm(position - ends[0] - share * along))
+        row[support] = across(model, support) @ model.sensor_directions[channel]
+    return weights.reshape(len(pressed), 2 * supports)

@@ -11,9 +11,8 @@ NO_CHANNELS = ("force", "responses", "force_and_responses")
 
 @dataclass(frozen=True)
 class Measuring:
-    """Gains and delays of a measuring chain.
-
-    gain (channel,): measured over true. delay (channel,): s. force_gain: measured over true force.
+    """Gains (channel,), measured over true, and delays (channel,) in s of a measuring chain; the
+    gain of the force.
     """
 
     gain: np.ndarray
@@ -23,22 +22,18 @@ class Measuring:
     def with_fault(
         self, effect_id: str, parameters: Mapping[str, float], location: str, names: Sequence[str]
     ) -> "Measuring":
-        """Return the Measuring with the effect sensor_gain or sensor_delay at a location too.
-
-        parameters: {"factor": ...} or {"delay": s}. location: one of places(names). names
-        (channel,).
+        """Return the Measuring with the effect sensor_gain or sensor_delay at a location too, one
+        of places(names (channel,)); parameters: {"factor": ...} or {"delay": s}.
         """
         chosen = np.array([location in (one, "responses", "force_and_responses") for one in names])
-        if effect_id == "sensor_gain":
-            gain = self.gain * np.where(chosen, parameters["factor"], 1.0)
-            of_force = parameters["factor"] if location in ("force", "force_and_responses") else 1.0
-            return replace(self, gain=gain, force_gain=self.force_gain * of_force)
-        share = -1.0 if location == "force" else chosen
-        return replace(self, delay=self.delay + parameters["delay"] * share)
+        if effect_id == "sensor_delay":
+            share = -1.0 if location == "force" else chosen
+            return replace(self, delay=self.delay + parameters["delay"] * share)
+        factor, on_force = parameters["factor"], location in ("force", "force_and_responses")
+        gain = self.gain * np.where(chosen, factor, 1.0)
+        return replace(self, gain=gain, force_gain=self.force_gain * (factor if on_force else 1.0))
 
 
 def places(names: Iterable[str]) -> list[str]:
-    """Return the locations of a fault: every channel, the force, all responses, force and responses
-    together.
-    """
+    """Return the locations of a fault: every channel, the force, all responses, or both."""
     return [*names, *NO_CHANNELS]

@@ -112,26 +112,22 @@ def noise_of(
 ) -> np.ndarray:
     """Return (channel,) RMS of the noise in SI, as stated by the campaign.
 
-    Without a statement, it is the least spectral density of the record of the lowest load. Where
-    that has too few lines above the band, it is what the forces do not explain in the band.
-
-    lowest: (force (force_channel, sample), response (channel, sample)) of that record. rate: Hz.
-    band: Hz. factors (channel,): SI units per stored unit.
-
-    With contact, impacts fill the range above the band. So the density is the mean over the parts
-    of the spectrum that are as low as the lowest one, within their scatter.
+    Without a statement, it is the least spectral density of the record of the lowest load: (force
+    (force_channel, sample), response (channel, sample)). With contact, impacts fill the range above
+    the band, so that it is the mean over the parts of the spectrum that are as low as the lowest
+    one, within their scatter. Where there are too few lines above the band, it is what the forces
+    do not explain in the band. rate, band: Hz. factors (channel,): SI units per stored unit.
     """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float) * factors
-    force, response = lowest
-    inside = np.isfinite(response).all(axis=0)
-    force, valid = force[:, inside], response[:, inside]
-    window = np.hanning(valid.shape[-1])
-    frequency = np.fft.rfftfreq(valid.shape[-1], 1.0 / rate)
+    inside = np.isfinite(lowest[1]).all(axis=0)
+    force, response = (rows[:, inside] for rows in lowest)
+    window = np.hanning(response.shape[-1])
+    frequency = np.fft.rfftfreq(response.shape[-1], 1.0 / rate)
     quiet = (frequency > QUIET_ABOVE * band[1]) & (frequency < QUIET * 0.5 * rate)
     if quiet.sum() < LEAST_QUIET:
-        return _unexplained(force, valid, rate, band)
-    power = np.abs(np.fft.rfft(window * valid, axis=-1)) ** 2
+        return _unexplained(force, response, rate, band)
+    power = np.abs(np.fft.rfft(window * response, axis=-1)) ** 2
     edges = _edges(*np.searchsorted(frequency, [band[0] / BELOW, QUIET * 0.5 * rate]))
     lines = np.diff(edges)
     # The lines of noise follow an exponential law. Its median ignores a few lines of other origin.
@@ -145,15 +141,12 @@ def noise_of(
     return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
 
 
-def _unexplained(
-    force: np.ndarray, response: np.ndarray, rate: float, band: tuple[float, float]
-) -> np.ndarray:
+def _unexplained(force, response, rate, band):
     """Return (channel,) RMS, over the range to half the rate, of the noise that is not coherent
-    with the forces.
+    with the forces; arguments as of noise_of.
 
-    force (force_channel, sample), response (channel, sample). rate: Hz. band: Hz. The density is
-    that of the part with the least, of BANDS parts of the band: between the peaks of a response the
-    forces explain it best.
+    The density is that of the part with the least, of BANDS parts of the band: between the peaks of
+    a response the forces explain it best.
     """
     length = min(response.shape[-1], round(SEGMENT_S * rate))
     starts = range(0, response.shape[-1] - length + 1, length // 2)
@@ -162,13 +155,13 @@ def _unexplained(
         np.stack([np.fft.rfft(window * rows[:, at : at + length], axis=-1) for at in starts], 1)
         for rows in (force, response)
     )
-    frequency = np.fft.rfftfreq(length, 1.0 / rate)
     own = np.einsum("fsl,gsl->lfg", force, force.conj())
     both = np.einsum("csl,fsl->lcf", response, force.conj())
     own += 1.0e-12 * np.einsum("lff->l", own).real[:, None, None] * np.eye(len(force))
     explained = np.einsum("lcf,lfg,lcg->cl", both, np.linalg.pinv(own), both.conj()).real
     freedom = max(len(starts) - len(force), 1)
     rest = np.maximum(np.sum(np.abs(response) ** 2, axis=1) - explained, 0.0) / freedom
+    frequency = np.fft.rfftfreq(length, 1.0 / rate)
     edges = np.searchsorted(frequency, np.geomspace(*band, BANDS + 1))
     density = [
         rest[:, low:high].mean(axis=-1)
@@ -180,9 +173,8 @@ def _unexplained(
 
 
 def _edges(first, last):
-    """Return the line numbers that divide the lines from first to last into parts.
-
-    A part has half as many lines as lie below it, LEAST_LINES to MOST_LINES.
+    """Return the line numbers that divide the lines from first to last into parts, each of half as
+    many lines as lie below it, LEAST_LINES to MOST_LINES.
     """
     edges = [first]
     while edges[-1] < last:

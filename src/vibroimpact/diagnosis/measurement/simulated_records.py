@@ -62,11 +62,9 @@ def simulate_records(
             ],
             axis=-1,
         )
-
         offsets, seat = seated(model, schedule, gaps, offsets)
         initial = rest_state(model, schedule, gaps, offsets, seat)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
-
         lost: set[int] = set()
 
         def drive(at, count, batch=batch, lead=lead, lost=lost):
@@ -108,9 +106,8 @@ def _at_step(force, schedule):
 
 
 def _led(schedule):
-    """Return (Schedule, steps) with a start-up as long as the memory of the output filter.
-
-    The filter then starts on a structure at rest, also where the rest position is not zero.
+    """Return (Schedule, steps) with a start-up as long as the memory of the output filter, which
+    then starts on a structure at rest, also where the rest position is not zero.
     """
     ticks = schedule.filter.delay + SLOTS
     return replace(schedule, start_up=ticks * RATIO / schedule.steps_per_second), ticks * RATIO

@@ -1,7 +1,5 @@
 """The measured stretches that runs are held to: force and motion at the integration step."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd
@@ -64,9 +62,8 @@ class Rates:
 
 
 def rates_of(sampling: float, integration: ConfigPart) -> Rates:
-    """Return the Rates of records sampled at a frequency in Hz.
-
-    integration: section of a configuration, whose steps per second are the least.
+    """Return the Rates of records sampled at a frequency in Hz; the steps per second of the section
+    integration are the least.
     """
     decimation = max(int(sampling / SLOWEST_HZ), 1)
     return whole_rates(sampling / decimation, integration, decimation)
@@ -94,31 +91,19 @@ def stretches_of(
     rates: Rates,
     scale: np.ndarray,
 ) -> list[Stretch]:
-    """Return the Stretch at each (record, start in s) of `places`.
-
-    band: of held_band. scale (channel,): displacement per unit of what a channel measures, other
-    than 1 for strains.
+    """Return the Stretch at each (record, start in s) of `places`; band: of held_band, scale
+    (channel,): of displacement_scale.
     """
-    whole = {
-        record: _fine(signals, record, band, rates, scale)
-        for record in dict.fromkeys(record for record, _ in places)
-    }
+    records = dict.fromkeys(record for record, _ in places)
+    whole = {record: _fine(signals, record, band, rates, scale) for record in records}
     out = []
     for record, start in places:
         force, motion = (_cut(values, start, duration_s, rates) for values in whole[record])
         speed = np.diff(motion, axis=0).std(axis=0)
-        gap = float(signals.gap[record])
-        out.append(
-            Stretch(
-                record=int(record),
-                start_s=float(start),
-                gap=gap if np.isfinite(gap) else NO_GAP_M,
-                load=float(signals.load[record]),
-                force=force,
-                motion=motion,
-                moving=of_modes(signals.kinds) & (speed > MOVING * speed.max(initial=0.0)),
-            )
-        )
+        moving = of_modes(signals.kinds) & (speed > MOVING * speed.max(initial=0.0))
+        gap, load = float(signals.gap[record]), float(signals.load[record])
+        gap = gap if np.isfinite(gap) else NO_GAP_M
+        out.append(Stretch(int(record), float(start), gap, load, force, motion, moving))
     return out
 
 

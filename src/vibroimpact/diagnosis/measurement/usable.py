@@ -2,8 +2,6 @@
 left.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,12 +11,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.base_motion import relative_to_base
-from vibroimpact.campaign.checks.file_checks import (
-    check_campaign,
-    check_file,
-    refused,
-    usable_signals,
-)
+from vibroimpact.campaign.checks import file_checks
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.file import CampaignError, fill_missing
@@ -26,28 +19,17 @@ from vibroimpact.campaign.force_kinds import base_channels
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.config.schema import Config
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.reduction.modal_model import ModalModel
 
+from . import comparable
 from .attached_model import attach
-from .comparable import (
-    LEFT_OUT,
-    channel_rows,
-    comparison_problems,
-    contact_force_rows,
-    left_out,
-    model_rows,
-)
-from .sensed_motion import differentiated, of_modes
+from .sensed_motion import of_modes, orders
 
 CONTRADICTED = ("swapped channels", "directions")  # checks whose channels are left out
 FEWEST_RECORDS = 2
 
 
 class Refused(Exception):
-    """A campaign that can not be compared with a model.
-
-    checks: rows of all checks, one of them of level refuse.
-    """
+    """A campaign that can not be compared with a model; checks: all rows, one of level refuse."""
 
     def __init__(self, sentence: str, checks: Sequence[dict[str, Any]]):
         super().__init__(sentence)
@@ -57,19 +39,16 @@ class Refused(Exception):
 def usable(
     campaign: xr.Dataset | str | Path, config: Config
 ) -> tuple[xr.Dataset, list[dict[str, Any]]]:
-    """Return (campaign Dataset with what can be compared, rows of all checks).
-
-    campaign: a Dataset, or the file of one. Raises Refused, with the sentence why.
+    """Return (what can be compared of a campaign or the file of one, rows of all checks). Raises
+    Refused, with the sentence why.
     """
     whole, checks = checked_campaign(campaign)
-    if whole is not None and not refused(checks):
-        checks += channel_rows(whole)
-        checks += [
-            check_row("model", "refuse", f"{problem}.")
-            for problem in comparison_problems(config, whole)
-        ]
+    if whole is not None and not file_checks.refused(checks):
+        checks += comparable.channel_rows(whole)
+        problems = comparable.comparison_problems(config, whole)
+        checks += [check_row("model", "refuse", f"{problem}.") for problem in problems]
     found = _left(whole, checks)
-    for rows_of in (model_rows, _against_model):
+    for rows_of in (comparable.model_rows, _against_model):
         try:
             more = rows_of(config, found)
         except CampaignError as error:
@@ -93,30 +72,27 @@ def checked_campaign(
 ) -> tuple[xr.Dataset | None, list[dict[str, Any]]]:
     """Return (Dataset or None, rows) of a Dataset or a file."""
     if not isinstance(campaign, xr.Dataset):
-        return check_file(campaign)
-    rows = check_campaign(campaign)
-    return (None if refused(rows) else fill_missing(campaign)), rows
+        return file_checks.check_file(campaign)
+    rows = file_checks.check_campaign(campaign)
+    return (None if file_checks.refused(rows) else fill_missing(campaign)), rows
 
 
 def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     """Return what the checks leave of a campaign. Raises Refused where that is too little."""
-    if refused(checks) or whole is None:
-        refusing = [row["message"] for row in checks if row["level"] == "refuse"]
-        raise Refused(refusing[0], checks)
-    force, response = usable_signals(whole, checks)
-    names = whole["channel_name"].values
-    out = {
+    if file_checks.refused(checks) or whole is None:
+        raise Refused(next(row["message"] for row in checks if row["level"] == "refuse"), checks)
+    force, response = file_checks.usable_signals(whole, checks)
+    out = comparable.left_out(checks) | {
         row["channel"]
         for row in checks
         if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None
     }
-    kept = ~np.isin(names, [*left_out(checks), *filter(None, out)])
-    moving = of_modes([str(kind) for kind in whole["channel_kind"].values])
+    kept = ~np.isin(whole["channel_name"].values, [*filter(None, out)])
+    moving = of_modes(whole["channel_kind"].values)
     if not (kept & moving).any():
-        otherwise = "No channel that measures a motion or a strain is left after the checks."
-        _refuse(
-            next((row["message"] for row in checks if row["check"] == LEFT_OUT), otherwise), checks
-        )
+        told = [row["message"] for row in checks if row["check"] == comparable.LEFT_OUT]
+        none = "No channel that measures a motion or a strain is left after the checks."
+        _refuse([*told, none][0], checks)
     channels = np.flatnonzero(kept)
     records = np.flatnonzero(force)
     whole_channels = channels[response[np.ix_(records, channels)].all(axis=0)]
@@ -135,46 +111,28 @@ def _refuse(sentence, checks):
 
 
 def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
-    """Return rows for channels that do not go with the model attached to the campaign."""
-    model = attach(config, campaign)
-    return [*contact_force_rows(model, campaign), *_contradicted(model, campaign)]
-
-
-def _contradicted(model: ModalModel, campaign: xr.Dataset) -> list[dict[str, Any]]:
-    """Return rows for channels that contradict the linear model at the lowest level: swapped,
-    reversed, in another unit.
+    """Return rows for channels that do not go with the model attached to the campaign: contact
+    forces that it has not, and what contradicts the linear model at the lowest level, swapped,
+    reversed, or in another unit.
     """
-    measured = relative_to_base(campaign_signals(campaign))
+    model, measured = attach(config, campaign), relative_to_base(campaign_signals(campaign))
+    rows = comparable.contact_force_rows(model, campaign)
     record = measured.lowest()
     spectra = None if record is None else transfer(measured, record)
     if record is None or spectra is None:
-        return []
-    omega = 2.0 * np.pi * spectra.frequency
-    others = np.ones((1, omega.size))
+        return rows
+    s = 2j * np.pi * spectra.frequency
+    forces = np.ones((1, s.size))  # each over the first one
     if measured.force[record].shape[0] > 1:
-        beside = transfer(
-            replace(measured, response=[force[1:] for force in measured.force]), record
-        )
+        others = replace(measured, response=[force[1:] for force in measured.force])
+        beside = transfer(others, record)
         if beside is None:
-            return []
-        others = np.concatenate([others, beside.h1])
-    return compare_with_model(
-        spectra,
-        _receptance(model, omega, others)
-        * np.array([differentiated(omega, kind) for kind in measured.kinds]),
-        measured.channels,
-        measured.kinds,
-        measured.records[record],
-    )
-
-
-def _receptance(model: ModalModel, omega: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Return (channel, line): displacements per first force; forces (force_channel, line): each
-    force per first one.
-    """
-    return np.einsum(
-        "mc,ml,ml->cl",
-        model.sensor_shapes,
-        model.drive_shapes @ forces,
-        1.0 / (model.omega[:, None] ** 2 - omega**2 + 1j * model.damping[:, None] * omega),
+            return rows
+        forces = np.concatenate([forces, beside.h1])
+    receptance = 1.0 / (model.omega[:, None] ** 2 + s**2 + model.damping[:, None] * s)
+    driven = model.drive_shapes @ forces
+    motion = np.einsum("mc,ml,ml->cl", model.sensor_shapes, driven, receptance)
+    motion *= s ** orders(measured.kinds)[:, None] * of_modes(measured.kinds)[:, None]
+    return rows + compare_with_model(
+        spectra, motion, measured.channels, measured.kinds, measured.records[record]
     )

@@ -44,7 +44,7 @@ def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Sheet:
     mosaic = [[f"{record} {channel}" for record in records] for channel in channels]
     sheet = Sheet(
         "diagnosis_psd",
-        _title(verdict.misfit.taking_no_part(), bool(verdict.shown_effects())),
+        _title(verdict.misfit.holdout, bool(verdict.shown_effects())),
         CAPTION,
         mosaic,
         size=(min(1.0 + 2.9 * len(records), WIDTH_IN), 1.3 + 2.4 * len(channels)),
