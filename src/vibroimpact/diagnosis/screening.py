@@ -14,9 +14,10 @@ from vibroimpact.effects.effect import Effect
 from .bench import Bench, holding_lines, misfit, whitening
 from .catalogue import far_terms, locations, neutral_term, parts
 from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_vector
-from .explanations import Point
+from .explanations import Point, Term
 from .sensor_starts import sensor_terms
 
+HIGHEST = slice(-1, None)  # of the stretches
 AT_A_TIME = 64  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
@@ -48,10 +49,11 @@ def screen(
     sizes: Mapping[str, float],
     across: bool,
     along: int,
+    tried: Sequence[Term] | None = None,
 ) -> Screening:
-    """Return the Screening of all effects at all places beside the terms of a Point.
+    """Return the Screening of effects at all places beside the terms of a Point.
 
-    sizes, across, along: see Comparison.
+    sizes, across, along: see Comparison. tried: terms to try in place of those of the catalogue.
     """
     structure = bench.structure
     places = [
@@ -59,19 +61,21 @@ def screen(
         for effect in effects
         for location in locations(effect, structure.values, structure.names, across, along)
     ]
-    far = [base.beside(term) for each in places for term in far_terms(*each, sizes)]
+    if tried is None:
+        tried = [term for each in places for term in far_terms(*each, sizes)]
+        tried += sensor_terms(bench, base)
+    wanted = {effect.id for effect in effects}
+    far = [base.beside(term) for term in tried if term.effect_id in wanted]
     neutral = [
         base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
     ]
     lines = holding_lines(bench, [base])[0]
-    wanted = {effect.id for effect in effects}
-    far += [base.beside(t) for t in sensor_terms(bench, base) if t.effect_id in wanted]
-    near = [point for point, _ in predicted(bench, lines, neutral, sizes)]
+    near = [point for point, _ in predicted(bench.on(HIGHEST), lines[HIGHEST], neutral, sizes)]
     ranked = _ranked(bench, lines, far + near[:TRIED])
     ran = {_last(point) for point in near}
     ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
-    tried = {_last(point) for point in far + neutral}
-    return Screening(tuple(ranked), tuple(sorted(tried - ran)))
+    failed = {_last(point) for point in far + neutral} - ran
+    return Screening(tuple(ranked), tuple(sorted(failed)))
 
 
 def _last(point: Point) -> str:
@@ -83,7 +87,7 @@ def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Sc
     """Return Screened of points, best first: all are tried on the last stretch, and those that
     gain most there on the others. lines (stretch, channel, line): of the base.
     """
-    gains = _gains(bench.on(slice(-1, None)), lines[-1:], points)
+    gains = _gains(bench.on(HIGHEST), lines[HIGHEST], points)
     order = np.argsort(-gains, kind="stable")
     kept, left = np.split(order, [max(round(KEPT * len(order)), FEWEST_KEPT)])
     if len(bench.stretches) > 1:

@@ -119,7 +119,7 @@ def search(
     floors: dict[str, tuple[float, float]] = {}
     screened: tuple[Screened, ...] = ()
     for size in range(1, most + 1):
-        screening = _screened(at, base.point)
+        screening = _screened(at, base.point, screened)
         screened = screened or screening.ranked
         failed = tuple(sorted({*failed, *screening.failed}))
         raced = _race(at, screening.ranked, base.point)
@@ -133,7 +133,7 @@ def search(
         if best.apart - base.apart < needed_gain(base.apart):
             break
         if len(best.point.terms) > 1:
-            others = _without_first(at, best, base, nothing, log)
+            others = _without_first(at, best, nothing, screened, log)
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_worth)
         base = best
@@ -163,14 +163,17 @@ def _worth(hypothesis: Hypothesis) -> float:
     return hypothesis.apart - len(hypothesis.point.terms) * needed_gain(hypothesis.apart)
 
 
-def _screened(at: _Benches, base: Point) -> Screening:
+def _screened(at: _Benches, base: Point, before: Sequence[Screened] = ()) -> Screening:
     """Return the Screening of the effects beside those of a Point, none of them twice: two of one
     kind at neighbouring places are one that is not where it was looked for.
+
+    before: what was screened beside nothing, best first; its worse half is not tried again.
     """
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
+    tried = [each.point.terms[-1] for each in before[: -(-len(before) // 2)]] if before else None
     own = at.comparison
-    return screen(at.screened, base, others, own.sizes, own.across, own.along)
+    return screen(at.screened, base, others, own.sizes, own.across, own.along, tried)
 
 
 def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
@@ -278,21 +281,25 @@ def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[flo
 def _without_first(
     at: _Benches,
     best: Hypothesis,
-    before: Hypothesis,
     nothing: Hypothesis,
+    screened: Sequence[Screened],
     log: Callable[[str], None],
 ) -> list[Hypothesis]:
-    """Return Hypotheses in which the first effect of the best is dropped or exchanged: it was
-    chosen before the others were known.
+    """Return Hypotheses in which the first effect of the best is dropped or, where that costs,
+    exchanged: it was chosen before the others were known, and may have stood for another one.
 
-    before: the best one of one effect less. The first effect is exchanged where dropping it costs,
-    but less than half of what was gained before: it may have stood for another one.
+    screened: what was screened beside nothing, best first: the rivals of the first effect.
     """
     base = replace(best.point, terms=best.point.terms[1:])
     out = _kept(at, _finals(at, [base], nothing), nothing)
-    cost = best.apart - max((each.apart for each in out), default=0.0)
-    if needed_gain(best.apart - cost) <= cost < 0.5 * before.apart:
-        raced = _race(at, _screened(at, base).ranked, base)[:2]
+    if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
+        known = {term.effect_id for term in best.point.terms}
+        rivals = [
+            replace(each, point=base.beside(each.point.terms[-1]))
+            for each in screened
+            if each.point.terms[-1].effect_id not in known
+        ]
+        raced = _race(at, rivals, base)[:2]
         out += _kept(at, _finals(at, [each.point for each in raced], nothing), nothing)
     for each in out:
         log(f"without the first: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
