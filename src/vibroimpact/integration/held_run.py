@@ -106,10 +106,11 @@ def hold(
         except IntegrationError:
             continue  # too stiff for the step
     pieces = []
+    first = {id(run.model): number for number, run in reversed([*enumerate(runs)])}
     for numbers in batches.values():
         # lanes of one model side by side, so that a batch of one model takes the shorter way
-        numbers.sort(key=lambda number: (id(runs[number].model), number))
-        pieces += [numbers[first : first + LANES] for first in range(0, len(numbers), LANES)]
+        numbers.sort(key=lambda number: (first[id(runs[number].model)], number))
+        pieces += [numbers[at : at + LANES] for at in range(0, len(numbers), LANES)]
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(lambda piece: _integrate(runs, piece, prepared, out), pieces))
     return out
