@@ -90,12 +90,12 @@ def free_search(
 
 def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
     """Return the fitted records whose spectra after completion are farthest above their floor."""
-    excess = {}
+    beyond = {}
     for record in map(int, comparison.signals.fit()):
         told = distance(runs, comparison.signals, [record])
         if told["after_dB"] is not None and told["floor_dB"] is not None:
-            excess[record] = told["after_dB"] - told["floor_dB"]
-    return sorted(excess, key=lambda record: -excess[record])[:RECORDS]
+            beyond[record] = told["after_dB"] - told["floor_dB"]
+    return sorted(beyond, key=lambda record: -beyond[record])[:RECORDS]
 
 
 def _candidates(searched: Search) -> list[Point]:
