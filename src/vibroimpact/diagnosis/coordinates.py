@@ -85,7 +85,7 @@ def nuisance_coordinates(damping_ratio: np.ndarray, channels: int) -> list[Coord
 def effect_coordinates(terms: Sequence[Term], scales: Mapping[str, float]) -> list[Coordinate]:
     """Return the coordinates of all parameters and places of terms.
 
-    scales: see scales.sizes.
+    scales: see sizes.sizes_of.
     """
     rows = []
     for number, term in enumerate(terms):

@@ -20,9 +20,8 @@ def sensor_terms(bench: Bench, point: Point) -> list[Term]:
     """Return a sensor_delay and a sensor_gain of each channel that the others predict, on the first
     stretch of a Bench.
 
-    A delay has no basin so wide that its derivative at
-    zero would lead to it: the lag of the largest correlation does. ConfigError or ValueError where
-    the Point makes no model.
+    The derivative at no delay leads to a small one alone; the lag of the largest correlation is
+    that of any. Raises ConfigError or ValueError where the Point makes no model.
     """
     stretch = bench.stretches[0]
     names = bench.structure.names
