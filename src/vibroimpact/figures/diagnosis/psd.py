@@ -23,7 +23,7 @@ SI_UNITS = {
     "contact_force": "N",
     "strain": "1",
 }
-MOVES = 1.0e-3  # of the power of the channel that moves most
+MOVES = 1.0e-3  # of the power of the channel of its kind that moves most
 
 CAPTION = (
     "PSD, measured (black) and of free runs under the measured force, not held to any sensor: with"
@@ -75,13 +75,16 @@ def _title(misfit: Misfit | None, completed: bool) -> str:
 
 def _gap(psd):
     """Return (record, channel) dB: RMS of measured over simulated PSD with the model as given,
-    where the measured one is no more than LOWEST below its peak; 0 of channels that hardly move.
+    where the measured one is no more than LOWEST below its peak; 0 of channels that hardly move,
+    measured or simulated, beside others of their kind.
     """
     values = np.maximum(psd["psd"].values[:2].astype(float), np.finfo(float).tiny)
     apart = 10.0 * np.log10(values[0] / values[1])
     counted = np.isfinite(apart) & (values[0] > LOWEST * values[0].max(axis=-1, keepdims=True))
-    power = values[0].mean(axis=-1)
-    moves = power > MOVES * power.max(axis=-1, keepdims=True)
+    power = np.nan_to_num(values).max(axis=0).mean(axis=-1)
+    kinds = np.array([_kind(psd, channel) for channel in range(power.shape[-1])])
+    largest = [power[:, kinds == kind].max(axis=-1) for kind in kinds]
+    moves = power > MOVES * np.transpose(largest)
     sums = np.sum(np.where(counted, apart, 0.0) ** 2, axis=-1)
     return np.sqrt(sums / np.maximum(counted.sum(axis=-1), 1)) * moves
 
