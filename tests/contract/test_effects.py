@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.effect_values import term_at, with_term
+from tests.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS
@@ -144,3 +145,15 @@ def test_neutral_is_the_bare_model_bit_for_bit(study_config, name):
             "saturation_limit",
         )
     )
+
+
+@pytest.mark.parametrize("along", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.6, 0.0, 0.8)])
+def test_drag_brakes_a_tube_across_it_wherever_it_points(along):
+    tube = {"kind": "tube", "outer_diameter_m": 0.02, "wall_thickness_m": 0.001}
+    structure = straight_path(1.0, list(along), tube, (2.0e11, 0.3, 8000.0))
+    values = {"structure": structure, "points": {}, "elements": []}
+    changed = EFFECTS["quadratic_drag"].apply(values, {"coefficient": 20.0}, "tube")
+    directions = np.array([element["direction"] for element in changed["elements"]])
+    assert len(directions) == 16
+    np.testing.assert_allclose(directions @ along, 0.0, atol=1e-12)
+    assert np.linalg.matrix_rank(directions) == 2

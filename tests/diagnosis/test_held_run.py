@@ -60,7 +60,7 @@ def test_whether_sensors_hold_the_model_through_impacts(bench, comparison):
 
 
 def test_the_modes_of_a_plate_leave_the_others_their_numbers(bench):
-    plate = Term("plate_flexibility", "left", (1.0e5, 0.4))
+    plate = Term("plate_flexibility", "left", (1.0e5, 0.4, 0.02))
     given, moved = (bench.structure.model(Point(terms, (0.01, 0.02))) for terms in ((), (plate,)))
     own = moved.frequencies[seen(moved)][:4]
     assert moved.modes > given.modes

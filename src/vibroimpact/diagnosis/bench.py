@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
+from vibroimpact.integration.held_run import HeldLane, hold
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.run_cost import count_simulated
 
@@ -54,12 +54,9 @@ class Bench:
         return np.stack([stretch.moving for stretch in self.stretches])[..., None]
 
 
-def held_records(
-    bench: Bench, points: Sequence[Point], free: Sequence[int] = ()
-) -> tuple[HeldRecords, np.ndarray]:
-    """Return (HeldRecords, (point, stretch) number of the run among them).
-
-    The number is -1 where the values of a Point make no model. free: channels without a damper.
+def _runs(bench: Bench, points: Sequence[Point]) -> tuple[list[HeldLane], np.ndarray]:
+    """Return (runs, (point, stretch) number of the run among them, -1 where the values of a Point
+    make no model).
     """
     runs: list[HeldLane] = []
     index = np.full((len(points), len(bench.stretches)), -1)
@@ -70,9 +67,8 @@ def held_records(
             continue
         for place, stretch in enumerate(bench.stretches):
             index[number, place] = len(runs)
-            runs.append(lane_of(bench, stretch, model, chain, free))
-    count_simulated(len(runs))
-    return hold(runs, bench.schedule, bench.threads, bench.held_below_Hz), index
+            runs.append(lane_of(bench, stretch, model, chain))
+    return runs, index
 
 
 def lane_of(
@@ -143,13 +139,18 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     It is multiplied with the gain of the channel, so that it is a residual of what was measured.
     NaN of a Point that could not be run.
     """
-    records, index = held_records(bench, points)
     rate = bench.schedule.sampling_frequency
-    force = records.force[..., int(FORGET_S * rate) :]
-    frequency = np.fft.rfftfreq(force.shape[-1], 1.0 / rate)
+    first, channels = int(FORGET_S * rate), len(bench.structure.names)
+    frequency = np.fft.rfftfreq(bench.schedule.samples - first, 1.0 / rate)
     inside = (frequency >= bench.band[0]) & (frequency <= bench.band[1])
+    shape = (len(points), len(bench.stretches), channels, int(inside.sum()))
+    out = np.full(shape, np.nan, np.complex64)
+    runs, index = _runs(bench, points)
+    if not runs:
+        return out
+    count_simulated(len(runs))
+    force = hold(runs, bench.schedule, bench.threads, bench.held_below_Hz).force[..., first:]
     found = np.fft.rfft(force * np.hanning(force.shape[-1]), axis=-1)[..., inside]
-    out = np.full((*index.shape, *found.shape[1:]), np.nan, np.complex64)
     out[index >= 0] = found[index[index >= 0]]
     gain = np.stack([bench.structure.measuring(point).gain for point in points])
     return out * gain[:, None, :, None].astype(np.float32)

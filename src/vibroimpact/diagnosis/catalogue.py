@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -65,11 +66,6 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "support_offset": _ways(0.6),
     "preload": _ways(1.5),
     "hertz": [(0.02,), (0.1,)],
-    "plate_flexibility": [
-        (stiffness, mass)
-        for mass in (0.07, 0.16, 0.4)
-        for stiffness in (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)
-    ],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
     "saturation_stiffness": [(2.0, 1.0)],
     "clearance": [(0.2, 4.0), (0.6, 4.0)],
@@ -94,7 +90,7 @@ def locations(
         return in_the_chain(channels)
     length = on_structure.length_m(values)
     if effect.id in AT_A_POINT and length is not None:
-        count = places if effect.id == "added_mass" else PLACES
+        count = _count(effect.id, places)
         return [
             on_structure.between(length * (number + 0.5) / count, turned)
             for turned in _turns(effect.id, across)
@@ -102,6 +98,29 @@ def locations(
         ]
     found = effect.locations(values)
     return found[:1] if effect.id in ALL_FIRST else found
+
+
+def _count(effect_id: str, places: int) -> int:
+    """Return the number of places along a tube at which an effect is tried; places: of a mass."""
+    return places if effect_id == "added_mass" else PLACES
+
+
+def halfway(term: Term, values: Values, places: int) -> list[Term]:
+    """Return a term half way to the places on its two sides, see `locations`; none where its place
+    has a name.
+    """
+    at, length = on_structure.arc_length_m(term.location), on_structure.length_m(values)
+    if at is None or length is None or term.effect_id not in AT_A_POINT:
+        return []
+    half, turned = (
+        0.5 * length / _count(term.effect_id, places),
+        on_structure.turned_deg(term.location),
+    )
+    return [
+        replace(term, location=on_structure.between(beside, turned))
+        for beside in (at - half, at + half)
+        if 0.0 < beside < length
+    ]
 
 
 def _turns(effect_id: str, across: bool) -> tuple[float | None, ...]:

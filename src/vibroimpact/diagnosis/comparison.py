@@ -108,17 +108,13 @@ class Comparison:
         return self._bench(places, SCREENED_S)
 
     def apart(self) -> Bench:
-        """Return the Bench of stretches that took no part: of held-out records, or late ones of the
-        others where there are none.
+        """Return the Bench of stretches that took no part: of held-out records, and a late one of
+        the highest load that is fitted; late ones alone where nothing is held out.
         """
+        fitted = self._spread(self._held(self.signals.fit()), FITTED)
+        late = [(record, self.start(record, 2)) for record, _ in fitted]
         held_out = self._held(self.signals.holdout())
-        if held_out:
-            return self._bench(self._spread(held_out, APART))
-        late = [
-            (record, self.start(record, 2))
-            for record, _ in self._spread(self._held(self.signals.fit()), FITTED)
-        ]
-        return self._bench(late)
+        return self._bench([*self._spread(held_out, APART - 1), late[-1]] if held_out else late)
 
     def led(self, bench: Bench, lead_s: float) -> tuple[tuple[Stretch, ...], float]:
         """Return (the stretches of a Bench with what came before them, seconds of that): lead_s, or

@@ -99,8 +99,10 @@ def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
 
 
 def _candidates(searched: Search) -> list[Point]:
-    """Return the points that screening found best, with the nuisances of nothing."""
-    chosen: dict[str, Point] = {}
+    """Return the points that were fitted, and those that screening found best, with the nuisances
+    of nothing.
+    """
+    chosen = {each.point.name: each.point for each in searched.hypotheses}
     per_effect: dict[str, int] = {}
     for each in searched.screened:
         name, effect = each.point.name, each.point.terms[-1].effect_id

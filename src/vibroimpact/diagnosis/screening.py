@@ -5,14 +5,15 @@ derivative, and far from it by trial.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vibroimpact.effects.effect import Effect
+from vibroimpact.effects.places import arc_length_m
 
 from .bench import Bench, holding_lines, misfit, whitening
-from .catalogue import far_terms, locations, neutral_term, parts
+from .catalogue import far_terms, halfway, locations, neutral_term, parts
 from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_vector
 from .explanations import Point, Term
 from .sensor_starts import sensor_terms
@@ -21,6 +22,7 @@ HIGHEST = slice(-1, None)  # of the stretches
 AT_A_TIME = 64  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
+BETWEEN = 8  # of the best points along a tube, beside which places half way are tried
 FARTHEST_STEP = 1.5  # of a coordinate, from where the effect does nothing
 
 
@@ -49,11 +51,11 @@ def screen(
     sizes: Mapping[str, float],
     across: bool,
     along: int,
-    tried: Sequence[Term] | None = None,
+    demanded: Sequence[Term] = (),
 ) -> Screening:
     """Return the Screening of effects at all places beside the terms of a Point.
 
-    sizes, across, along: see Comparison. tried: terms to try in place of those of the catalogue.
+    sizes, across, along: see Comparison. demanded: terms to try beside those of the catalogue.
     """
     structure = bench.structure
     places = [
@@ -61,9 +63,8 @@ def screen(
         for effect in effects
         for location in locations(effect, structure.values, structure.names, across, along)
     ]
-    if tried is None:
-        tried = [term for each in places for term in far_terms(*each, sizes)]
-        tried += sensor_terms(bench, base)
+    tried = [term for each in places for term in far_terms(*each, sizes)]
+    tried += [*sensor_terms(bench, base), *demanded]
     wanted = {effect.id for effect in effects}
     far = [base.beside(term) for term in tried if term.effect_id in wanted]
     neutral = [
@@ -72,6 +73,7 @@ def screen(
     lines = holding_lines(bench, [base])[0]
     near = [point for point, _ in predicted(bench.on(HIGHEST), lines[HIGHEST], neutral, sizes)]
     ranked = _ranked(bench, lines, far + near[:TRIED])
+    ranked = _with_places_between(bench, lines, ranked, along)
     ran = {_last(point) for point in near}
     ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
     failed = {_last(point) for point in far + neutral} - ran
@@ -94,6 +96,27 @@ def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Sc
         gains[kept] += _gains(bench.on(slice(0, -1)), lines[:-1], [points[at] for at in kept])
         kept = kept[np.argsort(-gains[kept], kind="stable")]
     return [Screened(points[at], float(gains[at])) for at in (*kept, *left)]
+
+
+def _with_places_between(
+    bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int
+) -> list[Screened]:
+    """Return Screened with the places half way to their neighbours of those that gain most: a gain
+    may lie within a quarter of a wave, and that between two places.
+    """
+    values = bench.structure.values
+    leading = [
+        each.point for each in ranked if arc_length_m(each.point.terms[-1].location) is not None
+    ][:BETWEEN]
+    tried = {
+        (term.name, term.values): replace(each, terms=(*each.terms[:-1], term))
+        for each in leading
+        for term in halfway(each.terms[-1], values, along)
+    }
+    points = list(tried.values())
+    gains = _gains(bench, lines, points)
+    found = [Screened(*pair) for pair in zip(points, map(float, gains), strict=True)]
+    return sorted([*ranked, *found], key=lambda each: -each.gain)
 
 
 def _gains(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> np.ndarray:

@@ -11,6 +11,7 @@ import numpy as np
 
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.effects.effect import Effect
+from vibroimpact.effects.places import arc_length_m
 from vibroimpact.effects.registry import EFFECTS
 
 from .bench import (
@@ -25,18 +26,21 @@ from .catalogue import within_priors
 from .comparison import Comparison
 from .constants import NOTHING_LEFT, needed_gain
 from .coordinates import effect_coordinates
-from .explanations import Point
+from .explanations import Point, Term
 from .floor import floor_of
 from .gauss_newton import Fit, columns, fit
 from .measurement.usable import Refused
+from .plate_starts import plate_terms
 from .screening import Screened, Screening, screen
 
-RACED, FINALISTS = 8, 3
-PER_EFFECT = 2  # places of one effect in a race
+RACED, FINALISTS = 10, 4
+PER_EFFECT = 2  # starts of one effect in a race: its place, or another value but its size
+ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
-RACE_PASSES, FINAL_PASSES = 3, 12  # at most
+RACE_PASSES, FINAL_PASSES = 6, 12  # at most
 POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
+PLATE = "plate_flexibility"
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +123,7 @@ def search(
     floors: dict[str, tuple[float, float]] = {}
     screened: tuple[Screened, ...] = ()
     for size in range(1, most + 1):
-        screening = _screened(at, base.point, screened)
+        screening = _screened(at, base.point)
         screened = screened or screening.ranked
         failed = tuple(sorted({*failed, *screening.failed}))
         raced = _race(at, screening.ranked, base.point)
@@ -163,33 +167,32 @@ def _worth(hypothesis: Hypothesis) -> float:
     return hypothesis.apart - len(hypothesis.point.terms) * needed_gain(hypothesis.apart)
 
 
-def _screened(at: _Benches, base: Point, before: Sequence[Screened] = ()) -> Screening:
+def _screened(at: _Benches, base: Point) -> Screening:
     """Return the Screening of the effects beside those of a Point, none of them twice: two of one
     kind at neighbouring places are one that is not where it was looked for.
-
-    before: what was screened beside nothing, best first; its worse half is not tried again.
     """
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
-    tried = [each.point.terms[-1] for each in before[: -(-len(before) // 2)]] if before else None
     own = at.comparison
-    return screen(at.screened, base, others, own.sizes, own.across, own.along, tried)
+    demanded = plate_terms(own, at.screened, base) if PLATE not in known else []
+    return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded)
 
 
 def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
-    """Return the Fits of the best screened points of different effects, best first.
+    """Return the Fits of the best screened points, best first, one of each effect and place.
 
     beside: Point without their last term.
     """
     base = misfit(at.screened, holding_lines(at.screened, [beside])[0])
-    chosen: dict[str, Point] = {}
+    chosen: dict[tuple, Point] = {}
     per_effect: dict[str, int] = {}
     for each in ranked:
-        name, effect = each.point.name, each.point.terms[-1].effect_id
-        if name in chosen or per_effect.get(effect, 0) >= PER_EFFECT or not np.isfinite(each.gain):
+        term = each.point.terms[-1]
+        start, starts = (term.name, *term.values[1:]), per_effect.get(term.effect_id, 0)
+        if start in chosen or starts == PER_EFFECT or not np.isfinite(each.gain):
             continue
-        per_effect[effect] = per_effect.get(effect, 0) + 1
-        chosen[name] = each.point
+        per_effect[term.effect_id] = starts + 1
+        chosen[start] = each.point
         if len(chosen) == RACED:
             break
     fits = [
@@ -200,7 +203,17 @@ def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
     apart = [each for each in fits if not within_priors(each.point.terms[-1], rate, sizes)]
     apart.sort(key=lambda each: each.objective)
     least = RIVALS * (base - apart[0].objective) if apart else 0.0
-    return [each for each in apart if base - each.objective >= least]
+    kept: dict[tuple, Fit] = {}
+    for own in apart:
+        if base - own.objective >= least:
+            kept.setdefault(_where(own.point.terms[-1], sizes["tube_length"]), own)
+    return list(kept.values())
+
+
+def _where(term: Term, length: float) -> tuple:
+    """Return what two fits of one effect at one place have in common; length: of the tube, m."""
+    arc = arc_length_m(term.location)
+    return term.effect_id, term.location if arc is None else round(arc / (ONE_PLACE * length))
 
 
 def _finals(

@@ -9,19 +9,16 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     plate = {
         "mass_kg": parameters["mass"],
         "stiffness_N_per_m": parameters["stiffness"],
-        "damping_ratio": DAMPING_RATIO,
+        "damping_ratio": parameters["damping_ratio"],
     }
     return places.with_supports(values, location, lambda support: {"plate": plate})
-
-
-DAMPING_RATIO = 0.02
 
 
 EFFECT = Effect(
     id="plate_flexibility",
     family="contact stiffness",
     explanation="the support plate moves",
-    law="the support sits on a mass on a spring, in both transverse directions; damping ratio 0.02",
+    law="the support sits on a mass on a damped spring, in both transverse directions",
     source="single-degree-of-freedom plate",
     parameters=(
         Parameter(
@@ -43,6 +40,7 @@ EFFECT = Effect(
             per="mass",
             meaning="mass of the plate",
         ),
+        Parameter("damping_ratio", "1", 0.005, 0.29, None, meaning="damping ratio of the plate"),
     ),
     apply=apply,
     locations=places.supports,

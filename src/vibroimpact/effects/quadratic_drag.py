@@ -8,22 +8,23 @@ STATIONS = 8
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with drag at evenly spaced stations of the tube, in the two
-    directions across x-y.
+    directions across it.
     """
     points, length = places.stations(values, STATIONS)
     values = values | {"points": values["points"] | points}
-    for name in points:
-        for axis, across, direction in (("x", "y", (1.0, 0.0, 0.0)), ("y", "x", (0.0, 1.0, 0.0))):
+    coefficient = parameters["coefficient"] * length
+    for name, place in points.items():
+        for number, direction in enumerate(places.axes_across(values, place)):
             drag = {
-                "drag_N_s2_per_m2": parameters["coefficient"] * length,
-                "drag_partner": f"drag_{name}_{across}",
+                "drag_N_s2_per_m2": coefficient,
+                "drag_partner": f"drag_{name}_{'yx'[number]}",
             }
             values = places.with_element(
                 values,
-                f"drag_{name}_{axis}",
+                f"drag_{name}_{'xy'[number]}",
                 name,
-                direction,
-                **drag if parameters["coefficient"] else {},
+                [float(x) for x in direction],
+                **drag if coefficient else {},
             )
     return values
 
@@ -32,7 +33,7 @@ EFFECT = Effect(
     id="quadratic_drag",
     family="drag",
     explanation="a fluid at rest brakes the tube with the square of its speed",
-    law="force per length = coefficient |v| v, v the velocity vector across z",
+    law="force per length = coefficient |v| v, v the velocity vector across the tube",
     source="J.R. Morison et al. (1950), drag term",
     parameters=(
         Parameter(
