@@ -55,7 +55,7 @@ def _turned(count: int, *before: float) -> list[tuple[float, ...]]:
 # does nothing: what lies near is found from its derivative there.
 FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "gap": [(0.4,), (0.65,), (1.5,), (2.5,)],
-    "added_mass": [(0.15,), (0.8,)],
+    "added_mass": [(0.05,), (0.2,), (0.8,)],
     "contact_stiffness": [(0.02,), (0.2,), (4.0,)],
     "contact_damping": [(3.0e-4,)],
     "dry_friction": [(0.3,)],

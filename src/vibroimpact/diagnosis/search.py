@@ -33,11 +33,11 @@ from .measurement.usable import Refused
 from .plate_starts import plate_terms
 from .screening import Screened, Screening, screen
 
-RACED, FINALISTS = 10, 4
+RACED, EXCHANGED, FINALISTS = 10, 4, 4
 PER_EFFECT = 2  # starts of one effect in a race: its place, or another value but its size
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
-RACE_PASSES, FINAL_PASSES = 6, 12  # at most
+RACE_PASSES, FINAL_PASSES = 3, 12  # at most
 POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
 PLATE = "plate_flexibility"
@@ -178,10 +178,10 @@ def _screened(at: _Benches, base: Point) -> Screening:
     return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded)
 
 
-def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
+def _race(at: _Benches, ranked: Sequence[Screened], beside: Point, most: int = RACED) -> list[Fit]:
     """Return the Fits of the best screened points, best first, one of each effect and place.
 
-    beside: Point without their last term.
+    beside: Point without their last term. most: that are raced.
     """
     base = misfit(at.screened, holding_lines(at.screened, [beside])[0])
     chosen: dict[tuple, Point] = {}
@@ -193,7 +193,7 @@ def _race(at: _Benches, ranked: Sequence[Screened], beside: Point) -> list[Fit]:
             continue
         per_effect[term.effect_id] = starts + 1
         chosen[start] = each.point
-        if len(chosen) == RACED:
+        if len(chosen) == most:
             break
     fits = [
         fit(at.screened, point, effect_coordinates(point.terms, at.comparison.sizes), RACE_PASSES)
@@ -217,12 +217,15 @@ def _where(term: Term, length: float) -> tuple:
 
 
 def _finals(
-    at: _Benches, points: Sequence[Point], nothing: Hypothesis | None = None
+    at: _Benches,
+    points: Sequence[Point],
+    nothing: Hypothesis | None = None,
+    polished: bool = True,
 ) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances.
 
-    The columns of the nuisances are those at the first point; for the best fit they are found
-    again where it ends, as long as that helps.
+    The columns of the nuisances are those at the first point; polished: for the best fit they are
+    found again where it ends, as long as that helps.
     """
     fits: list[Fit] = []
     known = None
@@ -231,7 +234,7 @@ def _finals(
             known = _nuisance_columns(at, point)
         if known is not None:
             fits.append(_final(at, point, known))
-    if fits:
+    if fits and polished:
         number = int(np.argmin([each.objective for each in fits]))
         fits[number] = _polished(at, fits[number])
     return [_hypothesis(at, own, nothing) for own in fits]
@@ -304,7 +307,7 @@ def _without_first(
     screened: what was screened beside nothing, best first: the rivals of the first effect.
     """
     base = replace(best.point, terms=best.point.terms[1:])
-    out = _kept(at, _finals(at, [base], nothing), nothing)
+    out = _kept(at, _finals(at, [base], nothing, polished=False), nothing)
     if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
         known = {term.effect_id for term in best.point.terms}
         rivals = [
@@ -312,8 +315,9 @@ def _without_first(
             for each in screened
             if each.point.terms[-1].effect_id not in known
         ]
-        raced = _race(at, rivals, base)[:2]
-        out += _kept(at, _finals(at, [each.point for each in raced], nothing), nothing)
+        raced = _race(at, rivals, base, EXCHANGED)[:2]
+        points = [each.point for each in raced]
+        out += _kept(at, _finals(at, points, nothing, polished=False), nothing)
     for each in out:
         log(f"without the first: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
     return out

@@ -10,7 +10,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .kernel_layout import ModalLayout
 
-CONTRACTION_LIMIT = 0.5
+CONTRACTION_LIMIT = 0.75  # the passes of a step leave 1e-5 then
 LARGEST_TURN = 1.0e6  # rad of a mode in a step; beyond, its phase has lost half of its digits
 # damping x step of a mode under the exact scheme, whose shifted state (see modal_step) grows with
 # exp(damping step / 2): at 40 it has lost half of its digits.
@@ -72,19 +72,16 @@ def contact_contraction(model: ModalModel, dt: float, scheme: str = "newmark") -
 
 
 def checked_contraction(
-    model: ModalModel,
-    steps_per_second: float,
-    scheme: str = "newmark",
-    limit: float = CONTRACTION_LIMIT,
+    model: ModalModel, steps_per_second: float, scheme: str = "newmark"
 ) -> float:
     """The contraction factor of the contact iteration.
 
-    Raises IntegrationError above the limit, with the steps per second that are needed, and
+    Raises IntegrationError above CONTRACTION_LIMIT, with the steps per second that are needed, and
     for a mode without a phase or with too much damping.
     """
     _require_digits(model, steps_per_second, scheme)
     contraction = contact_contraction(model, 1.0 / steps_per_second, scheme)
-    if not contraction <= limit:  # NaN where the step has no numbers for a mode
+    if not contraction <= CONTRACTION_LIMIT:  # NaN where the step has no numbers for a mode
         largest = max(
             model.contact_stiffness.max(initial=0.0),
             np.abs(model.local_laws.stiffness).max(initial=0.0),
@@ -92,11 +89,11 @@ def checked_contraction(
         raise IntegrationError(
             f"contact stiffness {largest:.3g} N/m is too stiff for a step of"
             f" {1 / steps_per_second:.3g} s: the contact iteration contracts by {contraction:.2g}"
-            f" only (limit {limit:g}; the stiffness is that of a point of"
+            f" only (limit {CONTRACTION_LIMIT}; the stiffness is that of a point of"
             " supports.stiffness_N_per_m or of an element; dampers, friction springs and light"
             " plates count too): raise"
             " integration.steps_per_second to at least"
-            f" {steps_per_second * np.sqrt(contraction / limit):.0f}"
+            f" {steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
         )
     return contraction
 

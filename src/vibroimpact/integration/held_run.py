@@ -21,7 +21,7 @@ import numpy as np
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import Run, Schedule, start_amplitudes, start_state, to_lanes
-from .contact_convergence import IntegrationError, checked_contraction
+from .contact_convergence import CONTRACTION_LIMIT, IntegrationError, checked_contraction
 from .kernel_layout import MODE_COEFFICIENTS, ModalLayout
 from .kernels.lanes import LANES
 from .kernels.tables import Contact, Hold, Laws, Modal, Output, State
@@ -30,8 +30,6 @@ from .preload import seated
 OWN_COEFFICIENTS = ("shapes", "row_compliance", *MODE_COEFFICIENTS)  # of Modal, by lane
 OWN_OBSTACLES = ("stiffness", "gap", "offset_1", "offset_2")  # of Contact
 NO_DAMPING = 1e-12  # N s/m: as good as none, and yet a term of the general law
-# Of the contact iteration, whose 40 passes leave 1e-5 then: trial values are stiff and damped.
-SLOWEST_CONTRACTION = 0.75
 HELD_TURN = 1.0  # rad of a mode in a step: above, its velocity is not known from displacements
 
 
@@ -167,8 +165,7 @@ class _Prepared:
         return ModalLayout(driven, self.schedule.scheme)
 
     def _contraction(self, model):
-        rate, scheme = self.schedule.steps_per_second, self.schedule.scheme
-        return checked_contraction(model, rate, scheme, SLOWEST_CONTRACTION)
+        return checked_contraction(model, self.schedule.steps_per_second, self.schedule.scheme)
 
     def _rest(self, model, gap):
         """Return (offset (contact_point, 2), modal amplitudes (mode,) at rest or None)."""
@@ -307,7 +304,7 @@ class HeldRun(Run):
             np.array([run.gap for run in runs]),
             np.stack([offset for offset, _ in self.places[: len(runs)]], axis=-1),
             self._drive,
-            SLOWEST_CONTRACTION,  # the same in every batch, so that neighbours do not matter
+            CONTRACTION_LIMIT,  # the same in every batch, so that neighbours do not matter
         )
 
     def _drive(self, first, count):
