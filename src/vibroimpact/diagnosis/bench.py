@@ -21,7 +21,7 @@ from .measurement.stretches import Stretch
 
 BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
 FIRST_BAND = 4  # lines in the lowest
-NUDGE, LOST = 3.0e-6, 1.0e-2  # relative change of frequencies; of the power of the lines
+NUDGE, LOST = 3.0e-6, 1.0e-4  # relative change of frequencies; of the power of the lines
 END_S = 0.3  # of a run: before its end
 
 

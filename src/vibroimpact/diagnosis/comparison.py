@@ -18,7 +18,7 @@ from .sizes import sizes_of
 
 FITTED, SCREENED, APART = 3, 2, 4  # stretches
 ALONG = (6, 24)  # places of a mass along a tube, at least and at most
-BEGIN = 0.2  # of a record: where its first stretch begins
+BEGIN, STARTS = 0.2, 3  # of a record: where its first stretch begins, and how many there are
 INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 
 
@@ -55,7 +55,7 @@ class Comparison:
         }.items():
             object.__setattr__(self, name, value)
         order = self.by_load(self.signals.fit())
-        highest = self._cut([(order[-1], self.start(order[-1], 0))], STRETCH_S)[0]
+        highest = self._cut([(order[-1], self._starts(order[-1])[0])], STRETCH_S)[0]
         sizes = sizes_of(
             model, self.signals, highest, rates.steps_per_second, self.structure.values
         )
@@ -98,23 +98,29 @@ class Comparison:
         gap = np.nan_to_num(self.signals.gap, nan=1.0)
         return sorted(map(int, records), key=lambda record: self.signals.load[record] / gap[record])
 
+    @cached_property
+    def _fitted(self) -> list[tuple[int, float]]:
+        """Return (record, start) of the stretches that are fitted."""
+        return self._spread(self.signals.fit(), FITTED)
+
     def fitted(self) -> Bench:
         """Return the Bench that explanations are fitted on: low, middle and high loads."""
-        return self._bench(self._spread(self._held(self.signals.fit()), FITTED))
+        return self._bench(self._fitted)
 
     def screened(self) -> Bench:
         """Return the Bench of screening: the higher loads."""
-        places = self._spread(self._held(self.signals.fit()), FITTED)[-SCREENED:]
-        return self._bench(places, SCREENED_S)
+        return self._bench(self._fitted[-SCREENED:], SCREENED_S)
 
     def apart(self) -> Bench:
         """Return the Bench of stretches that took no part: of held-out records, and a late one of
         the highest load that is fitted; late ones alone where nothing is held out.
         """
-        fitted = self._spread(self._held(self.signals.fit()), FITTED)
-        late = [(record, self.start(record, 2)) for record, _ in fitted]
-        held_out = self._held(self.signals.holdout())
-        return self._bench([*self._spread(held_out, APART - 1), late[-1]] if held_out else late)
+        late = self._spread(self.signals.fit(), FITTED, self._fitted)
+        held_out = self.signals.holdout()
+        if any(record in self._holding for record in held_out):
+            return self._bench([*self._spread(held_out, APART - 1), *late[-1:]])
+        last = [(record, self._starts(record)[-1]) for record, _ in self._fitted]
+        return self._bench(late or last)
 
     def led(self, bench: Bench, lead_s: float) -> tuple[tuple[Stretch, ...], float]:
         """Return (the stretches of a Bench with what came before them, seconds of that): lead_s, or
@@ -130,34 +136,46 @@ class Comparison:
         """Return the records that do not hold the model as given: its sensors are too few for the
         impacts there, and the lines of what is not held tell nothing.
         """
-        records = range(len(self.signals.load))
-        bench = self._bench([(record, self.start(record, 0)) for record in records])
-        return tuple(np.flatnonzero(~holds(bench, self.modes)).tolist())
+        return tuple(record for record, held in enumerate(self._held) if not held)
 
-    def _held(self, records):
-        """Return those of records that hold the model; that of the lowest load where none does."""
-        held = [int(each) for each in records if self.with_lost or each not in self.lost]
-        return held or self.by_load(records)[:1]
+    @cached_property
+    def _holding(self) -> dict[int, list[float]]:
+        """Return {record: where its stretches begin that are compared, s}, of those that are."""
+        if self.with_lost:
+            return {record: self._starts(record) for record in range(len(self.signals.load))}
+        return {record: held for record, held in enumerate(self._held) if held}
 
-    def start(self, record: int, number: int) -> float:
-        """Return where the number-th stretch of a record begins, s."""
+    @cached_property
+    def _held(self) -> list[list[float]]:
+        """Return where the stretches of each record begin that hold the model as given, s."""
+        starts = [self._starts(record) for record in range(len(self.signals.load))]
+        places = [(record, at) for record, own in enumerate(starts) for at in own]
+        good = dict(zip(places, holds(self._bench(places), self.modes), strict=True))
+        return [[at for at in own if good[record, at]] for record, own in enumerate(starts)]
+
+    def _starts(self, record: int) -> list[float]:
+        """Return where the stretches of a record begin, s."""
         whole = valid_samples(self.signals, record) / self.signals.rate
         last = max(whole - STRETCH_S - 1.2, 0.0)
-        return float(min(BEGIN * whole + number * STRETCH_S, last))
+        first = (min(BEGIN * whole + number * STRETCH_S, last) for number in range(STARTS))
+        return list(dict.fromkeys(map(float, first)))
 
-    def _spread(self, records, count):
-        """Return [(record, start)]: so many stretches of records, from the lowest load to the
-        highest.
+    def _spread(self, records, count, taken=()):
+        """Return [(record, start)]: so many stretches of records that are compared, from the lowest
+        load to the highest, none of `taken`; of the lowest load where no record holds the model.
         """
-        order = self.by_load(records)
-        chosen = [order[round(at)] for at in np.linspace(0, len(order) - 1, count)]
-        seen: dict[int, int] = {}
-        places = []
-        for record in chosen:
-            number = seen.get(record, 0)
-            seen[record] = number + 1
-            places.append((record, self.start(record, number)))
-        return places
+        left = {
+            int(record): [
+                at for at in self._holding.get(record, ()) if (int(record), at) not in taken
+            ]
+            for record in records
+        }
+        order = [record for record in self.by_load(records) if left[record]]
+        if not order and not taken:
+            lowest = self.by_load(records)[0]
+            order, left[lowest] = [lowest], self._starts(lowest)
+        chosen = [order[round(at)] for at in np.linspace(0, len(order) - 1, count)] if order else []
+        return [(record, left[record].pop(0)) for record in chosen if left[record]]
 
     def _cut(self, places, duration_s):
         """Return the stretches at places."""
