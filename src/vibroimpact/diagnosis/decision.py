@@ -106,14 +106,19 @@ def far_off(misfit: Mapping[str, float | None]) -> bool:
     return after is None or floor is None or after - floor > constants.FREE_EXCESS_DB
 
 
-def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> Decision:
+def beside_spectra(
+    decision: Decision,
+    misfit: Mapping[str, float | None],
+    by_record: Sequence[Mapping[str, float | None]] = (),
+) -> Decision:
     """Return the Decision given the distances of free runs.
 
     Nothing is not said where spectra are far above their floor: some laws act on motion that a held
     run does not have, such as whirling. An effect that makes spectra worse, or that leaves most of
-    a large excess, is refuted; where there was no excess, nothing is missing.
+    a large excess in most records, is refuted; where there was no excess, nothing is missing.
 
-    misfit: {before_dB, after_dB, floor_dB, closed_fraction}, None where not known.
+    misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None where not
+    known. by_record: the same of each record: whether a tube whirls may be chance in one.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -131,7 +136,23 @@ def beside_spectra(decision: Decision, misfit: Mapping[str, float | None]) -> De
     if makes_worse(misfit):
         return refuted(decision, in_favour_of_nothing=closed is None)
     far = after - floor > 2.0 * constants.FREE_EXCESS_DB and (closed or 0.0) < constants.PARTLY
+    far = far and _most_stay_off(by_record or [misfit])
     return refuted(decision) if far and decision.verdict in ("named", "ambiguous") else decision
+
+
+def _most_stay_off(by_record: Sequence[Mapping[str, float | None]]) -> bool:
+    """Return whether most records whose spectra are far off before or after completion keep most
+    of their excess.
+    """
+    off = stay = 0
+    for row in by_record:
+        before, after, floor = row["before_dB"], row["after_dB"], row["floor_dB"]
+        if before is None or after is None or floor is None:
+            continue
+        if max(before, after) - floor > constants.FREE_EXCESS_DB:
+            off += 1
+            stay += (row["closed_fraction"] or 0.0) < constants.PARTLY
+    return 2 * stay > off
 
 
 def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:

@@ -359,7 +359,9 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
 def _verified(found: _Found, told: dict[str, Any]) -> Decision:
     """Return the Decision given the distances of free runs."""
     if found.comparison is not None:
-        return beside_spectra(found.decision, told)
+        records = range(len(found.signals.load))
+        rows = [distance(found.runs, found.signals, [record]) for record in records]
+        return beside_spectra(found.decision, told, rows)
     worse = found.decision.verdict not in ("none", "unknown") and makes_worse(told)
     return refuted(found.decision) if worse else found.decision
 
