@@ -2,7 +2,7 @@
 
 import json
 import os
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -270,13 +270,18 @@ def noise_rms(plan, response):
     return noise
 
 
+def gains_of(plan):
+    """(channel,) gains of the sensors."""
+    return plan.scattered(plan.gain_scatter, len(channels_of(plan)[0]), GAINS)
+
+
 def apply_instruments(plan, force, response, noise, stream=0, hidden=True):
     """(force, response) as the instruments give them.
 
     noise: (channel,) RMS. hidden: with the hidden faults of the instruments.
     """
     names = [channel["name"] for channel in channels_of(plan)[0]]
-    gains = plan.scattered(plan.gain_scatter, len(names), GAINS)
+    gains = gains_of(plan)
     data = Measured(plan.force_gain * force, response * gains[:, None], names, plan.sampling)
     for name, parameters in plan.effects if hidden else ():
         if name in INSTRUMENTS:
@@ -294,13 +299,14 @@ def judged_levels(plan):
 
 
 def strength(plan, force, seen, noise):
-    """strength.excess of the judged records over the same records with nothing hidden.
+    """strength.excess of the judged records over the same records with nothing hidden; of a pair
+    also `beside`: the floors of each effect over the same records with the other one alone.
 
     seen: (record, channel, time) responses.
     """
     rows, count = sorted(judged_levels(plan)), len(plan.channels)
 
-    def twins(hidden, first):
+    def twins(plan, hidden, first):
         """The records from TWINS other initial states, as measured."""
         runs = [simulate_records(plan, force, hidden, first + k, rows)[0] for k in range(TWINS)]
         return [
@@ -308,14 +314,19 @@ def strength(plan, force, seen, noise):
             for k, run in enumerate(runs)
         ]
 
-    return excess(
-        seen[rows][:, :count],
-        twins(False, 1),
-        twins(True, 1 + TWINS),
-        noise[:count],
-        plan.sampling,
-        plan.band,
-    )
+    again = twins(plan, True, 1 + TWINS)
+
+    def over(bare):
+        """strength.excess over the records of twins."""
+        return excess(seen[rows][:, :count], bare, again, noise[:count], plan.sampling, plan.band)
+
+    found = over(twins(plan, False, 1))
+    if len(plan.effects) == 2:
+        found["beside"] = [
+            over(twins(replace(plan, effects=(other,)), True, 1 + 2 * TWINS))["floors"]
+            for other in plan.effects[::-1]
+        ]
+    return found
 
 
 def records_of(plan):
@@ -341,7 +352,12 @@ def make_campaign(plan, path, truth_path=None, twin=True, model_path=None):
     response, contact = simulate_records(plan, force)
     noise = noise_rms(plan, response)
     force_seen, seen = apply_instruments(plan, force, response, noise)
-    truth = {"file": Path(path).name, **asdict(plan), "contact_share": contact.round(4).tolist()}
+    truth = {
+        "file": Path(path).name,
+        **asdict(plan),
+        "contact_share": contact.round(4).tolist(),
+        "gains": gains_of(plan).round(4).tolist(),
+    }
     if twin:
         truth["strength"] = strength(plan, force, seen, noise)
     if model_path is not None:

@@ -10,7 +10,12 @@ import pytest
 from scipy.special import expit, logit
 
 from tests.discrepancy_results import made_up_verdict
-from vibroimpact.acceptance.calibration import largest_gap, reliability, statements
+from vibroimpact.acceptance.calibration import (
+    calibration_error,
+    largest_gap,
+    reliability,
+    statements,
+)
 from vibroimpact.acceptance.campaign_rows import read_folder, read_shards, read_table, stated_in
 from vibroimpact.acceptance.detection_limit import (
     detection,
@@ -21,6 +26,7 @@ from vibroimpact.acceptance.detection_limit import (
 from vibroimpact.acceptance.families import FAMILIES
 from vibroimpact.acceptance.intervals import wilson
 from vibroimpact.acceptance.judging import SAME_QUANTITY, judged, kind_of
+from vibroimpact.acceptance.right_names import right_names
 from vibroimpact.acceptance.table import acceptance_table, confusion, standing
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.figures.acceptance.sheets import acceptance_figures
@@ -136,9 +142,10 @@ def test_rows_hold_strength_and_parameter_against_truth():
         ("strong", 2.0, "medium"),
         ("medium", 3.5, "strong"),
         ("strong", 0.9, "weak"),
-        ("two", 0.5, "weak"),
+        ("two", 0.5, "faint"),
         ("two", 2.0, "two"),
-        ("out_of_catalogue", 0.2, "weak"),
+        ("out_of_catalogue", 0.2, "faint"),
+        ("medium", 0.2, "faint"),
         ("fault", 0.0, "fault"),
     ],
 )
@@ -179,12 +186,12 @@ def test_partly_is_open_only_where_it_closes_half():
 
 def test_wrong_names_are_told_from_right_ones():
     table = small_draw()
-    assert numbers_of(table, "strong", "in the set") == (3, 2, pytest.approx(2 / 3))
+    assert numbers_of(table, "one effect", "first") == (3, 2, pytest.approx(2 / 3))
     assert numbers_of(table, "two", "pair in the set") == (1, 1, 1.0)
     # of five single names, the preload is wrong; friction for LuGre friction is right
     assert numbers_of(table, "all", "right, given a single name") == (5, 4, 0.8)
     assert numbers_of(table, "other law", "family named or in the set")[2] == 1.0
-    assert numbers_of(table, "medium", "in the set")[0] == 0
+    assert numbers_of(table, "weak", "first")[0] == 0
 
 
 def test_a_stated_family_counts_where_no_law_is_named():
@@ -382,11 +389,11 @@ def test_rows_are_read_as_they_were_written(folder, tmp_path):
     ]
 
 
-def tables_of(rows, curve):
+def tables_of(rows, stated):
     """The tables of the page."""
     return {
-        "table": acceptance_table(rows, curve),
-        "reliability": curve,
+        "table": acceptance_table(rows, stated),
+        "reliability": reliability(stated),
         "confusion": confusion(rows),
         "detection": detection(rows),
     }
@@ -396,7 +403,7 @@ def tables_of(rows, curve):
 def figures(tmp_path_factory):
     """(folder, {name: Sheet}, tables) of the small draw, saved."""
     folder, rows = tmp_path_factory.mktemp("draw"), small_draw()
-    tables = tables_of(rows, reliability([(0.95, number > 0) for number in range(12)]))
+    tables = tables_of(rows, [(0.95, number > 0) for number in range(12)])
     sheets = acceptance_figures(rows, tables)
     for sheet in sheets:
         sheet.save(folder)
@@ -416,7 +423,7 @@ def test_acceptance_figures_show_every_row(figures):
     (point,) = sheets["acceptance_reliability"].rows()
     assert float(point["true_share"]) == pytest.approx(11 / 12)
     labels = sheets["acceptance_rates"].axes["main"].get_yticklabels()
-    assert "strong: in the set (n = 3)" in [label.get_text() for label in labels]
+    assert "one effect: first (n = 3)" in [label.get_text() for label in labels]
 
 
 def test_confusion_matrix_shows_each_count(figures):
@@ -455,7 +462,7 @@ def test_acceptance_page_names_draw_count_and_missed_rows(figures):
     rows = small_draw()
     sentence = acceptance_sentence("development_7", rows, tables["table"])
     assert sentence.startswith("7 campaigns of the draw development_7: ")
-    assert "strong: in the set (67 %, target at least 97 %, campaigns: 3)" in sentence
+    assert "one effect: first (67 %, target at least 96 %, campaigns: 3)" in sentence
     assert "parameters: median error (27 %, target at most 5 %, campaigns: 2)" in sentence
     assert "nothing: anything named" not in sentence.split("No campaign")[0]
     assert "medium: in the set" in sentence.split("No campaign answers yet:")[1]
@@ -469,3 +476,25 @@ def test_acceptance_page_names_draw_count_and_missed_rows(figures):
     missed = sum(row["standing"] == "missed" for row in tables["table"])
     assert page.count('<td class="missed">missed</td>') == missed > 0
     assert all(words in page for words in ("0005", "drifting gap", "partly explained", "92 %"))
+
+
+def test_a_stray_gain_may_be_named_and_an_exact_alias_counts():
+    truth = truth_of("strong", GAP) | {"gains": [1.01, 0.85]}
+    gap, gain = ["gap"], ["sensor_gain"]
+    assert right_names(truth) == [gap, sorted([*gap, *gain])]
+    whole = truth_of("exact_alias", ("gap", {"factor": 2.0, "plates": "all"}))
+    assert right_names(whole) == [gap, gain]
+    assert right_names(truth_of("nothing") | {"gains": [0.98, 1.2]}) == [gain]
+    assert right_names(truth_of("fault", ("swap", {}))) == []
+
+
+def test_a_pair_of_which_one_hides_the_other_is_masked():
+    truth = truth_of("two", GAP, FRICTION)
+    for beside, kind in (([5.0, 0.4], "masked"), ([5.0, 1.4], "two")):
+        assert kind_of(truth | {"strength": truth["strength"] | {"beside": beside}}) == kind
+
+
+def test_calibration_error_is_the_mean_gap():
+    stated = [(0.95, True)] * 50 + [(0.95, False)] * 50 + [(0.05, False)] * 100
+    assert calibration_error(stated) == pytest.approx(0.5 * 0.45 + 0.5 * 0.05)
+    assert np.isnan(calibration_error([]))

@@ -14,10 +14,11 @@ from vibroimpact.reports.acceptance_page import acceptance_page
 redirect_output(snakemake.log[0])
 folder = Path(snakemake.output.page).parent
 rows = read_shards(folder, snakemake.input.added)
-curve = reliability(stated_in(rows))
+stated = stated_in(rows)
+curve = reliability(stated)
 tables = {
     "campaigns": rows,
-    "table": acceptance_table(rows, curve),
+    "table": acceptance_table(rows, stated),
     "reliability": curve,
     "confusion": confusion(rows),
     "detection": detection(rows),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .intervals import wilson
+from .right_names import right_names
 
 FEWEST = 10  # statements in a bin
 EDGES = np.linspace(0.0, 1.0, 11)
@@ -19,19 +20,15 @@ def statements(verdict: dict[str, Any], truth: dict[str, Any]) -> list[tuple[flo
 
     verdict, truth: contents of their files. Empty where the engine states no probability.
     """
-    kind, hidden = truth["kind"], sorted(name for name, _ in truth["effects"])
-    nameable = kind not in ("nothing", "fault", "out_of_catalogue", "other_law")
+    kind, whole = truth["kind"], right_names(truth)
     found = [
-        (verdict.get("probability_none"), kind == "nothing"),
+        (verdict.get("probability_none"), kind in ("nothing", "fault") and not whole),
         (verdict.get("probability_something_else"), kind == "out_of_catalogue"),
     ]
-    ranked = [
-        (row.get("probability"), nameable and sorted(row["ids"]) == hidden)
-        for row in verdict["ranking"]
-    ]
+    ranked = [(row.get("probability"), sorted(row["ids"]) in whole) for row in verdict["ranking"]]
     if all(probability is None for probability, _ in ranked):
         ranked = [
-            (probability, nameable and sorted(ids) == hidden)
+            (probability, sorted(ids) in whole)
             for ids, probability in zip(
                 verdict["ambiguity_set"], verdict.get("ambiguity_probability", ()), strict=False
             )
@@ -84,6 +81,18 @@ def _joined(which):
     if bins and first < len(counts):
         bins[-1] = (bins[-1][0], len(counts))
     return bins
+
+
+def calibration_error(stated: Iterable[tuple[float, bool]]) -> float:
+    """Return the expected calibration error: the mean over statements of |stated - true| of their
+    bin; NaN without statements.
+
+    Source: M.P. Naeini, G.F. Cooper, M. Hauskrecht, AAAI (2015).
+    """
+    rows = reliability(stated)
+    weight = np.array([row["statements"] for row in rows], float)
+    gap = np.array([abs(row["stated"] - row["true"]) for row in rows])
+    return float(np.sum(weight * gap) / weight.sum()) if rows else float("nan")
 
 
 def largest_gap(rows: list[dict[str, float]]) -> float:

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from .families import same_family
+from .right_names import EXACT_ALIASES, right_names
 
-STRONG, MEDIUM = 3.0, 1.0  # floors of excess
+STRONG, MEDIUM, FAINT = 3.0, 1.0, 0.3  # floors of excess
 PARTLY = 0.5  # closed share from which a partial explanation leaves the question open rightly
-CLOSED, AFTER = 0.8, 1.3  # of the excess, and of the floor: what verification records must show
+CLOSED = 0.8  # of the excess, that held-out records must show
 NO_EFFECT = ("nothing", "fault")  # kinds that have no strength
+SINGLE = ("strong", "medium", "exact_alias", "near_alias")  # kinds with one effect
 FAULT_CHECKS = {
     "clipping",
     "drop-outs",
@@ -26,7 +28,6 @@ FAULT_CHECKS = {
     "directions",
 }
 SENSOR = {"sensor_gain", "sensor_delay", "sensor_saturation"}
-EXACT_ALIASES = {"gap": "sensor_gain", "sensor_gain": "gap"}
 NEAR_ALIASES = {
     "hertz": "contact_stiffness",
     "contact_stiffness": "hertz",
@@ -61,6 +62,7 @@ SAME_QUANTITY = {
     "sensor_gain": ("factor", "factor"),
 }
 NAN = float("nan")
+ASSERTED = ("named", "ambiguous", "partly_explained")
 
 
 def judged(verdict: dict[str, Any], truth: dict[str, Any]) -> dict[str, Any]:
@@ -97,13 +99,16 @@ def strength_of(truth: dict[str, Any]) -> float:
 
 def kind_of(truth: dict[str, Any]) -> str:
     """Return the kind of a campaign. Strong and medium go by the strength that resulted; whatever
-    is weaker than medium counts as weak, but for faults, which are no effects of the structure.
+    is weaker than medium counts as weak or faint, but for faults, which are no effects of the
+    structure. A pair of which one effect is weaker than medium beside the other is masked.
     """
     kind, floors = str(truth["kind"]), strength_of(truth)
     if kind in NO_EFFECT or np.isnan(floors):
         return kind
     if floors < MEDIUM:
-        return "weak"
+        return "weak" if floors >= FAINT and kind in SINGLE else "faint"
+    if kind == "two" and min(truth["strength"].get("beside", [MEDIUM])) < MEDIUM:
+        return "masked"
     if kind in ("strong", "medium"):
         return "strong" if floors >= STRONG else "medium"
     return kind
@@ -115,19 +120,22 @@ def _answers(verdict, truth, hidden, sets):
     named = {name for row in sets for name in row}
     faults = {row["check"] for row in verdict["checks"] if row["level"] != "pass"} & FAULT_CHECKS
     flagged = bool(faults) or bool(named & SENSOR)
-    first = sorted(verdict["ranking"][0]["ids"]) if verdict["ranking"] else []
-    in_set = hidden in sets and bool(hidden)
     family = same_family(verdict, hidden)
     closed = _held(verdict).get("closed_fraction")
     single = said == "named"
+    whole = right_names(truth)
+    in_set = any(row in sets for row in whole)
     right = flagged if kind == "fault" else family if kind == "other_law" else in_set
+    ranked = [sorted(row["ids"]) for row in verdict["ranking"][:3]]
     return {
         "in_set": in_set,
-        "first": first == hidden and bool(hidden),
+        "first": ranked[:1] != [] and ranked[0] in whole,
+        "first_three": any(row in whole for row in ranked),
         "one_right": bool(set(hidden) & named),
         "wrong": single and not right,
         "pair_wrong": single and not in_set and any(len(row) == 2 for row in sets),
-        "any_name": bool(sets) and said in ("named", "ambiguous"),
+        "any_name": bool(sets) and said in ASSERTED,
+        "false_name": bool(sets) and said in ASSERTED and not in_set,
         "single_name": single,
         "named_right": single and right,
         "open": said in ("unknown", "not_testable")
@@ -157,7 +165,7 @@ def _held(verdict):
 
 
 def _misfit(verdict):
-    """Return {closed, after_over_floor, verified} of the records that took no part."""
+    """Return {closed, closes, after_over_floor} of the records that took no part."""
     held = _held(verdict)
     closed, after, floor = (
         NAN if held.get(key) is None else float(held[key])
@@ -166,8 +174,8 @@ def _misfit(verdict):
     ratio = after / floor if floor > 0.0 else NAN
     return {
         "closed": closed,
+        "closes": float(closed >= CLOSED) if np.isfinite(closed) else NAN,
         "after_over_floor": ratio,
-        "verified": bool(closed >= CLOSED and ratio <= AFTER),
     }
 
 
