@@ -464,8 +464,8 @@ def test_acceptance_page_names_draw_count_and_missed_rows(figures):
     assert sentence.startswith("7 campaigns of the draw development_7: ")
     assert "one effect: first (67 %, target at least 96 %, campaigns: 3)" in sentence
     assert "parameters: median error (27 %, target at most 1 %, campaigns: 2)" in sentence
-    assert "nothing: anything named" not in sentence.split("No campaign")[0]
-    assert "medium: in the set" in sentence.split("No campaign answers yet:")[1]
+    assert "nothing: an effect asserted" not in sentence.split("No campaign")[0]
+    assert "weak: first" in sentence.split("No campaign answers yet:")[1]
     mixed = [row | {"source": source} for row, source in zip(rows, "aabaaab", strict=True)]
     said = acceptance_sentence("development_7", mixed, tables["table"])
     assert "Judged by several sources: a, b." in said and "several" not in sentence
