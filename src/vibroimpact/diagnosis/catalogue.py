@@ -64,7 +64,7 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "fluid_added_mass_damping": [(0.1, 2.0), (0.5, 6.0)],
     "coulomb_friction": [(0.1,), (0.5,)],
     "support_offset": _ways(0.6),
-    "preload": _ways(1.5),
+    "preload": _ways(1.5, 4.0),
     "hertz": [(0.02,), (0.1,)],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
     "saturation_stiffness": [(2.0, 1.0)],
