@@ -63,7 +63,7 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "quadratic_drag": [(0.5,), (3.0,)],
     "fluid_added_mass_damping": [(0.1, 2.0), (0.5, 6.0)],
     "coulomb_friction": [(0.1,), (0.5,)],
-    "support_offset": _ways(0.6),
+    "support_offset": _ways(0.6, 1.2),  # within the gap, and pressed
     "preload": _ways(1.5, 4.0),
     "hertz": [(0.02,), (0.1,)],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
